@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Proves the architecture: who may include whom, and what stays out of the libraries.
+
+  check_floors.py [ROOT]       prints one line for each offence, "path:line: what is wrong"; exit code 1 if there is one
+  check_floors.py --self_test  shows on a small tree that each rule complains when it is broken
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+import tempfile
+
+import cpp_text
+
+# The floors and what each stands on. A file may include its own floor and all those below.
+STANDS_ON = {
+    "base": [],
+    "recording": ["base"],
+    "model": ["base"],
+    "trajectory": ["model", "recording"],
+    "closed_form": ["recording", "model"],
+    "fitting": ["trajectory", "closed_form"],
+    "report": ["fitting"],
+    "tools": ["report"],
+}
+
+# The only floors that may include a library's headers. Libraries not listed are free.
+LIBRARY_FLOORS = {
+    "boost": {"trajectory", "closed_form", "fitting"},
+    "ceres": {"fitting"},
+    "gflags": {"tools", "service"},
+    "glog": {"tools", "service"},
+    "nlohmann": {"model", "report", "tools"},
+    "openssl": {"recording"},
+}
+# Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.
+TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"trajectory"}, "nlohmann/": set(STANDS_ON)}
+
+# Folders of tests/ that may include everything.
+FREE_TEST_FOLDERS = {"benchmarks", "consumer"}
+
+# What only the floors that talk to people may do.
+TALKING_FLOORS = {"tools", "service"}
+FORBIDDEN_BELOW = {
+    "a stream of the process": r"\b(?:cout|cerr|clog)\b",
+    "printf": r"\b(?:f|v|vf)?printf\s*\(",
+    "exit": r"\b(?:_|_E|quick_)?exit\s*\(",
+    "throw": r"\bthrow\b",
+    "a naked new": r"\bnew\b",
+    "logging": r"\b[DPSV]*LOG(?:_[A-Z_]+)?\s*\(",
+    "a flag": r"\bDEFINE_\w+",
+}
+
+
+def reach(floor):
+    """The floor and all below it."""
+    return {floor}.union(*(reach(lower) for lower in STANDS_ON.get(floor, [])))
+
+
+def floor_of(path):
+    """The floor of include/pendulum/F/..., src/F/... or tests/F/...; files straight in tests/ belong to base."""
+    parts = path.parts[2:] if path.parts[0] == "include" else path.parts[1:]
+    return parts[0] if len(parts) > 1 else "base"
+
+
+def check_include(root, path, header, quoted):
+    """What is wrong with this file including this header, or None."""
+    floor = floor_of(path)
+    in_tests = path.parts[0] == "tests"
+    if in_tests and floor in FREE_TEST_FOLDERS:
+        return None
+    ours = re.fullmatch(r"(?:pendulum|tests)/(\w+)/.*", header)
+    private = re.fullmatch(r"(\w+)/.*", header)
+    if ours:
+        if ours[1] not in reach(floor):
+            return f"floor {floor} does not stand on {ours[1]}"
+    elif quoted:
+        is_own = private and private[1] == floor or in_tests and re.fullmatch(r"tests/\w+\.h", header)
+        if not is_own and not (root / path.parent / header).resolve().parent == (root / path.parent).resolve():
+            return f'"{header}" is neither public ("pendulum/FLOOR/x.h") nor private to {floor} ("{floor}/x.h")'
+    else:
+        library = header.split("/")[0]
+        if in_tests and any(header.startswith(start) and floor in floors for start, floors in TEST_HEADERS.items()):
+            return None
+        if floor not in LIBRARY_FLOORS.get(library, {floor}):
+            return f"{library} belongs to {', '.join(sorted(LIBRARY_FLOORS[library]))}, not to {floor}"
+    return None
+
+
+def check_includes(root, path):
+    """Each file is of a known floor, and includes its own or lower ones."""
+    floor = floor_of(path)
+    if floor not in STANDS_ON and not (path.parts[0] == "tests" and floor in FREE_TEST_FOLDERS):
+        yield f"{path}:1: there is no floor {floor}"
+        return
+    for number, line in enumerate(cpp_text.without_comments((root / path).read_text()).splitlines(), 1):
+        include = re.match(r'\s*#\s*include\s*([<"])([^>"]+)', line)
+        complaint = include and check_include(root, path, include[2], include[1] == '"')
+        if complaint:
+            yield f"{path}:{number}: {complaint}"
+
+
+def check_words(root, path):
+    """Below the tools nothing prints, logs, exits, throws or owns by hand."""
+    if path.parts[0] == "tests" or floor_of(path) in TALKING_FLOORS:
+        return
+    for number, line in enumerate(cpp_text.code_only((root / path).read_text()).splitlines(), 1):
+        for what, pattern in FORBIDDEN_BELOW.items():
+            if re.search(pattern, line):
+                yield f"{path}:{number}: {what} has no place in floor {floor_of(path)}"
+
+
+def check_companions(root, path):
+    """src/F/x.cc has include/pendulum/F/x.h (src/F/x.h where F has no public interface) and tests/F/x_test.cc."""
+    if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
+        return
+    inner = path.relative_to("src").with_suffix("")
+    headers = "src" if floor_of(path) in TALKING_FLOORS else "include/pendulum"
+    for companion in (f"{headers}/{inner}.h", f"tests/{inner}_test.cc"):
+        if not (root / companion).exists():
+            yield f"{path}:1: {companion} is missing"
+
+
+def cmake_calls(root, folder, function):
+    """The arguments of each call of a function in a folder's CMakeLists.txt."""
+    path = root / folder / "CMakeLists.txt"
+    text = re.sub(r"#[^\n]*", "", path.read_text()) if path.exists() else ""
+    return [call.split() for call in re.findall(rf"^\s*{function}\(([^)]*)\)", text, re.MULTILINE)]
+
+
+def check_links(root):
+    """A floor's target links only the targets of floors it stands on."""
+    for name, *arguments in cmake_calls(root, "src", "pendulum_add_floor"):
+        links = {argument.removeprefix("pendulum::") for argument in arguments if argument.startswith("pendulum::")}
+        for link in sorted(links - reach(name)):
+            yield f"src/CMakeLists.txt:1: floor {name} does not stand on {link}"
+
+
+def check_listed(root, path):
+    """A file that nobody compiles proves nothing: each is named in a CMakeLists.txt, private headers apart."""
+    floor = floor_of(path)
+    if floor not in STANDS_ON or (path.parts[0] == "src" and path.suffix == ".h"):
+        return
+    inner = path.relative_to("include/pendulum" if path.parts[0] == "include" else path.parts[0])
+    if path.parts[0] == "tests":
+        listed = {f"{test[0]}_test.cc" for test in cmake_calls(root, "tests", "pendulum_add_test")}
+        is_listed = not path.stem.endswith("_test") or str(inner) in listed
+    elif path.stem.endswith("_main"):
+        is_listed = [path.stem.removesuffix("_main")] in cmake_calls(root, "src", "pendulum_add_tool")
+    else:
+        libraries = cmake_calls(root, "src", "add_library")
+        floors = [call for call in cmake_calls(root, "src", "pendulum_add_floor") if call[0] == floor]
+        is_listed = any(str(inner) in call for call in libraries) or any(
+            str(inner.relative_to(floor)) in call for call in floors)
+    if not is_listed:
+        yield f"{path}:1: {'tests' if path.parts[0] == 'tests' else 'src'}/CMakeLists.txt does not name it"
+
+
+def complaints(root):
+    """Every offence in the tree, as "path:line: what is wrong"."""
+    paths = [path.relative_to(root) for top in ("include", "src", "tests") for path in cpp_text.sources(root / top)]
+    found = list(check_links(root))
+    for check in (check_includes, check_words, check_companions, check_listed):
+        for path in paths:
+            found += check(root, path)
+    return found
+
+
+# A tree in which each rule is broken, and kept where that is tempting: file -> (content, the complaint that must come).
+BAD_TREE = {
+    "include/pendulum/base/good.h": ("// cout << new\n#include <string>\n", None),
+    "src/base/good.cc": ('#include "pendulum/base/good.h"\nconst char* k = "throw"; int n = 2\'000; char c[9]; '
+                         'int f() { return snprintf(c, 9, "%d", n); }\n', None),
+    "tests/base/good_test.cc": ('#include "pendulum/base/good.h"\n#include <boost/math/tools/roots.hpp>\n', None),
+    "tests/trajectory/jet_test.cc": ("#include <ceres/jet.h>\n", None),
+    "tests/benchmarks/b.cc": ('#include <ceres/ceres.h>\n#include "pendulum/report/text.h"\n', None),
+    "src/base/private.h": ("", None),
+    "tests/base/private_test.cc": ('#include "base/private.h"\n#include "tests/matchers.h"\n#include "good.h"\n', None),
+    "src/tools/flags.cc": ("#include <gflags/gflags.h>\n", "src/tools/flags.h is missing"),
+    "src/tools/good_main.cc": ("#include <glog/logging.h>\nvoid f() { throw 1; }\n", None),
+    "src/CMakeLists.txt": ("pendulum_add_floor(base HEADERS good.h SOURCES good.cc LINKS pendulum::model)\n"
+                           "add_library(pendulum_tools tools/flags.cc)\npendulum_add_tool(good)\n", "floor base does not stand on model"),
+    "tests/CMakeLists.txt": ("pendulum_add_test(base/good)\npendulum_add_test(base/private)\n"
+                             "pendulum_add_test(trajectory/jet LINKS Ceres::ceres)\n"
+                             "# pendulum_add_test(model/unlisted)\n", None),
+    "include/pendulum/attic/x.h": ("", "there is no floor attic"),
+    "include/pendulum/recording/up.h": ("#include <pendulum/fitting/fit.h>\n",
+                                        "floor recording does not stand on fitting"),
+    "include/pendulum/model/side.h": ('#include "pendulum/recording/window.h"\n',
+                                      "floor model does not stand on recording"),
+    "tests/model/up.h": ('#include "pendulum/report/json.h"\n', "floor model does not stand on report"),
+    "tests/support.h": ('#include "pendulum/model/rig.h"\n', "floor base does not stand on model"),
+    "include/pendulum/model/around.h": ('#include "../fitting/fit.h"\n', '"../fitting/fit.h" is neither'),
+    "src/model/foreign.h": ('#include "recording/csv.h"\n', '"recording/csv.h" is neither'),
+    "include/pendulum/report/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to report"),
+    "tests/trajectory/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to trajectory"),
+    "tests/closed_form/jet.h": ("#include <ceres/jet.h>\n", "ceres belongs to fitting, not to closed_form"),
+    "include/pendulum/fitting/log.h": ("#include <glog/logging.h>\n", "glog belongs to service, tools"),
+    "tests/fitting/flag.h": ("#include <gflags/gflags.h>\n", "gflags belongs to service, tools"),
+    "include/pendulum/base/cout.h": ("auto& s = std::cout;\n", "a stream of the process has no place"),
+    "include/pendulum/base/cerr.h": ("auto& s = std::cerr;\n", "a stream of the process has no place"),
+    "include/pendulum/base/printf.h": ('void f() { fprintf(stderr, "x"); }\n', "printf has no place"),
+    "include/pendulum/base/exit.h": ("void f() { std::exit(1); }\n", "exit has no place"),
+    "include/pendulum/base/throw.h": ("void f() { throw 1; }\n", "throw has no place"),
+    "include/pendulum/base/new.h": ("int* p = new int;\n", "a naked new has no place"),
+    "include/pendulum/base/log.h": ("void f() { VLOG(1); }\n", "logging has no place"),
+    "include/pendulum/base/flag.h": ('DEFINE_bool(x, true, "");\n', "a flag has no place"),
+    "src/model/alone.cc": ("", "include/pendulum/model/alone.h is missing"),
+    "src/model/friction/alone.cc": ("", "tests/model/friction/alone_test.cc is missing"),
+    "include/pendulum/model/unlisted.h": ("", "src/CMakeLists.txt does not name it"),
+    "src/tools/unlisted_main.cc": ("", "src/CMakeLists.txt does not name it"),
+    "tests/model/unlisted_test.cc": ("", "tests/CMakeLists.txt does not name it"),
+}
+
+
+def self_test():
+    """What the rules fail to say of BAD_TREE, or say without cause."""
+    failures = []
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for path, (content, _) in BAD_TREE.items():
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(content)
+        found = complaints(root)
+    for path, (_, expected) in BAD_TREE.items():
+        mine = [line for line in found if line.startswith(f"{path}:")]
+        if expected is None and mine:
+            failures.append(f"unexpected: {mine}")
+        if expected is not None and not any(expected in line for line in mine):
+            failures.append(f"expected of {path}: {expected!r}; got {mine}")
+    return failures
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("--self_test", action="store_true")
+    arguments = parser.parse_args()
+    lines = self_test() if arguments.self_test else complaints(arguments.root)
+    print("\n".join(lines) if lines else "ok")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <iostream>
+
+#include <pendulum/base/version.h>
+#include <pendulum/fitting/fit.h>
+#include <pendulum/model/motion_model.h>
+#include <pendulum/report/text.h>
+#include <pendulum/trajectory/synthetic.h>
+
+// Simulates a swing whose truth is known, fits it and prints the report: every floor and every library takes part.
+int main() {
+  const auto model = pendulum::FindMotionModel("coulomb");
+  if (!model || pendulum::kVersion != PENDULUM_VERSION) return 1;
+
+  pendulum::SyntheticOptions truth;
+  truth.model = *model;
+  truth.parameters = {0.05, 0.001, 0.002};
+  truth.release_angle = 0.5;
+  truth.release_time = 1.0;
+  truth.noise = 1e-3;
+  const auto recording = pendulum::SimulateRecording(truth);
+  if (!recording) return 1;
+
+  const auto fit = pendulum::FitRecording(*recording, {});
+  if (!fit || fit->termination != pendulum::Termination::kConverged) return 1;
+  std::cout << pendulum::ToText({pendulum::SummarizeData(*recording, *recording), {}, {*fit}, {}});
+  return std::abs(fit->Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;
+}
