@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <numbers>
+
+namespace pendulum {
+
+inline constexpr double kPi = std::numbers::pi;
+
+/// Radians per degree.
+inline constexpr double kRadFromDeg = kPi / 180.0;
+
+}  // namespace pendulum

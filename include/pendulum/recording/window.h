@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// The part of a recording with from <= time <= to [s, on the file's clock]; NaN leaves that end open.
+///
+/// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples samples are left; the message gives
+/// the window and the span of the recording.
+Result<Recording> SelectWindow(const Recording& recording, double from, double to);
+
+}  // namespace pendulum

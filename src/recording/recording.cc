@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/recording.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace pendulum {
+namespace {
+
+tl::unexpected<Status> Fault(const Recording& recording, StatusCode code, const std::string& sentence) {
+  return Error(code, recording.path.empty() ? sentence : recording.path + ": " + sentence);
+}
+
+std::string SampleText(Eigen::Index sample) { return "sample " + std::to_string(sample); }
+
+}  // namespace
+
+Result<Recording> MakeRecording(Recording recording) {
+  const Eigen::VectorXd& time = recording.time;
+  const Eigen::VectorXd& value = recording.value;
+  if (time.size() != value.size()) {
+    return Fault(recording, StatusCode::kDataLoss,
+                 std::to_string(time.size()) + " times and " + std::to_string(value.size()) +
+                     " values do not make a recording; every sample has one of each");
+  }
+  if (time.size() < kMinimumSamples) {
+    return Fault(recording, StatusCode::kFailedPrecondition,
+                 std::to_string(time.size()) + " samples are too few for a recording; at least " +
+                     std::to_string(kMinimumSamples) + " are needed");
+  }
+  if (!(recording.resolution >= 0) || !std::isfinite(recording.resolution)) {
+    return Fault(
+        recording, StatusCode::kDataLoss,
+        "the resolution is " + NumberText(recording.resolution) + "; it must be 0 (none) or positive and finite");
+  }
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    if (!std::isfinite(time[i]) || !std::isfinite(value[i])) {
+      return Fault(recording, StatusCode::kDataLoss,
+                   SampleText(i) + " is (" + NumberText(time[i]) + ", " + NumberText(value[i]) +
+                       "); time and value must be finite");
+    }
+    if (i > 0 && time[i] <= time[i - 1]) {
+      return Fault(recording, StatusCode::kDataLoss,
+                   "time " + NumberText(time[i]) + " s of " + SampleText(i) + " does not follow " +
+                       NumberText(time[i - 1]) + " s; times must increase");
+    }
+  }
+  return recording;
+}
+
+std::string NumberText(double value) {
+  constexpr std::size_t kLongest = 32;  // "-2.2250738585072014e-308" has 24 characters.
+  std::array<char, kLongest> text;
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+}  // namespace pendulum

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace pendulum {
+namespace {
+
+std::string SpanText(double from, double to) {
+  std::string text = "[";
+  return text.append(NumberText(from)).append(", ").append(NumberText(to)).append("] s");
+}
+
+tl::unexpected<Status> TooFew(const Recording& recording, Eigen::Index count, double from, double to) {
+  const std::string prefix = recording.path.empty() ? "" : recording.path + ": ";
+  const std::string span =
+      recording.size() == 0 ? "is empty" : "spans " + SpanText(recording.time[0], recording.time[recording.size() - 1]);
+  return Error(StatusCode::kFailedPrecondition, prefix + "the window " + SpanText(from, to) + " leaves " +
+                                                    std::to_string(count) + " samples of a recording that " + span +
+                                                    "; at least " + std::to_string(kMinimumSamples) +
+                                                    " are needed: widen the window");
+}
+
+}  // namespace
+
+Result<Recording> SelectWindow(const Recording& recording, double from, double to) {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  if (std::isnan(from)) from = -kOpen;
+  if (std::isnan(to)) to = kOpen;
+  if (from >= to) {
+    return Error(StatusCode::kInvalidArgument,
+                 "the window " + SpanText(from, to) + " is empty; its start must lie before its end");
+  }
+  const double* begin = recording.time.data();
+  const double* end = begin + recording.size();
+  const Eigen::Index first = std::lower_bound(begin, end, from) - begin;
+  const Eigen::Index count = std::upper_bound(begin, end, to) - begin - first;
+  if (count < kMinimumSamples) return TooFew(recording, count, from, to);
+
+  Recording window = recording;
+  window.time = recording.time.segment(first, count);
+  window.value = recording.value.segment(first, count);
+  return window;
+}
+
+}  // namespace pendulum

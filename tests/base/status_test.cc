@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/base/status.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+// The table of exit codes that every tool documents.
+TEST(ExitCode, IsThatOfTheDocumentedTable) {
+  EXPECT_EQ(ExitCode(StatusCode::kInvalidArgument), 2);
+  EXPECT_EQ(ExitCode(StatusCode::kNotFound), 3);
+  EXPECT_EQ(ExitCode(StatusCode::kDataLoss), 4);
+  EXPECT_EQ(ExitCode(StatusCode::kFailedPrecondition), 5);
+  EXPECT_EQ(ExitCode(StatusCode::kInternal), 70);      // EX_SOFTWARE of sysexits.h
+  EXPECT_EQ(ExitCode(StatusCode::kCannotWrite), 73);  // EX_CANTCREAT
+}
+
+TEST(ExitCode, OfACodeThatDoesNotExistIsThatOfABug) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
+
+TEST(Error, BecomesTheErrorOfAnyResult) {
+  const Result<int> number = Error(StatusCode::kDataLoss, "swing.csv:3: no number");
+  const Result<std::vector<std::string>> words = Error(StatusCode::kNotFound, "swing.csv: no such file");
+  ASSERT_FALSE(number);
+  ASSERT_FALSE(words);
+  EXPECT_EQ(number.error().code, StatusCode::kDataLoss);
+  EXPECT_EQ(number.error().message, "swing.csv:3: no number");
+  EXPECT_EQ(words.error().code, StatusCode::kNotFound);
+  EXPECT_EQ(words.error().message, "swing.csv: no such file");
+}
+
+TEST(Result, HoldsTheValueWhenThereIsNoError) {
+  const Result<int> number = 7;
+  ASSERT_TRUE(number);
+  EXPECT_EQ(*number, 7);
+}
+
+}  // namespace
+}  // namespace pendulum
