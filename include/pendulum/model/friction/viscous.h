@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "pendulum/model/parameter.h"
+#include "pendulum/model/series.h"
+
+namespace pendulum {
+
+inline constexpr ParameterInfo kViscous{
+    "viscous", "b", "N m s/rad", "s", 0.0, kUnbounded, "viscous friction coefficient"};
+
+/// Viscous friction alone:  T(ω) = b ω.  MODEL.md eq. (7).
+struct ViscousFriction {
+  static constexpr std::string_view kName = "viscous";
+  static constexpr std::array<ParameterInfo, 1> kParameters = {{kViscous}};
+  static constexpr std::string_view kFormula = "{viscous} th'";
+
+  template <typename T>
+  static T Torque(const T& rate, double /*direction*/, const T* p) {
+    return p[0] * rate;
+  }
+
+  template <typename T>
+  struct Recurrence {
+    T operator()(int n, const Series<T>& rate, double /*direction*/, const T* p) { return p[0] * rate[n]; }
+  };
+};
+
+}  // namespace pendulum

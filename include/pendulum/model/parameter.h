@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <string_view>
+
+namespace pendulum {
+
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// Everything that is said of a parameter, said once: flags, bounds, tables, JSON and the documentation follow from it.
+///
+/// Torques are in units of the gravity torque G below the report (G = 1), so a parameter that is a torque, or an
+/// inertia, has two units: `unit` once a rig gives G, `relative_unit` (that of parameter / G) without one.
+struct ParameterInfo {
+  std::string_view name;           ///< As in --fix, --set and JSON.
+  std::string_view symbol;         ///< As in MODEL.md.
+  std::string_view unit;           ///< SI.
+  std::string_view relative_unit;  ///< SI, of the value divided by G; equal to `unit` where G does not enter.
+  double lower;                    ///< Smallest admissible value.
+  double upper;                    ///< Largest admissible value.
+  std::string_view description;    ///< One phrase.
+
+  /// True when the value in SI is G times the value in units of G.
+  constexpr bool scales_with_gravity() const { return unit != relative_unit; }
+};
+
+inline constexpr ParameterInfo kInertia{
+    "inertia", "I_O", "kg m^2", "s^2", 0.0, kUnbounded, "moment of inertia about the pivot"};
+inline constexpr ParameterInfo kReleaseAngle{"release_angle",
+                                             "θ_r",
+                                             "rad",
+                                             "rad",
+                                             -kUnbounded,
+                                             kUnbounded,
+                                             "angle at which the pendulum is held before the release"};
+inline constexpr ParameterInfo kReleaseTime{
+    "release_time", "t_r", "s", "s", -kUnbounded, kUnbounded, "time of the release on the file's clock"};
+inline constexpr ParameterInfo kInitialAngle{
+    "initial_angle", "θ_0", "rad", "rad", -kUnbounded, kUnbounded, "angle at the first used sample"};
+inline constexpr ParameterInfo kInitialRate{
+    "initial_rate", "ω_0", "rad/s", "rad/s", -kUnbounded, kUnbounded, "rate at the first used sample"};
+inline constexpr ParameterInfo kZeroAngle{
+    "zero_angle", "z", "rad", "rad", -kUnbounded, kUnbounded, "reading at which gravity's torque vanishes"};
+inline constexpr ParameterInfo kRateBias{
+    "rate_bias", "z", "rad/s", "rad/s", -kUnbounded, kUnbounded, "reading of the gyro at rest"};
+
+}  // namespace pendulum

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/model/rig.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "pendulum/model/parameter.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace std::string_view_literals;
+
+// ---- The descriptions of a rig -----------------------------------------------------------------------------------
+
+/// A factor by which an error enters, and that error's standard deviation.
+struct ErrorTerm {
+  double derivative;
+  double std_dev;
+};
+
+/// First-order propagation from independent errors: variance = sum of (derivative std_dev)².
+RigValue Propagate(double value, std::initializer_list<ErrorTerm> terms) {
+  double std_dev = 0;
+  for (const ErrorTerm& term : terms) std_dev = std::hypot(std_dev, term.derivative * term.std_dev);
+  return {value, std_dev};
+}
+
+/// Values in the order of the keys of their description.
+using RigValues = std::span<const RigValue>;
+
+/// MODEL.md eqs. (2) and (3).
+void SetFromRodAndBob(RigValues values, Rig& rig) {
+  const RigValue bob = values[0], rod = values[1], length = values[2], gravity = values[3];
+  const double reduced_mass = bob.value + rod.value / 2;
+  const double lever = gravity.value * length.value;
+  rig.gravity_torque = Propagate(reduced_mass * lever, {{lever, bob.std_dev},
+                                                        {lever / 2, rod.std_dev},
+                                                        {reduced_mass * gravity.value, length.std_dev},
+                                                        {reduced_mass * length.value, gravity.std_dev}});
+  const double square = length.value * length.value;
+  const double first_moment = (rod.value / 3 + bob.value) * length.value;
+  rig.inertia = Propagate(first_moment * length.value,
+                          {{square, bob.std_dev}, {square / 3, rod.std_dev}, {2 * first_moment, length.std_dev}});
+}
+
+void SetFromTorque(RigValues values, Rig& rig) { rig.gravity_torque = values[0]; }
+
+/// MODEL.md eq. (2) in its first form, G = mass center_of_mass gravity.
+void SetFromBody(RigValues values, Rig& rig) {
+  const RigValue mass = values[0], distance = values[1], gravity = values[2];
+  rig.gravity_torque =
+      Propagate(mass.value * distance.value * gravity.value, {{distance.value * gravity.value, mass.std_dev},
+                                                              {mass.value * gravity.value, distance.std_dev},
+                                                              {mass.value * distance.value, gravity.std_dev}});
+}
+
+/// One way to describe a rig: the keys it must have, and what follows from their values.
+struct Form {
+  std::span<const std::string_view> keys;
+  void (*set)(RigValues values, Rig& rig);
+};
+
+constexpr std::array kRodAndBobKeys = {"bob_mass"sv, "rod_mass"sv, "rod_length"sv, "gravity"sv};
+constexpr std::array kTorqueKeys = {"gravity_torque"sv};
+constexpr std::array kBodyKeys = {"mass"sv, "center_of_mass"sv, "gravity"sv};
+constexpr std::array kForms = {Form{kRodAndBobKeys, SetFromRodAndBob}, Form{kTorqueKeys, SetFromTorque},
+                               Form{kBodyKeys, SetFromBody}};
+
+constexpr std::string_view kFormsText =
+    R"({"bob_mass", "rod_mass", "rod_length", "gravity"} or {"gravity_torque"} or {"mass", "center_of_mass", "gravity"})";
+
+bool Has(const Form& form, std::string_view key) { return std::ranges::find(form.keys, key) != form.keys.end(); }
+
+// ---- Messages ----------------------------------------------------------------------------------------------------
+
+/// No rig comes near it, and the JSON object looks keys up one by one.
+constexpr std::size_t kMostBytes = 65536;
+
+tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
+  return Error(StatusCode::kDataLoss, name + ": " + sentence);
+}
+
+/// As JSON shows it, clipped: control characters and bytes that are not UTF-8 become visible.
+std::string Quoted(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  const std::string shown = std::string(text.substr(0, kShown)) + (text.size() > kShown ? "..." : "");
+  return Json(shown).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+std::string Shown(const Json& value) {
+  if (value.is_string()) return Quoted(value.get_ref<const std::string&>());
+  if (value.is_structured()) return value.is_array() ? "an array" : "an object";
+  return value.dump();
+}
+
+// ---- From text to one JSON object that has every key once --------------------------------------------------------
+
+/// Watches the parser: which key of the outermost object is being read, and which key an object has twice.
+class KeyWatch {
+ public:
+  void See(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) {
+      keys_.resize(std::max<std::size_t>(keys_.size(), depth + 1));
+      keys_[depth].clear();
+    } else if (event == Json::parse_event_t::key) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      std::vector<std::string>& keys = keys_[depth - 1];
+      if (!repeated_ && std::ranges::find(keys, key) != keys.end()) repeated_ = key;
+      keys.push_back(key);
+    }
+  }
+
+  std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
+  const std::optional<std::string>& repeated() const { return repeated_; }
+
+ private:
+  std::vector<std::vector<std::string>> keys_;  // Of the object open at each depth.
+  std::optional<std::string> repeated_;
+};
+
+/// The parser counts bytes; a person counts lines.
+tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, const Json::parse_error& error) {
+  const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
+  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the first line.
+  const std::string_view what = error.what();
+  const std::size_t dash = what.find(" - ");
+  std::string_view reason = dash == std::string_view::npos ? "syntax error" : what.substr(dash + 3);
+  reason = reason.substr(0, reason.find("; last read"));
+  return Error(StatusCode::kDataLoss, name + ":" + std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
+                                          std::to_string(before.size() - line_begin + 1) + ": this is not JSON (" +
+                                          std::string(reason) + "); correct it here");
+}
+
+Result<Json> ParseObject(std::string_view text, const std::string& name) {
+  if (text.size() > kMostBytes) return Fault(name, "this is longer than 64 KiB, so it is not a rig; name a rig file");
+  KeyWatch watch;
+  const auto see = [&watch](int depth, Json::parse_event_t event, const Json& parsed) {
+    watch.See(depth, event, parsed);
+    return true;
+  };
+  try {
+    Json rig = Json::parse(text, see);
+    if (!rig.is_object()) {
+      return Fault(name, "the rig is " + Shown(rig) + "; it must be an object: " + std::string(kFormsText));
+    }
+    if (watch.repeated()) {
+      return Fault(name, "the key " + Quoted(*watch.repeated()) + " is given twice; keep one of them");
+    }
+    return rig;
+  } catch (const Json::parse_error& error) {
+    return NotJson(text, name, error);
+  } catch (const Json::exception&) {  // A number overflows.
+    return Fault(name, Quoted(watch.outermost_key()) + " is beyond what a number can be (about 1e308); correct it");
+  }
+}
+
+// ---- From the object to numbers ----------------------------------------------------------------------------------
+
+/// Which description `rig` is; every key of it is there, and no other but `inertia`.
+Result<Form> FindForm(const Json& rig, const std::string& name) {
+  std::optional<Form> form;
+  std::string telling_key;
+  for (const auto& item : rig.items()) {
+    const std::string& key = item.key();
+    const auto* const found = std::ranges::find_if(kForms, [&](const Form& each) { return Has(each, key); });
+    if (found == kForms.end() && key != kInertia.name) {
+      return Fault(name, Quoted(key) + " is not a key of a rig; a rig is " + std::string(kFormsText) +
+                             ", each with optional \"inertia\"");
+    }
+    // Gravity stands in two descriptions, so it does not tell which is meant.
+    if (form || found == kForms.end() || key == "gravity") continue;
+    form = *found;
+    telling_key = key;
+  }
+  if (!form) return Fault(name, "the rig does not say what it is; it must be " + std::string(kFormsText));
+  for (const auto& item : rig.items()) {
+    if (item.key() == kInertia.name || Has(*form, item.key())) continue;
+    return Fault(name, Quoted(telling_key) + " and " + Quoted(item.key()) +
+                           " belong to different descriptions of a rig, which cannot be mixed; it is " +
+                           std::string(kFormsText));
+  }
+  for (const std::string_view key : form->keys) {
+    if (!rig.contains(key)) return Fault(name, Quoted(key) + " is missing beside " + Quoted(telling_key) + "; add it");
+  }
+  return *form;
+}
+
+Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_zero, const std::string& name) {
+  if (!json.is_number()) {
+    return Fault(name, key + " is " + Shown(json) + R"(; it must be a number or {"value": number, "std_dev": number})");
+  }
+  const auto number = json.get<double>();
+  if (number > 0 || (number == 0 && may_be_zero)) return number;
+  return Fault(name, key + " is " + json.dump() + "; it must be " + (may_be_zero ? "0 or more" : "positive"));
+}
+
+/// The value under a key that is known to be there.
+Result<RigValue> ReadValue(const Json& rig, std::string_view key, const std::string& name) {
+  const Json& json = *rig.find(key);
+  const bool may_be_zero = key == "rod_mass";
+  if (!json.is_object()) {
+    return ReadNumber(json, Quoted(key), may_be_zero, name).map([](double number) { return RigValue{number, 0}; });
+  }
+  RigValue value;
+  for (const auto& item : json.items()) {
+    const std::string& part = item.key();
+    const bool is_value = part == "value";
+    if (!is_value && part != "std_dev") {
+      return Fault(name, Quoted(part) + " is not a key of " + Quoted(key) + R"(; its keys are "value" and "std_dev")");
+    }
+    const Result<double> read =
+        ReadNumber(item.value(), Quoted(part) + " of " + Quoted(key), may_be_zero || !is_value, name);
+    if (!read) return tl::unexpected(read.error());
+    (is_value ? value.value : value.std_dev) = *read;
+  }
+  if (!json.contains("value")) return Fault(name, Quoted(key) + R"( has no "value"; add it)");
+  return value;
+}
+
+bool IsUsable(const RigValue& value) {
+  return value.value > 0 && std::isfinite(value.value) && std::isfinite(value.std_dev);
+}
+
+}  // namespace
+
+Result<Rig> ParseRig(std::string_view text, const std::string& name) {
+  Result<Json> source = ParseObject(text, name);
+  if (!source) return tl::unexpected(std::move(source).error());
+  const Result<Form> form = FindForm(*source, name);
+  if (!form) return tl::unexpected(form.error());
+  std::vector<RigValue> values;
+  for (const std::string_view key : form->keys) {
+    const Result<RigValue> value = ReadValue(*source, key, name);
+    if (!value) return tl::unexpected(value.error());
+    values.push_back(*value);
+  }
+  Rig rig;
+  form->set(values, rig);
+  if (source->contains(kInertia.name)) {
+    const Result<RigValue> inertia = ReadValue(*source, kInertia.name, name);
+    if (!inertia) return tl::unexpected(inertia.error());
+    rig.inertia = *inertia;
+  }
+  if (!IsUsable(rig.gravity_torque) || (rig.inertia && !IsUsable(*rig.inertia))) {
+    return Fault(name, "these values give a torque or inertia too large or too small for a number; correct them");
+  }
+  rig.source = std::move(*source);
+  return rig;
+}
+
+Result<Rig> ReadRig(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  std::error_code unknown;
+  const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
+  if (type == std::filesystem::file_type::not_found) {
+    return Error(StatusCode::kNotFound, name + ": there is no such file; check the path");
+  }
+  if (type == std::filesystem::file_type::directory) {
+    return Fault(name, "this is a directory; name a rig file in it");
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMostBytes + 1, '\0');  // One more than ParseRig takes.
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad()) return Fault(name, "the file cannot be read; check its permissions");
+  text.resize(file.gcount());
+  return ParseRig(text, name);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/model/motion_model.h"
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+std::vector<std::string_view> Names(const auto& things) {
+  std::vector<std::string_view> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+std::vector<std::string_view> ParameterNames(std::string_view model) {
+  return Names(PhysicalParameters(FindMotionModel(model).value()));
+}
+
+TEST(MotionModels, HaveTheDocumentedNamesEachOnce) {
+  const std::vector<std::string_view> names = Names(MotionModels());
+  EXPECT_THAT(names, IsSupersetOf({"linear", "viscous", "coulomb", "drag"}));
+  EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
+}
+
+TEST(MotionModels, LinearIsViscousFrictionWithLinearGravity) {
+  const Result<MotionModel> model = FindMotionModel("linear");
+  ASSERT_TRUE(model);
+  EXPECT_EQ(model->name, "linear");
+  EXPECT_EQ(model->friction, "viscous");
+  EXPECT_EQ(model->gravity, Gravity::kLinear);
+}
+
+TEST(MotionModels, EachFrictionLawIsAModelOfSineGravityUnderItsOwnName) {
+  FrictionModels::ForEach([]<typename F>() {
+    const Result<MotionModel> model = FindMotionModel(F::kName);
+    ASSERT_TRUE(model) << F::kName;
+    EXPECT_EQ(model->name, F::kName);
+    EXPECT_EQ(model->friction, F::kName);
+    EXPECT_EQ(model->gravity, Gravity::kSine);
+  });
+}
+
+TEST(FindMotionModel, NamesTheModelsThereAreWhenThereIsNone) {
+  for (const std::string_view wrong : {"Coulomb", "coulom", "", "viscous,coulomb"}) {
+    const Result<MotionModel> model = FindMotionModel(wrong);
+    ASSERT_FALSE(model) << wrong;
+    EXPECT_EQ(model.error().code, StatusCode::kInvalidArgument);
+    EXPECT_THAT(model.error().message, HasSubstr("no model '" + std::string(wrong) + "'"));
+    for (const MotionModel& existing : MotionModels()) {
+      EXPECT_THAT(model.error().message, HasSubstr(std::string(existing.name)));
+    }
+  }
+}
+
+TEST(MotionModelNames, StartWithTheDocumentedOnesInTheirOrder) {
+  EXPECT_THAT(MotionModelNames(), testing::StartsWith("linear, viscous, coulomb, drag"));
+}
+
+TEST(PhysicalParameters, AreInertiaAndThoseOfTheFrictionLawInTheDocumentedOrder) {
+  EXPECT_THAT(ParameterNames("linear"), ElementsAre("inertia", "viscous"));
+  EXPECT_THAT(ParameterNames("viscous"), ElementsAre("inertia", "viscous"));
+  EXPECT_THAT(ParameterNames("coulomb"), ElementsAre("inertia", "viscous", "coulomb"));
+  EXPECT_THAT(ParameterNames("drag"), ElementsAre("inertia", "viscous", "coulomb", "drag"));
+}
+
+TEST(PhysicalParameters, HaveTheDocumentedUnitsWithAndWithoutARig) {
+  const std::vector<ParameterInfo> infos = PhysicalParameters(FindMotionModel("drag").value());
+  ASSERT_EQ(infos.size(), 4);
+  std::vector<std::string_view> units;
+  std::vector<std::string_view> relative_units;
+  for (const ParameterInfo& info : infos) {
+    units.push_back(info.unit);
+    relative_units.push_back(info.relative_unit);
+    EXPECT_TRUE(info.scales_with_gravity()) << info.name;
+    EXPECT_EQ(info.lower, 0) << info.name;
+    EXPECT_EQ(info.upper, kUnbounded) << info.name;
+  }
+  EXPECT_THAT(units, ElementsAre("kg m^2", "N m s/rad", "N m", "N m s^2/rad^2"));
+  EXPECT_THAT(relative_units, ElementsAre("s^2", "s", "1", "s^2"));
+}
+
+TEST(ParameterInfo, AngleTimeAndRateDoNotScaleWithGravity) {
+  for (const ParameterInfo& info :
+       {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias}) {
+    EXPECT_FALSE(info.scales_with_gravity()) << info.name;
+    EXPECT_EQ(info.lower, -kUnbounded) << info.name;
+    EXPECT_EQ(info.upper, kUnbounded) << info.name;
+  }
+}
+
+}  // namespace
+}  // namespace pendulum
