@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// The interval a sensor can show, rad or rad/s; what lies beyond is shown as the nearest end.
+struct SensorRange {
+  double low;
+  double high;
+};
+
+/// A recording to be made, and with it the truth a fit of that recording should find.
+struct SyntheticOptions {
+  MotionModel model = {"coulomb", "coulomb", Gravity::kSine};  ///< Any friction law with any gravity law.
+  std::vector<double>
+      parameters;  ///< Of PhysicalParameters(model), in units of G: inertia / G [s^2], viscous / G [s], ...
+
+  StartKind start = StartKind::kRelease;
+  double release_angle = 0;  ///< θ before the release [rad]; kRelease.
+  double release_time = 0;   ///< s, on the recording's clock, before its last sample; kRelease.
+  double initial_angle = 0;  ///< θ at the first sample [rad]; kMoving.
+  double initial_rate = 0;   ///< θ' at the first sample [rad/s]; kMoving.
+
+  double start_time = 0;     ///< Clock at the first sample [s].
+  double duration = 20;      ///< s; the recording has round(duration * sample_rate) samples.
+  double sample_rate = 100;  ///< Hz
+  double jitter = 0;         ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
+
+  Quantity quantity = Quantity::kAngle;
+  double zero = 0;        ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
+  double noise = 0;       ///< Standard deviation of white Gaussian noise [rad or rad/s], before quantization.
+  double resolution = 0;  ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
+  std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
+
+  std::uint64_t seed = 1;  ///< Of noise and jitter.
+};
+
+/// What the sensor shows of a value x: y = q round(x / q) without a range, with one y = low + q round((x - low) / q)
+/// within the levels of [low, high], which is an ADC seen through a linear calibration. Without a resolution x clipped
+/// to the range.
+double SensorReading(double x, double resolution, const std::optional<SensorRange>& range);
+
+/// Simulates the recording of a free swing.
+///
+/// The trajectory is within 1e-12 rad of the truth over 46 periods (TraceTolerance). A jittered sample is taken at the
+/// instant its stamp says, and stamps increase strictly; the first is always start_time. Noise comes from mt19937_64
+/// and Boost's normal distribution, whose algorithms are fixed: a seed gives the same recording everywhere. The noise
+/// of a seed does not depend on the jitter.
+///
+/// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
+/// pendulum where it starts, the release comes after the last sample, fewer than kMinimumSamples samples, or the motion
+/// cannot be traced.
+Result<Recording> SimulateRecording(const SyntheticOptions& options);
+
+}  // namespace pendulum

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/trajectory/synthetic.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <boost/random/normal_distribution.hpp>
+
+#include "pendulum/model/friction/registry.h"
+#include "pendulum/trajectory/tolerance.h"
+
+namespace pendulum {
+namespace {
+
+constexpr double kTraceError = 1e-12;  // rad
+constexpr int kMostSamples = 20'000'000;
+
+tl::unexpected<Status> BadOption(std::string_view name, double value, std::string_view rule) {
+  return Error(StatusCode::kInvalidArgument,
+               std::string(name) + " is " + NumberText(value) + "; it must be " + std::string(rule));
+}
+
+/// One option and what may be wrong with its value.
+struct NumberRule {
+  std::string_view name;
+  double value;
+  enum class Domain { kFinite, kZeroOrMore, kPositive } domain = Domain::kFinite;
+};
+
+Result<void> CheckNumber(const NumberRule& rule) {
+  using Domain = NumberRule::Domain;
+  if (!std::isfinite(rule.value)) return BadOption(rule.name, rule.value, "finite");
+  if (rule.domain == Domain::kZeroOrMore && rule.value < 0) return BadOption(rule.name, rule.value, "0 or more");
+  if (rule.domain == Domain::kPositive && rule.value <= 0) return BadOption(rule.name, rule.value, "positive");
+  return {};
+}
+
+Result<void> CheckNumbers(const SyntheticOptions& options) {
+  using Domain = NumberRule::Domain;
+  const std::array rules = {
+      NumberRule{"release_angle", options.release_angle},
+      NumberRule{"release_time", options.release_time},
+      NumberRule{"initial_angle", options.initial_angle},
+      NumberRule{"initial_rate", options.initial_rate},
+      NumberRule{"start_time", options.start_time},
+      NumberRule{"duration", options.duration, Domain::kPositive},
+      NumberRule{"sample rate", options.sample_rate, Domain::kPositive},
+      NumberRule{"jitter", options.jitter, Domain::kZeroOrMore},
+      NumberRule{options.quantity == Quantity::kAngle ? "zero_angle" : "rate_bias", options.zero},
+      NumberRule{"noise", options.noise, Domain::kZeroOrMore},
+      NumberRule{"resolution", options.resolution, Domain::kZeroOrMore},
+  };
+  for (const NumberRule& rule : rules) {
+    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+  }
+  return {};
+}
+
+Result<void> CheckModel(const SyntheticOptions& options) {
+  const std::string_view friction = options.model.friction;
+  if (!FrictionModels::Visit(friction, []<typename F>() {})) {
+    return Error(StatusCode::kInvalidArgument, "there is no friction law '" + std::string(friction) + "'");
+  }
+  const std::vector<ParameterInfo> infos = PhysicalParameters(options.model);
+  if (options.parameters.size() != infos.size()) {
+    return Error(StatusCode::kInvalidArgument, "model " + std::string(options.model.name) + " takes " +
+                                                   std::to_string(infos.size()) + " parameters, not " +
+                                                   std::to_string(options.parameters.size()));
+  }
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const NumberRule rule = {infos[i].name, options.parameters[i]};
+    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+    if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
+    if (rule.value > infos[i].upper) return BadOption(rule.name, rule.value, "at most " + NumberText(infos[i].upper));
+  }
+  return CheckNumber({infos[0].name, options.parameters[0], NumberRule::Domain::kPositive});
+}
+
+Result<void> CheckSensor(const SyntheticOptions& options) {
+  if (!options.range) return {};
+  const auto [low, high] = *options.range;
+  if (!std::isfinite(low) || !std::isfinite(high) || !(low < high)) {
+    return Error(StatusCode::kInvalidArgument, "the range is " + NumberText(low) + " to " + NumberText(high) +
+                                                   "; it must be two finite increasing numbers");
+  }
+  if (options.resolution > high - low) return BadOption("resolution", options.resolution, "no wider than the range");
+  return {};
+}
+
+Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
+  const double count = std::round(options.duration * options.sample_rate);
+  if (!(count <= kMostSamples)) {
+    return Error(StatusCode::kInvalidArgument, NumberText(options.duration) + " s at " +
+                                                   NumberText(options.sample_rate) + " Hz are more than " +
+                                                   std::to_string(kMostSamples) + " samples");
+  }
+  if (count < kMinimumSamples) {
+    return Error(StatusCode::kFailedPrecondition,
+                 NumberText(options.duration) + " s at " + NumberText(options.sample_rate) + " Hz are " +
+                     NumberText(count) + " samples; at least " + std::to_string(kMinimumSamples) + " are needed");
+  }
+  return static_cast<Eigen::Index>(count);
+}
+
+using NormalDraws = boost::random::normal_distribution<double>;
+
+/// Jittered instants in order. An instant that jitter puts before the first sample is mirrored there.
+Eigen::VectorXd SamplingInstants(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
+  const double first = options.start_time;
+  Eigen::VectorXd time(count);
+  for (Eigen::Index i = 0; i < count; ++i) time[i] = first + static_cast<double>(i) / options.sample_rate;
+  if (options.jitter == 0) return time;
+  NormalDraws draw(0, options.jitter);
+  for (Eigen::Index i = 1; i < count; ++i) time[i] = first + std::abs(time[i] + draw(generator) - first);
+  std::sort(time.begin(), time.end());
+  for (Eigen::Index i = 1; i < count; ++i) {
+    time[i] = std::max(time[i], std::nextafter(time[i - 1], std::numeric_limits<double>::infinity()));
+  }
+  return time;
+}
+
+Eigen::VectorXd NoiseSamples(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
+  Eigen::VectorXd noise(count);
+  NormalDraws draw;
+  for (double& sample : noise) sample = options.noise * draw(generator);
+  return noise;
+}
+
+/// The largest |θ| an undamped pendulum reaches from this start [rad]: from (1 - cos A) = (1 - cos θ) + I ω² / 2.
+double UndampedAmplitude(const SyntheticOptions& options) {
+  if (options.start == StartKind::kRelease) return options.release_angle;
+  const double kinetic = 0.5 * options.parameters.front() * options.initial_rate * options.initial_rate;
+  const double half_sine = std::sin(0.5 * options.initial_angle);
+  return 2 * std::asin(std::sqrt(std::min(half_sine * half_sine + 0.5 * kinetic, 1.0)));
+}
+
+Result<Trajectory> TraceStart(const SyntheticOptions& options, double end) {
+  const bool released = options.start == StartKind::kRelease;
+  if (released && options.release_time >= end) {
+    return Error(StatusCode::kFailedPrecondition, "the release at " + NumberText(options.release_time) +
+                                                      " s comes after the last sample, " + NumberText(end) +
+                                                      " s: nothing moves");
+  }
+  const Start<double> start{options.start, released ? options.release_time : options.start_time,
+                            released ? options.release_angle : options.initial_angle,
+                            released ? 0.0 : options.initial_rate};
+  TraceOptions trace;
+  trace.begin = options.start_time;
+  trace.end = end;
+  trace.tolerance = TraceTolerance(kTraceError, UndampedAmplitude(options));
+  return MakeTrajectory(options.model, options.parameters, start, trace);
+}
+
+}  // namespace
+
+double SensorReading(double x, double resolution, const std::optional<SensorRange>& range) {
+  const double low = range ? range->low : 0.0;
+  if (resolution == 0) return range ? std::clamp(x, low, range->high) : x;
+  double level = std::round((x - low) / resolution);
+  if (range) {
+    constexpr double kRounding = 1e-6;  // a range of a whole number of levels has them all
+    level = std::clamp(level, 0.0, std::floor((range->high - low) / resolution + kRounding));
+  }
+  return low + resolution * level;
+}
+
+Result<Recording> SimulateRecording(const SyntheticOptions& options) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor}) {
+    if (Result<void> checked = check(options); !checked) return tl::unexpected(checked.error());
+  }
+  const Result<Eigen::Index> count = SampleCount(options);
+  if (!count) return tl::unexpected(count.error());
+
+  std::mt19937_64 generator(options.seed);
+  const Eigen::VectorXd noise = NoiseSamples(options, *count, generator);
+  Recording recording;
+  recording.time = SamplingInstants(options, *count, generator);
+  const Result<Trajectory> trajectory = TraceStart(options, recording.time[*count - 1]);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+
+  const bool is_angle = options.quantity == Quantity::kAngle;
+  recording.quantity = options.quantity;
+  recording.unit = is_angle ? "rad" : "rad/s";
+  recording.resolution = options.resolution;
+  recording.value.resize(*count);
+  for (Eigen::Index i = 0; i < *count; ++i) {
+    const double time = recording.time[i];
+    const double truth = is_angle ? trajectory->Angle(time) : trajectory->Rate(time);
+    recording.value[i] = SensorReading(truth + options.zero + noise[i], options.resolution, options.range);
+  }
+  return MakeRecording(std::move(recording));
+}
+
+}  // namespace pendulum

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// Derivatives of the motion carried by dual numbers, against differences, closed forms and the theory of reversals.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ceres/jet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/friction/registry.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/trajectory/trajectory.h"
+#include "tests/model/typical_friction.h"
+#include "tests/model/undamped_pendulum.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::Ge;
+using testing::Le;
+using testing::SizeIs;
+
+/// A traced motion: its stretches, and the instants at which it turned or stopped.
+template <typename T>
+struct Curve {
+  std::vector<Segment<T>> segments;
+  std::vector<double> reversals;  ///< s
+  TraceSummary summary;
+
+  /// θ, θ', θ'' at a time.
+  std::array<T, 3> At(double time) const {
+    const auto after = std::upper_bound(segments.begin(), segments.end(), time,
+                                        [](double t, const Segment<T>& segment) { return t < segment.start; });
+    return Motion(*(after - 1), time);
+  }
+
+  static std::array<T, 3> Motion(const Segment<T>& segment, double time) {
+    std::array<T, 3> motion{T(0.0), T(0.0), T(0.0)};
+    const double tau = time - segment.start;
+    for (int k = segment.order; k >= 0; --k) {  // Horner's rule, differentiated twice
+      motion[2] = motion[2] * tau + 2.0 * motion[1];
+      motion[1] = motion[1] * tau + motion[0];
+      motion[0] = motion[0] * tau + segment.angle[k];
+    }
+    return motion;
+  }
+};
+
+template <FrictionModel F, typename T>
+Curve<T> Trace(const Pendulum<F, T>& pendulum, const Start<T>& start, double end, double tolerance = 1e-14) {
+  TraceOptions options;
+  options.end = end;
+  options.tolerance = tolerance;
+  Curve<T> curve;
+  double direction = 0;
+  curve.summary = TraceTrajectory(pendulum, start, options, [&](const Segment<T>& segment) {
+    const double before = direction;
+    direction = segment.order == 0 ? 0 : Value(Curve<T>::Motion(segment, 0.5 * (segment.start + segment.end))[1]);
+    if (before != 0 && before * direction <= 0) curve.reversals.push_back(segment.start);
+    curve.segments.push_back(segment);
+  });
+  return curve;
+}
+
+/// A motion of any law with typical parameters. Parameters in the order of a fit: inertia, friction, then release angle
+/// and time or initial angle and rate.
+template <FrictionModel F>
+struct Experiment {
+  static constexpr int kFriction = kFrictionParameters<F>;
+  static constexpr int kParameters = kFriction + 3;
+  using Dual = ceres::Jet<double, kParameters>;
+
+  Gravity gravity;
+  StartKind kind;
+  double end = 60;  // s
+  std::array<double, kParameters> p{};
+
+  Experiment(Gravity gravity_law, StartKind start) : gravity(gravity_law), kind(start) {
+    const auto friction = TypicalFriction<F>(0.004);
+    p[0] = kReferenceInertia;
+    std::copy(friction.begin(), friction.end(), p.begin() + 1);
+    p[kFriction + 1] = kind == StartKind::kRelease ? 1.1 : 0.7;
+    p[kFriction + 2] = kind == StartKind::kRelease ? 0.83 : -3.2;
+  }
+
+  template <typename T>
+  Curve<T> TraceWith(const std::array<T, kParameters>& q) const {
+    Pendulum<F, T> pendulum{gravity, q[0], {}};
+    std::copy_n(q.begin() + 1, kFriction, pendulum.friction.begin());
+    const bool released = kind == StartKind::kRelease;
+    return Trace(pendulum,
+                 Start<T>{kind, released ? Value(q[kFriction + 2]) : 0.0, q[kFriction + 1],
+                          released ? T(0.0) : q[kFriction + 2]},
+                 end);
+  }
+
+  Curve<Dual> TraceDual() const {
+    std::array<Dual, kParameters> q;
+    for (int i = 0; i < kParameters; ++i) q[i] = Dual(p[i], i);
+    return TraceWith(q);
+  }
+
+  Curve<double> TraceShifted(int parameter, double shift) const {
+    std::array<double, kParameters> q = p;
+    q[parameter] += shift;
+    return TraceWith(q);
+  }
+};
+
+/// Whether a time lies where a reversal, the release or the stop passes while a parameter is shifted.
+bool IsPassed(double time, const std::array<std::vector<double>, 3>& instants) {
+  constexpr double kRounding = 1e-9;  // s
+  for (std::size_t i = 0; i < instants[0].size(); ++i) {
+    const auto [first, last] = std::minmax({instants[0][i], instants[1][i], instants[2][i]});
+    if (time >= first - kRounding && time <= last + kRounding) return true;
+  }
+  return false;
+}
+
+struct ColumnError {
+  double error = 0;  ///< Largest |derivative - difference|
+  double scale = 0;  ///< Largest |derivative|
+
+  void Add(double derivative, double difference) {
+    error = std::max(error, std::abs(derivative - difference));
+    scale = std::max(scale, std::abs(derivative));
+  }
+};
+
+/// One column of angle's and rate's derivatives against central differences.
+template <FrictionModel F>
+void ExpectColumn(const Experiment<F>& experiment, const Curve<typename Experiment<F>::Dual>& dual, int parameter) {
+  const bool is_release_time = experiment.kind == StartKind::kRelease && parameter + 1 == experiment.kParameters;
+  const double step = 1e-6 * std::abs(experiment.p[parameter]);
+  const Curve<double> plus = experiment.TraceShifted(parameter, step);
+  const Curve<double> minus = experiment.TraceShifted(parameter, -step);
+  std::array<std::vector<double>, 3> instants = {dual.reversals, plus.reversals, minus.reversals};
+  ASSERT_THAT(instants, Each(SizeIs(dual.reversals.size())));
+  if (is_release_time) {
+    const double release = experiment.p[parameter];
+    instants[0].push_back(release);
+    instants[1].push_back(release + step);
+    instants[2].push_back(release - step);
+  }
+  std::array<ColumnError, 2> columns;
+  for (double time = 0.005; time < experiment.end; time += 0.01) {
+    if (IsPassed(time, instants)) continue;
+    const auto motion = dual.At(time);
+    const std::array<double, 3> above = plus.At(time), below = minus.At(time);
+    for (int quantity = 0; quantity < 2; ++quantity) {
+      columns[quantity].Add(is_release_time ? -motion[quantity + 1].a : motion[quantity].v[parameter],
+                            (above[quantity] - below[quantity]) / (2 * step));
+    }
+  }
+  for (const ColumnError& column : columns) {
+    EXPECT_GT(column.scale, 0);
+    EXPECT_THAT(column.error, Le(1e-6 * column.scale));
+  }
+}
+
+template <FrictionModel F>
+void ExpectDerivatives(const MotionModel& model, StartKind start) {
+  const Experiment<F> experiment(model.gravity, start);
+  const auto dual = experiment.TraceDual();
+  EXPECT_THAT(dual.summary.reversals, Ge(30));
+  EXPECT_THAT(dual.reversals, SizeIs(dual.summary.reversals));
+  EXPECT_EQ(dual.summary.stop_time < experiment.end, HasDryFriction<F>());
+  for (int i = 0; i < experiment.kParameters; ++i) {
+    SCOPED_TRACE(std::string(model.name) + (start == StartKind::kRelease ? ", released" : ", moving") +
+                 ", parameter " + std::to_string(i));
+    ExpectColumn(experiment, dual, i);
+  }
+}
+
+TEST(Derivatives, AreTheCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
+  for (const MotionModel& model : MotionModels()) {
+    FrictionModels::Visit(model.friction, [&]<typename F>() {
+      for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) ExpectDerivatives<F>(model, start);
+    });
+  }
+}
+
+// Linear gravity and dry friction alone, in half swing n = 0, 1, ...:
+// θ = (-1)^n τ_c + (A - (2 n + 1) τ_c) cos(ω0 t), at rest after N: θ = (-1)^N (A - 2 N τ_c).
+TEST(Derivatives, AreThoseOfTheStaircaseThroughTheStop) {
+  using Dual = ceres::Jet<double, 3>;
+  constexpr double kOmega = 5, kInertia = 0.04, kDry = 0.007, kAngle = 0.5;
+  constexpr int kHalfSwings = 36;  // 0.5 - 72 · 0.007 = -0.004: reached from above 0.007, and held
+  const Pendulum<CoulombFriction, Dual> pendulum{Gravity::kLinear, Dual(kInertia, 0), {Dual(0), Dual(kDry, 1)}};
+  const auto curve =
+      Trace(pendulum, Start<Dual>{StartKind::kRelease, 0, Dual(kAngle, 2), Dual(0)}, 30, 1e-17);
+  ASSERT_THAT(curve.reversals, SizeIs(kHalfSwings));
+  for (double time = 0.0037; time < 30; time += 0.01) {
+    const int n = std::min(static_cast<int>(kOmega * time / kPi), kHalfSwings);
+    const double sign = n % 2 == 0 ? 1 : -1, c = std::cos(kOmega * time), s = std::sin(kOmega * time);
+    const double slope = (kAngle - (2 * n + 1) * kDry) * s * kOmega * time / (2 * kInertia);
+    const std::array<double, 3> expected =
+        n < kHalfSwings ? std::array{slope, sign - (2 * n + 1) * c, c} : std::array{0.0, -2 * sign * n, sign};
+    const Dual angle = curve.At(time)[0];
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_THAT(angle.v[i], DoubleNear(expected[i], 1e-9)) << "parameter " << i << " at " << time;
+    }
+  }
+}
+
+// Galán, Feehery & Barton, Applied Numerical Mathematics 31:17 (1999): where the rate passes 0 and the acceleration
+// jumps from α- to α+, the rate's sensitivity is multiplied by α+ / α-, and becomes 0 where the motion stops.
+template <FrictionModel F>
+void ExpectJumpsAtReversals() {
+  const Experiment<F> experiment(Gravity::kSine, StartKind::kMoving);
+  const auto curve = experiment.TraceDual();
+  ASSERT_THAT(curve.reversals.size(), Ge(30));
+  for (std::size_t i = 1; i < curve.segments.size(); ++i) {
+    const auto before = curve.Motion(curve.segments[i - 1], curve.segments[i].start);
+    const auto after = curve.Motion(curve.segments[i], curve.segments[i].start);
+    const bool is_reversal =
+        std::binary_search(curve.reversals.begin(), curve.reversals.end(), curve.segments[i].start);
+    const double ratio = is_reversal ? after[2].a / before[2].a : 1;
+    const double scale = before[1].v.template lpNorm<Eigen::Infinity>();
+    for (int parameter = 0; parameter < experiment.kParameters; ++parameter) {
+      EXPECT_THAT(after[1].v[parameter], DoubleNear(ratio * before[1].v[parameter], 1e-8 * scale)) << F::kName;
+      EXPECT_THAT(after[0].v[parameter], DoubleNear(before[0].v[parameter], 1e-9 * scale)) << F::kName;
+    }
+  }
+}
+
+TEST(Derivatives, OfTheRateJumpByTheRatioOfAccelerationsAtAReversal) {
+  FrictionModels::ForEach([]<typename F>() { ExpectJumpsAtReversals<F>(); });
+}
+
+// ---- The sine of a dual series -----------------------------------------------------------------------------------
+
+TEST(SineSeries, CarriesTheDerivativesOfTheCoupledRecurrenceInPlainDualArithmetic) {
+  using Dual = ceres::Jet<double, 3>;
+  std::mt19937_64 generator(20260804);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Series<Dual> angle, rate;
+  for (int n = 0; n <= kMaxOrder; ++n) {
+    angle[n] = Dual(std::pow(0.8, n) * uniform(generator));
+    for (int i = 0; i < 3; ++i) angle[n].v[i] = std::pow(0.8, n) * uniform(generator);
+    if (n > 0) rate[n - 1] = double(n) * angle[n];
+  }
+  std::vector<Dual> sine = {sin(angle[0])}, cosine = {cos(angle[0])};
+  for (int n = 1; n <= kMaxOrder; ++n) {
+    Dual sine_sum(0.0), cosine_sum(0.0);
+    for (int j = 0; j < n; ++j) {
+      sine_sum += rate[j] * cosine[n - 1 - j];
+      cosine_sum += rate[j] * sine[n - 1 - j];
+    }
+    sine.push_back(sine_sum / double(n));
+    cosine.push_back(-cosine_sum / double(n));
+  }
+  SineSeries<Dual> series;
+  for (int n = 0; n <= kMaxOrder; ++n) {
+    const Dual actual = series.Next(n, angle, rate);
+    EXPECT_THAT(actual.a, DoubleNear(sine[n].a, 1e-14)) << "coefficient " << n;
+    for (int i = 0; i < 3; ++i) EXPECT_THAT(actual.v[i], DoubleNear(sine[n].v[i], 1e-13)) << "coefficient " << n;
+  }
+}
+
+}  // namespace
+}  // namespace pendulum
