@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// A turning point of the reading.
+struct Extremum {
+  double time = 0;   ///< s
+  double value = 0;  ///< rad or rad/s, as the recording
+};
+
+/// Standard deviation of the noise [unit of the recording], from each sample's distance to the line through its
+/// neighbours: its 68 % quantile over sqrt(1 + w² + (1-w)²), w the interpolation's weight. Curvature between samples
+/// counts as noise; quantized data may give 0.
+double SuccessiveDifferenceNoise(const Recording& recording);
+
+/// Turning points in time order, maxima and minima in turn.
+///
+/// A turning point counts once the reading has moved back from it by more than six standard deviations of the noise,
+/// two resolutions and 3 % of the range; it is located by a parabola through the samples within 0.15 of the typical
+/// spacing of turning points, to O(h³), not to a sample. A hold, or a start in the middle of a swing, is not a turning
+/// point. kFailedPrecondition: fewer than three; the message says how many there were.
+Result<std::vector<Extremum>> FindExtrema(const Recording& recording);
+
+}  // namespace pendulum

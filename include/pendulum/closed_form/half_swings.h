@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// One passage between two turning points of the reading that follow each other without a gap in the data.
+struct HalfSwing {
+  double crossing = 0;     ///< s, when the reading passes its zero
+  double before = 0;       ///< rad or rad/s, |reading - zero| at the turning point before
+  double after = 0;        ///< the same at the turning point after
+  bool continues = false;  ///< True when the half swing before it in the table ends where this one begins.
+};
+
+/// The half swings of a recording about its zero.
+struct HalfSwingTable {
+  Quantity quantity = Quantity::kAngle;
+  double zero = 0;        ///< rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry
+                          ///< friction adds nothing
+  double first_turn = 0;  ///< rad or rad/s, reading at the first turning point
+  double first_turn_time = 0;  ///< s
+  std::vector<HalfSwing> half_swings;
+};
+
+/// Tabulates the half swings. A gap in the data longer than 0.6 of the typical half swing breaks the sequence.
+///
+/// kFailedPrecondition: fewer than three turning points, or no two half swings without a gap.
+Result<HalfSwingTable> TabulateHalfSwings(const Recording& recording);
+
+}  // namespace pendulum

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/extrema.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Indices of confirmed turning points, and of the first candidate, which is the start of the recording or its hold.
+std::vector<Index> TurningPoints(const Eigen::VectorXd& value, double threshold) {
+  std::vector<Index> points;
+  Index highest = 0;
+  Index lowest = 0;
+  int direction = 0;  // of the reading; 0 before the first move beyond the threshold
+  for (Index i = 1; i < value.size(); ++i) {
+    if (value[i] > value[highest]) highest = i;
+    if (value[i] < value[lowest]) lowest = i;
+    if (direction >= 0 && value[highest] - value[i] > threshold) {
+      points.push_back(highest);
+      direction = -1;
+      lowest = i;
+    } else if (direction <= 0 && value[i] - value[lowest] > threshold) {
+      points.push_back(lowest);
+      direction = 1;
+      highest = i;
+    }
+  }
+  return points;
+}
+
+double TypicalSpacing(const Eigen::VectorXd& time, const std::vector<Index>& points) {
+  std::vector<double> spacing;
+  for (std::size_t i = 1; i < points.size(); ++i) spacing.push_back(time[points[i]] - time[points[i - 1]]);
+  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
+  std::nth_element(spacing.begin(), middle, spacing.end());
+  return *middle;
+}
+
+/// Vertex of the least-squares parabola through the samples within `half_width` of sample `point`, at least one on each
+/// side; the sample itself where the parabola has no vertex among them.
+Extremum Vertex(const Recording& recording, Index point, double half_width) {
+  const Eigen::VectorXd& time = recording.time;
+  Index first = point;
+  Index last = point;
+  while (first > 0 && time[point] - time[first - 1] <= half_width) --first;
+  while (last + 1 < time.size() && time[last + 1] - time[point] <= half_width) ++last;
+  first = std::min(first, std::max<Index>(point - 1, 0));
+  last = std::max(last, std::min(point + 1, time.size() - 1));
+  const Extremum sample{time[point], recording.value[point]};
+  const Index count = last - first + 1;
+  if (count < 3) return sample;
+  const Eigen::ArrayXd t = time.segment(first, count).array() - time[point];
+  Eigen::MatrixX3d basis(count, 3);
+  basis << Eigen::ArrayXd::Ones(count), t, t.square();
+  const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(recording.value.segment(first, count));
+  const double vertex = -0.5 * c[1] / c[2];
+  if (!(vertex >= t[0] && vertex <= t[count - 1])) return sample;
+  return {time[point] + vertex, c[0] + 0.5 * c[1] * vertex};
+}
+
+}  // namespace
+
+double SuccessiveDifferenceNoise(const Recording& recording) {
+  const Eigen::VectorXd& t = recording.time;
+  const Eigen::VectorXd& y = recording.value;
+  std::vector<double> distance;
+  distance.reserve(static_cast<std::size_t>(y.size()));
+  for (Index i = 1; i + 1 < y.size(); ++i) {
+    const double w = (t[i] - t[i - 1]) / (t[i + 1] - t[i - 1]);
+    const double line = (1 - w) * y[i - 1] + w * y[i + 1];
+    distance.push_back(std::abs(y[i] - line) / std::sqrt(1 + w * w + (1 - w) * (1 - w)));
+  }
+  const auto quantile = distance.begin() + static_cast<std::ptrdiff_t>(0.6827 * static_cast<double>(distance.size()));
+  std::nth_element(distance.begin(), quantile, distance.end());
+  return *quantile;
+}
+
+Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  const double noise = SuccessiveDifferenceNoise(recording);
+  const double threshold = std::max({6 * noise, 2 * recording.resolution, 0.03 * range});
+  const std::vector<Index> points = TurningPoints(recording.value, threshold);
+  std::vector<Extremum> extrema;
+  if (points.size() >= 3) {
+    const double half_width = 0.15 * TypicalSpacing(recording.time, points);
+    // The first candidate is where the recording began, not where the pendulum turned, unless data lie on both sides.
+    const bool turned = recording.time[points[0]] - recording.time[0] > half_width;
+    for (std::size_t i = turned ? 0 : 1; i < points.size(); ++i) {
+      extrema.push_back(Vertex(recording, points[i], half_width));
+    }
+  }
+  if (extrema.size() >= 3) return extrema;
+  if (range == 0) {
+    return Error(StatusCode::kFailedPrecondition, "the reading is constant: there is no swing in it");
+  }
+  return Error(StatusCode::kFailedPrecondition,
+               "the reading turns " + std::to_string(extrema.size()) +
+                   " times; three turning points beyond the noise are needed to tell a swing");
+}
+
+}  // namespace pendulum

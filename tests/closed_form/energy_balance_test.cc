@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/energy_balance.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/closed_form/period.h"
+#include "tests/closed_form/reference_swing.h"
+
+namespace pendulum {
+namespace {
+
+using testing::Each;
+using testing::Ge;
+
+std::vector<double> FrictionOf(const Recording& recording, std::string_view model) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(recording));
+  return FrictionFromEnergyBalance(Must(FindMotionModel(model)), table, NaturalFrequency(table));
+}
+
+/// Amplitudes of a swing that loses energy to dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
+HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
+  HalfSwingTable table;
+  for (int i = 0; i < count; ++i) {
+    double next = amplitude;
+    for (int iteration = 0; iteration < 50; ++iteration) {  // Newton's method
+      const double excess = std::cos(next) - std::cos(amplitude) - coulomb * (amplitude + next);
+      next -= excess / (-std::sin(next) - coulomb);
+    }
+    table.half_swings.push_back({0, amplitude, next, i > 0});
+    amplitude = next;
+  }
+  return table;
+}
+
+TEST(FrictionFromEnergyBalance, OfDryFrictionIsExactAtAnyAmplitude) {
+  for (const double amplitude : {0.3, 1.5, 2.6}) {
+    const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
+    const std::vector<double> friction = FrictionFromEnergyBalance(Must(FindMotionModel("coulomb")), table, 5);
+    EXPECT_NEAR(friction[0], 0, 1e-8) << amplitude;
+    EXPECT_NEAR(friction[1], 0.01, 1e-8) << amplitude;
+  }
+}
+
+TEST(FrictionFromEnergyBalance, OfSmallViscousSwingsIsTheLogDecrement) {
+  // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2
+  const double viscous = 0.002, zeta = 0.5 * viscous * 5, ratio = std::exp(-kPi * zeta / std::sqrt(1 - zeta * zeta));
+  HalfSwingTable table;
+  for (int i = 0; i < 10; ++i) {
+    table.half_swings.push_back({0, 0.01 * std::pow(ratio, i), 0.01 * std::pow(ratio, i + 1), i > 0});
+  }
+  EXPECT_NEAR(FrictionFromEnergyBalance(Must(FindMotionModel("viscous")), table, 5)[0] / viscous, 1, 1e-4);
+}
+
+TEST(FrictionFromEnergyBalance, RecoversEachLawAloneFromItsDecay) {
+  for (const double degrees : {20.0, 60.0, 100.0, 150.0}) {
+    SCOPED_TRACE(degrees);
+    Decay viscous, coulomb, drag;
+    viscous.amplitude = coulomb.amplitude = drag.amplitude = degrees * kRadFromDeg;
+    viscous.viscous = 0.004;
+    coulomb.coulomb = 0.002;
+    drag.drag = 0.001;
+    EXPECT_NEAR(FrictionOf(SimulateDecay(viscous), "viscous")[0] / 0.004, 1, 0.03);
+    const std::vector<double> dry = FrictionOf(SimulateDecay(coulomb), "coulomb");
+    EXPECT_NEAR(dry[1] / 0.002, 1, 0.03);
+    EXPECT_NEAR(dry[0], 0, 5e-5);  // where 0.002 of dry friction would be a viscous 0.002 or so
+    const std::vector<double> air = FrictionOf(SimulateDecay(drag), "drag");
+    EXPECT_NEAR(air[2] / 0.001, 1, 0.05);
+    EXPECT_NEAR(air[1], 0, 5e-5);
+  }
+}
+
+TEST(FrictionFromEnergyBalance, TellsTheThreeLawsApartWhenAllAreThere) {
+  for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
+    for (const double degrees : {60.0, 100.0, 150.0}) {
+      SCOPED_TRACE(std::to_string(degrees) + (quantity == Quantity::kRate ? " deg, rate" : " deg, angle"));
+      Decay decay{5, 0.003, 0.003, 0.0006, degrees * kRadFromDeg, 60, quantity};
+      const std::vector<double> friction = FrictionOf(SimulateDecay(decay), "drag");
+      EXPECT_NEAR(friction[0] / 0.003, 1, 0.1);
+      EXPECT_NEAR(friction[1] / 0.003, 1, 0.05);
+      EXPECT_NEAR(friction[2] / 0.0006, 1, 0.1);
+    }
+  }
+}
+
+TEST(FrictionFromEnergyBalance, IsNeverNegative) {
+  const auto undamped = [](double t) { return UndampedAngle(1.0, 5, t + 0.3); };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_THAT(FrictionOf(WithNoise(Sample(undamped, 20, 100), 0.01, seed), "drag"), Each(Ge(0.0))) << seed;
+  }
+  EXPECT_THAT(
+      FrictionOf(Sample([](double t) { return 0.1 * std::exp(0.02 * t) * std::cos(5 * t); }, 20, 100), "coulomb"),
+      Each(0.0));  // it gains energy
+}
+
+TEST(FrictionFromEnergyBalance, CountsNoLossAcrossAGap) {
+  Decay decay;
+  decay.viscous = 0.004;
+  const Recording recording = WithoutSamples(SimulateDecay(decay), 8.03, 15.71);
+  EXPECT_NEAR(FrictionOf(recording, "viscous")[0] / 0.004, 1, 0.03);
+}
+
+TEST(FrictionFromEnergyBalance, GivesEveryRegisteredModelItsParameters) {
+  const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
+  for (const MotionModel& model : MotionModels()) {
+    EXPECT_EQ(FrictionFromEnergyBalance(model, table, 5).size() + 1, PhysicalParameters(model).size()) << model.name;
+  }
+}
+
+}  // namespace
+}  // namespace pendulum

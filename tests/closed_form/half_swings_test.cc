@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/half_swings.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/closed_form/reference_swing.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr double kOmega = 5.0;  // rad/s
+constexpr double kHalfPeriod = kPi / kOmega;
+
+/// Small oscillation with dry friction, turning at amplitude 1 at t = 0: in half period i a cosine about (-1)^i x_k, so
+/// that the turning points are (-1)^i (1 - 2 i x_k). The reading's zero is 0.1 off.
+double DryFriction(double t) {
+  constexpr double kDryness = 0.02;  // x_k
+  constexpr double kZero = 0.1;
+  const double half_swing = std::floor(t / kHalfPeriod);
+  const double side = std::fmod(half_swing, 2) == 0 ? 1 : -1;
+  const double amplitude = 1 - 2 * half_swing * kDryness;
+  return kZero + side * (kDryness + (amplitude - kDryness) * std::cos(kOmega * t - kPi * half_swing));
+}
+
+double Cosine(double t) { return 0.1 + std::cos(kOmega * t - 0.9); }
+
+TEST(TabulateHalfSwings, DryFrictionLeavesTheZeroWhereItIs) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(DryFriction, 8, 200)));
+  ASSERT_THAT(table.half_swings, SizeIs(11));      // 12 turning points after the start, each half a period
+  EXPECT_THAT(table.zero, DoubleNear(0.1, 1e-4));  // the mean of the reading is off by more
+  for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
+    SCOPED_TRACE(i);
+    const double before = 1 - 0.04 * static_cast<double>(i + 1);
+    EXPECT_THAT(table.half_swings[i].before, DoubleNear(before, 5e-3));
+    EXPECT_THAT(table.half_swings[i].after, DoubleNear(before - 0.04, 5e-3));
+  }
+}
+
+TEST(TabulateHalfSwings, AnExponentialDecayShiftsTheZeroLessThanAThousandthOfTheAmplitude) {
+  const auto decay = [](double t) { return 0.1 + std::exp(-0.05 * t) * std::cos(kOmega * t - 0.9); };
+  EXPECT_THAT(Must(TabulateHalfSwings(Sample(decay, 20, 200))).zero, DoubleNear(0.1, 1e-3));
+}
+
+TEST(TabulateHalfSwings, DatesThePassagesThroughZero) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 100, 1000)));
+  ASSERT_THAT(table.half_swings, SizeIs(12));
+  // cos(5 t - 0.9) with t on a clock that shows 1000 s at the first sample; it turns where 5 t - 0.9 = n π.
+  const double first_turn_number = std::ceil((kOmega * 1000 - 0.9) / kPi);
+  for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
+    const double crossing = ((first_turn_number + 0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
+    EXPECT_THAT(table.half_swings[i].crossing, DoubleNear(crossing, 1e-5)) << i;
+  }
+  EXPECT_THAT(table.first_turn_time, DoubleNear((first_turn_number * kPi + 0.9) / kOmega, 1e-3));
+  EXPECT_THAT(std::abs(table.first_turn - 0.1), DoubleNear(1, 5e-3));
+}
+
+TEST(TabulateHalfSwings, ALineThroughManySamplesDatesAPassageBetterThanTwoOfThem) {
+  constexpr double kNoise = 0.05;
+  double squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const HalfSwingTable table = Must(TabulateHalfSwings(WithNoise(Sample(Cosine, 8, 200), kNoise, seed)));
+    ASSERT_THAT(table.half_swings, SizeIs(12)) << "seed " << seed;
+    for (std::size_t i = 0; i < table.half_swings.size(); ++i, ++count) {
+      const double error = table.half_swings[i].crossing - ((0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
+      squares += error * error;
+    }
+  }
+  // Two samples would scatter by about noise / slope = 0.01 s. The line through 28 of them: 0.01 s / sqrt(28) = 0.002 s
+  // and a common 0.002 s for the noise of zero.
+  EXPECT_LT(std::sqrt(squares / count), 0.0045);
+}
+
+TEST(TabulateHalfSwings, DatesPassagesFromTwoSamplesWhereThereAreNoMore) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 8)));  // five samples a half period
+  for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
+    const double crossing = ((0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
+    EXPECT_THAT(table.half_swings[i].crossing, DoubleNear(crossing, 0.02)) << i;
+  }
+}
+
+TEST(TabulateHalfSwings, EachContinuesTheOneBeforeIt) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 100)));
+  for (std::size_t i = 0; i < table.half_swings.size(); ++i) EXPECT_EQ(table.half_swings[i].continues, i > 0) << i;
+}
+
+TEST(TabulateHalfSwings, AGapBreaksTheRun) {
+  // Turns at 0.18 + 0.628 i: the gap swallows the half swing from 2.69 s to 3.32 s, and no other.
+  const HalfSwingTable table = Must(TabulateHalfSwings(WithoutSamples(Sample(Cosine, 8, 100), 2.75, 3.25)));
+  ASSERT_THAT(table.half_swings, SizeIs(11));
+  for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(table.half_swings[i].continues, i != 0 && i != 4) << i;
+  EXPECT_THAT(table.half_swings[3].crossing, DoubleNear((3.5 * kPi + 0.9) / kOmega, 1e-3));
+  EXPECT_THAT(table.half_swings[4].crossing, DoubleNear((5.5 * kPi + 0.9) / kOmega, 1e-3));
+}
+
+TEST(TabulateHalfSwings, AGapOfATenthOfASecondDoesNot) {
+  const HalfSwingTable table = Must(TabulateHalfSwings(WithoutSamples(Sample(Cosine, 8, 100), 2.9, 3.0)));
+  ASSERT_THAT(table.half_swings, SizeIs(12));
+  for (std::size_t i = 1; i < 12; ++i) EXPECT_TRUE(table.half_swings[i].continues) << i;
+}
+
+TEST(TabulateHalfSwings, RefusesHalfSwingsOfWhichNoTwoFollowEachOther) {
+  Recording recording = Sample(Cosine, 8, 100);
+  for (double turn = 0.9 / kOmega; turn < 8; turn += 2 * kHalfPeriod) {
+    recording = WithoutSamples(recording, turn + 0.1, turn + kHalfPeriod - 0.1);
+  }
+  const auto table = TabulateHalfSwings(recording);
+  ASSERT_FALSE(table);
+  EXPECT_EQ(table.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(table.error().message, HasSubstr("no two half swings follow each other without a gap"));
+}
+
+TEST(TabulateHalfSwings, RefusesWhatHasTooFewTurningPoints) {
+  const auto table = TabulateHalfSwings(Sample(Cosine, 1, 100));
+  ASSERT_FALSE(table);
+  EXPECT_EQ(table.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(table.error().message, HasSubstr("three turning points"));
+}
+
+TEST(TabulateHalfSwings, KeepsTheQuantity) {
+  Recording recording = Sample(Cosine, 8, 100);
+  EXPECT_EQ(Must(TabulateHalfSwings(recording)).quantity, Quantity::kAngle);
+  recording.quantity = Quantity::kRate;
+  EXPECT_EQ(Must(TabulateHalfSwings(recording)).quantity, Quantity::kRate);
+}
+
+}  // namespace
+}  // namespace pendulum
