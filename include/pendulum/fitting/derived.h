@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/model/parameter.h"
+
+namespace pendulum {
+
+/// A quantity computed from the parameters, with its standard error by propagation.
+struct DerivedQuantity {
+  std::string name;
+  std::string unit;
+  double estimate = 0;
+  std::optional<double> std_error;
+};
+
+/// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ, and gravity, viscous, coulomb,
+/// drag
+/// ... over inertia (MODEL.md eq. (23)): none depends on the rig.
+///
+/// infos: the model's parameters, inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero
+/// rows for what is held; nullptr when there is none, and then no standard errors. at_bound: indices of parameters at a
+/// bound; what depends on one has no standard error. quality_factor is left out when b = 0.
+std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
+                                               const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
+                                               const std::vector<int>& at_bound);
+
+}  // namespace pendulum

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/base/status.h"
+#include "pendulum/fitting/derived.h"
+#include "pendulum/fitting/residual_diagnostics.h"
+#include "pendulum/fitting/start_values.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// What FitRecording is asked to do. Values by parameter name are SI: torques and inertia in N m and kg m^2 with a rig,
+/// in units of G without one.
+struct FitOptions {
+  std::string model = "coulomb";
+  StartChoice start = StartChoice::kAuto;
+  std::optional<Rig> rig;               ///< Turns ratios into SI; without it torques are in units of G.
+  std::map<std::string, double> fixed;  ///< Parameters held at a value.
+  double max_trace_error = 1e-8;        ///< Global error of the trajectory [rad]; also kept below sigma / 1000.
+  int max_iterations = 100;             ///< Of Ceres, for each solve.
+};
+
+/// How a fit ended, and what of its report means something:
+///
+///                     estimates     std_error, covariance   statistics
+///   kConverged        yes           yes                     yes
+///   kNotConverged     best found    no                      yes
+///   kNotIdentifiable  best found    no                      yes
+///   kFailed           start values  no                      no
+enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
+
+/// "converged", "not_converged", "not_identifiable", "failed".
+std::string_view TerminationName(Termination termination);
+
+/// 0 for kConverged, 1 for the others.
+int ExitCode(Termination termination);
+
+/// One parameter after the fit, in the unit given.
+struct ParameterEstimate {
+  ParameterInfo info;
+  std::string_view unit;  ///< info.unit with a rig, info.relative_unit without.
+  double estimate = 0;
+  std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
+  std::optional<double> lower95, upper95;  ///< Interval of 95 % (Student's t); one end is the bound when at_bound.
+  std::optional<double> systematic_std_error;  ///< From the rig's standard deviations; absent without them.
+  std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
+  bool fixed = false;
+  bool at_bound = false;
+  std::string reason;  ///< Why there is no std_error; empty when there is one.
+};
+
+/// The noise of the samples about the trajectory.
+struct NoiseEstimate {
+  double sigma = 0;             ///< Standard deviation, rad or rad/s: RSS / (N - free parameters), square root.
+  double lag1_correlation = 0;  ///< Of successive residuals.
+};
+
+/// What the solver did, over all its runs.
+struct SolverSummary {
+  int iterations = 0;
+  int evaluations = 0;      ///< Trajectories, with and without sensitivities.
+  std::string termination;  ///< Ceres' own words for the last run.
+};
+
+/// One model fitted to one recording.
+struct FitReport {
+  MotionModel model;
+  Termination termination = Termination::kFailed;
+  std::string reason;  ///< A sentence, whatever the termination.
+  StartKind start = StartKind::kMoving;
+  Quantity quantity = Quantity::kAngle;
+  bool has_rig = false;
+  std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
+  std::vector<DerivedQuantity> derived;
+  std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
+  Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  NoiseEstimate noise;
+  FitStatistics statistics;
+  SolverSummary solver;
+  std::vector<Warning> warnings;
+  double trace_error = 0;    ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
+  Eigen::VectorXd fitted;    ///< N x 1, modelled readings at the samples, rad or rad/s (zero_angle included).
+  Eigen::VectorXd residual;  ///< N x 1, measured - modelled, rad or rad/s.
+
+  /// The parameter of that name, or nullptr.
+  const ParameterEstimate* Find(std::string_view name) const;
+};
+
+/// The parameters of a fit in order: inertia, friction, then release_angle and release_time or initial_angle and
+/// initial_rate, then zero_angle or rate_bias.
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity);
+
+/// Fits one model to a recording: start values from the data, least squares over the whole trajectory, judgement.
+///
+/// kInvalidArgument: no such model, or a name in `fixed` that the model does not have, or a value outside its bounds.
+/// kFailedPrecondition: there is no swing in the data, or too little of one. Cost: about a millisecond for 2000
+/// samples.
+Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
+
+}  // namespace pendulum

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/solve.h"
+#include "pendulum/fitting/start_values.h"
+#include "pendulum/fitting/trajectory_cost.h"
+
+namespace pendulum {
+
+/// A recording made ready for the solver: everything in units of G, times from the first sample.
+struct FitProblem {
+  MotionModel model;
+  StartValues start;                    ///< As found in the data, before fixed values are put in.
+  std::vector<ParameterInfo> infos;     ///< P
+  std::vector<double> si_per_internal;  ///< P; value in the report = si_per_internal · internal + offset.
+  std::vector<double> offset;           ///< P; the clock of the first sample for release_time, else 0.
+  std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
+  TrajectoryData data;
+  SolveOptions solve;
+  double noise = 0;  ///< rad or rad/s, SuccessiveDifferenceNoise of the recording.
+};
+
+/// Start values from the data, bounds and fixed values from the options.
+///
+/// Errors as FitRecording.
+Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
+
+}  // namespace pendulum

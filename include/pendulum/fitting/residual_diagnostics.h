@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pendulum {
+
+/// Measures of the fit. N samples, k = free parameters + 1 for sigma.
+struct FitStatistics {
+  double rms_residual = 0;  ///< sqrt(RSS / N), rad or rad/s
+  double log_likelihood =
+      0;            ///< Gaussian, at the maximum-likelihood sigma; densities times the resolution (or 1 rad, 1 rad/s).
+  double aic = 0;   ///< 2 k - 2 log L
+  double aicc = 0;  ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
+  double bic = 0;   ///< k ln N - 2 log L
+  double durbin_watson = 0;  ///< Σ (r_i - r_{i-1})² / Σ r_i²
+};
+
+/// Correlation of each residual with the next, Σ r_i r_{i-1} / Σ r_i²; 0 for residuals that are all 0.
+double Lag1Correlation(const Eigen::VectorXd& residual);
+
+/// Statistics of N residuals [rad or rad/s] of a fit with that many free parameters. resolution: same unit, 0 for none.
+FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, int free_parameters, double resolution);
+
+}  // namespace pendulum

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// How to choose between the two kinds of start.
+enum class StartChoice { kAuto, kRelease, kMoving };
+
+/// Where a fit begins, found from the data alone.
+struct StartValues {
+  StartKind start = StartKind::kMoving;
+  std::vector<double> parameters;  ///< In TrajectoryCost's order: units of G, times from the first sample.
+  double latest_release = 0;       ///< s from the first sample: the first visibly moving one; 0 for a moving start.
+  double amplitude = 0;            ///< rad, the largest.
+  double natural_frequency = 0;    ///< rad/s
+};
+
+/// Inertia from the crossings (period corrected for amplitude), friction from the energy balance, zero from the turning
+/// points, and the start: a held part gives release angle (its mean) and release time (a quarter period before the
+/// first crossing; half a period before the first turn of a rate); otherwise a parabola through the first samples gives
+/// angle and rate.
+///
+/// kAuto takes a release when the reading stays put for at least a tenth of a period before it moves.
+/// kFailedPrecondition: no swing in the data (see FindExtrema), or kRelease was asked for and no held part is there. A
+/// friction law that is not linear in its parameters needs start values of its own here.
+Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model, StartChoice choice);
+
+}  // namespace pendulum

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <ceres/cost_function.h>
+
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// What a trajectory is compared with. Times are from the first sample, so that a clock of large numbers costs no
+/// digits.
+struct TrajectoryData {
+  Quantity quantity = Quantity::kAngle;
+  std::vector<double> time;   ///< N, s, increasing, time[0] = 0.
+  std::vector<double> value;  ///< N, rad or rad/s.
+  double latest_release = 0;  ///< s; a trial released outside [0, latest_release] is refused.
+  double scale =
+      1;  ///< rad or rad/s; residuals are divided by it, so that Ceres' tolerances are those of numbers near 1.
+};
+
+/// Samples, sensitivities and the least squares of one trajectory: the part of a fit that is repeated.
+///
+/// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
+/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias). Residual r_i = value_i -
+/// model_i(p).
+///
+/// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
+/// J'J, R^-T J' r, and what is left of |r|. Cost, gradient and Gauss-Newton matrix are exactly those of the N residuals
+/// (MODEL.md eq. (19)), nothing of length N is stored or factored. Asked for residuals alone it returns (0, ..., 0,
+/// |r|). A trial that never moves, that cannot be traced or is released outside the data makes every function return
+/// false.
+class TrajectoryCost : public ceres::CostFunction {
+ public:
+  /// |r|^2 in units of scale^2, or false.
+  virtual bool SumOfSquares(std::span<const double> parameters, double* sum) const = 0;
+
+  /// The (P + 1) x (P + 1) symmetric matrix of sums [J'J, J'r; r'J, r'r], J = dr/dp, r in units of scale; or false.
+  virtual bool Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) const = 0;
+
+  /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
+  virtual bool Readings(std::span<const double> parameters, Eigen::VectorXd* readings,
+                        Eigen::MatrixXd* jacobian) const = 0;
+
+  /// Reversals, stop and steps of the trajectory at these parameters.
+  virtual TraceSummary Trace(std::span<const double> parameters) const = 0;
+
+  virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
+  virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
+};
+
+/// The cost of a model with its start. `data` must outlive it. Friction and start are resolved here, once.
+std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,
+                                                   const TrajectoryData& data);
+
+}  // namespace pendulum

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/covariance.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace pendulum {
+
+Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
+  Inverse inverse;
+  const Eigen::VectorXd norms = information.diagonal()(free).cwiseSqrt();
+  for (Eigen::Index i = 0; i < norms.size(); ++i) {
+    if (!(norms[i] > 0)) inverse.direction.push_back(free[static_cast<std::size_t>(i)]);
+  }
+  if (!inverse.direction.empty()) return inverse;
+  const Eigen::VectorXd scale = norms.cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information(free, free) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const Eigen::VectorXd& values = eigen.eigenvalues();  // in increasing order
+  constexpr double kSmallest = 1e-12;
+  constexpr double kTakesPart = 0.1;
+  if (values.size() > 0 && values[0] < kSmallest * values[values.size() - 1]) {
+    for (Eigen::Index i = 0; i < norms.size(); ++i) {
+      if (std::abs(eigen.eigenvectors()(i, 0)) > kTakesPart)
+        inverse.direction.push_back(free[static_cast<std::size_t>(i)]);
+    }
+    return inverse;
+  }
+  inverse.identifiable = true;
+  inverse.matrix = scale.asDiagonal() * eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                   eigen.eigenvectors().transpose() * scale.asDiagonal();
+  return inverse;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <ceres/iteration_callback.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/parameter.h"
+
+namespace pendulum {
+
+namespace {
+
+/// Indices of the parameters that are not held and stand at their lower bound.
+std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const SolveOptions& options,
+                                 const std::vector<bool>& held) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!held[i] && parameters[i] <= options.lower[i]) indices.push_back(i);
+  }
+  return indices;
+}
+
+/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound.
+class StopAtBound final : public ceres::IterationCallback {
+ public:
+  StopAtBound(const std::vector<double>& parameters, const SolveOptions& options, const std::vector<bool>& held)
+      : parameters_(parameters), options_(options), held_(held) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    const bool landed = summary.iteration > 0 && !AtBound(parameters_, options_, held_).empty();
+    return landed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::vector<double>& parameters_;
+  const SolveOptions& options_;
+  const std::vector<bool>& held_;
+};
+
+ceres::Solver::Options SolverOptions(int max_iterations) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = max_iterations;
+  solver.function_tolerance = 1e-10;
+  solver.gradient_tolerance = 1e-12;
+  solver.parameter_tolerance = 1e-14;
+  solver.logging_type = ceres::SILENT;
+  solver.update_state_every_iteration = true;
+  // A line search along a cut step would cost a trajectory in every iteration.
+  solver.max_num_line_search_step_size_iterations = 0;
+  return solver;
+}
+
+/// One run of Ceres over the parameters that are not held; ends at convergence or on a bound.
+void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.disable_all_safety_checks = true;
+  ceres::Problem problem(problem_options);
+  std::vector<double*> blocks;
+  for (double& parameter : solution.parameters) blocks.push_back(&parameter);
+  problem.AddResidualBlock(&cost, nullptr, blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (held[i]) {
+      problem.SetParameterBlockConstant(blocks[i]);
+    } else if (std::isfinite(options.lower[i])) {
+      problem.SetParameterLowerBound(blocks[i], 0, options.lower[i]);
+    }
+  }
+  StopAtBound stop(solution.parameters, options, held);
+  ceres::Solver::Options solver = SolverOptions(options.max_iterations);
+  solver.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  solution.usable = summary.IsSolutionUsable();
+  solution.converged = summary.termination_type == ceres::CONVERGENCE;
+  solution.sum = 2 * summary.final_cost;
+  solution.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  solution.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+  solution.message = summary.message;
+}
+
+/// Of the parameters held at their bound, the one the cost pulls inwards most; -1 when there is none.
+int PulledInwards(const TrajectoryCost& cost, const SolveOptions& options, const std::vector<bool>& held,
+                  const Solution& solution) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(solution.parameters, &sums)) return -1;
+  int pulled = -1;
+  double strongest = 0;
+  for (int i = 0; i < static_cast<int>(held.size()); ++i) {
+    if (!held[i] || options.fixed[i] || !(sums(i, i) > 0)) continue;
+    const double slope = sums(i, sums.cols() - 1) / std::sqrt(sums(i, i));
+    if (slope >= strongest) continue;
+    strongest = slope;
+    pulled = i;
+  }
+  return pulled;
+}
+
+}  // namespace
+
+Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options) {
+  Solution solution;
+  solution.parameters = start;
+  std::vector<bool> held = options.fixed;
+  const std::size_t most_runs = 4 * start.size();
+  for (std::size_t run = 0; run < most_runs; ++run) {
+    Run(cost, options, held, solution);
+    if (!solution.usable) break;
+    const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
+    for (const std::size_t i : landed) held[i] = true;
+    if (!landed.empty()) continue;
+    if (held == options.fixed) break;
+    const int pulled = PulledInwards(cost, options, held, solution);
+    if (pulled < 0) break;
+    held[pulled] = false;
+  }
+  return solution;
+}
+
+namespace {
+
+/// A start explains the data when it leaves less than this share of their variance.
+constexpr double kExplained = 0.1;
+
+double Variance(const TrajectoryData& data) {
+  const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
+  return (value.array() - value.mean()).square().sum() / (data.scale * data.scale);
+}
+
+/// Keeps the work of all solves in the count of the one that is returned.
+Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options) {
+  Solution solution = Solve(cost, from.parameters, options);
+  if (!solution.usable) solution.parameters = from.parameters;
+  solution.iterations += from.iterations;
+  solution.evaluations += from.evaluations;
+  return solution;
+}
+
+std::size_t SamplesBefore(const TrajectoryData& data, double time) {
+  return static_cast<std::size_t>(std::upper_bound(data.time.begin(), data.time.end(), time) - data.time.begin());
+}
+
+/// Solves over the samples before each of the times in turn, each from the last; leaves the cost with all samples.
+Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, const SolveOptions& options,
+                      const std::vector<double>& times) {
+  constexpr std::size_t kFewest = 16;
+  for (const double time : times) {
+    const std::size_t count = SamplesBefore(data, time);
+    if (count < kFewest || count >= data.time.size()) continue;
+    cost.set_used_samples(count);
+    solution = Continue(cost, solution, options);
+  }
+  cost.set_used_samples(data.time.size());
+  return solution;
+}
+
+/// When the motion begins: the hold belongs to no share of it.
+double MotionStart(const TrajectoryData& data, const std::vector<double>& parameters) {
+  return data.latest_release > 0 ? parameters[parameters.size() - 2] : 0.0;
+}
+
+std::vector<double> GrowingTimes(double begin, double end, double cycle) {
+  std::vector<double> times;
+  for (double length = 3 * cycle; begin + length < end; length *= 2) times.push_back(begin + length);
+  return times;
+}
+
+/// How all parameters move when parameter k does and the others follow to keep the cost low: a column of the inverse of
+/// J'J over the free parameters, with a 1 at k; empty where the data do not determine it.
+Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<double>& at, int k,
+                                 const SolveOptions& options) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(at, &sums)) return {};
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(at.size()); ++i) {
+    if (!options.fixed[i] && (i == k || at[i] > options.lower[i])) free.push_back(i);
+  }
+  const Eigen::Index position = std::find(free.begin(), free.end(), k) - free.begin();
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(static_cast<Eigen::Index>(free.size()), position);
+  const Eigen::VectorXd column = sums(free, free).ldlt().solve(unit);
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.size()));
+  direction(free) = column / column[position];
+  return direction.allFinite() ? direction : Eigen::VectorXd();
+}
+
+/// The neighbouring minima of a recording that reaches rest: dry friction a little stronger or weaker, the others
+/// following.
+Solution TryNeighbours(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
+  Solution best = found;
+  const int k = options.holding_parameter;
+  const Eigen::VectorXd direction = ProfileDirection(cost, found.parameters, k, options);
+  if (direction.size() == 0) return best;
+  for (const double shift : {-0.012, -0.008, -0.004, 0.004, 0.008, 0.012}) {
+    std::vector<double> start = found.parameters;
+    const double change = shift * found.parameters[k];
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      start[i] = std::max(start[i] + change * direction[static_cast<Eigen::Index>(i)], options.lower[i]);
+    }
+    Solution trial = Solve(cost, start, options);
+    trial.iterations += best.iterations;
+    trial.evaluations += best.evaluations;
+    trial.rivals = best.rivals;
+    if (trial.usable && trial.sum < best.sum) std::swap(trial, best);
+    if (trial.usable) best.rivals.push_back({trial.parameters, trial.sum});
+    best.iterations = std::max(best.iterations, trial.iterations);
+    best.evaluations = std::max(best.evaluations, trial.evaluations);
+  }
+  return best;
+}
+
+bool ReachesRest(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& parameters) {
+  return cost.Trace(parameters).stop_time < data.time.back();
+}
+
+}  // namespace
+
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+                const SolveOptions& options) {
+  Solution solution;
+  solution.parameters = start;
+  const double begin = MotionStart(data, start);
+  double sum = 0;
+  const bool traced = cost.SumOfSquares(start, &sum);
+  const double stop = traced ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
+  if (!traced || sum > kExplained * Variance(data)) {
+    const double cycle = 2 * kPi * std::sqrt(start[0]);
+    solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
+  } else if (stop < data.time.back()) {
+    const double motion = stop - begin;
+    solution = SolveGrowing(cost, data, solution, options,
+                            {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
+  }
+  solution = Continue(cost, solution, options);
+  const int holding = options.holding_parameter;
+  if (!solution.usable || holding < 0 || options.fixed[holding] || !ReachesRest(cost, data, solution.parameters))
+    return solution;
+  return TryNeighbours(cost, solution, options);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/trajectory_cost.h"
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <ceres/jet.h>
+
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+/// Samples are evaluated side by side in lanes: their Horner chains do not wait for each other and fill vector
+/// registers.
+constexpr int kLanes = 8;
+using Lanes = std::array<double, kLanes>;
+
+/// Polynomials in τ of everything that is wanted at a sample: W columns, the same order.
+template <int W>
+struct Columns {
+  int order = 0;
+  std::array<std::array<double, W>, kMaxOrder + 1> coefficient;
+
+  void Evaluate(const Lanes& tau, std::array<Lanes, W>& out) const {
+    for (int w = 0; w < W; ++w) {
+      Lanes sum;
+      sum.fill(coefficient[order][w]);
+      for (int k = order - 1; k >= 0; --k) {
+        for (int i = 0; i < kLanes; ++i) sum[i] = sum[i] * tau[i] + coefficient[k][w];
+      }
+      out[w] = sum;
+    }
+  }
+};
+
+/// Sums over samples of all products of W columns, in four partial sums each.
+template <int W>
+class Products {
+ public:
+  void Add(const std::array<Lanes, W>& columns) {
+    int pair = 0;
+    for (int i = 0; i < W; ++i) {
+      for (int j = 0; j <= i; ++j, ++pair) {
+        for (int lane = 0; lane < kLanes; ++lane) sums_[pair][lane % kParts] += columns[i][lane] * columns[j][lane];
+      }
+    }
+  }
+
+  Eigen::MatrixXd Matrix() const {
+    Eigen::MatrixXd matrix(W, W);
+    int pair = 0;
+    for (int i = 0; i < W; ++i) {
+      for (int j = 0; j <= i; ++j, ++pair) {
+        double sum = 0;
+        for (const double part : sums_[pair]) sum += part;
+        matrix(i, j) = matrix(j, i) = sum;
+      }
+    }
+    return matrix;
+  }
+
+ private:
+  static constexpr int kParts = 4;
+  std::array<std::array<double, kParts>, W*(W + 1) / 2> sums_{};
+};
+
+/// R, R^-T J'r and the rest of |r| from the sums (MODEL.md eq. (19)), by a pivoted Cholesky factor of J'J scaled to
+/// unit diagonal: a direction that the data do not see gets a row of zeros, which Levenberg-Marquardt leaves alone.
+void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
+  const Eigen::Index size = sums.rows() - 1;
+  const Eigen::VectorXd norms = sums.diagonal().head(size).cwiseSqrt();
+  const Eigen::VectorXd inverse = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
+  Eigen::MatrixXd correlation = inverse.asDiagonal() * sums.topLeftCorner(size, size) * inverse.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(correlation);
+  const Eigen::VectorXd d = ldlt.vectorD();
+  const Eigen::VectorXd root = d.unaryExpr([](double x) { return x > 1e-15 ? std::sqrt(x) : 0.0; });
+  Eigen::VectorXd gradient = ldlt.transpositionsP() * (inverse.asDiagonal() * sums.col(size).head(size)).eval();
+  ldlt.matrixL().solveInPlace(gradient);
+  const Eigen::MatrixXd scaled = ldlt.transpositionsP() * Eigen::MatrixXd(norms.asDiagonal());
+  const Eigen::MatrixXd factor = root.asDiagonal() * (ldlt.matrixU() * scaled);
+  double rest = sums(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    residuals[i] = root[i] > 0 ? gradient[i] / root[i] : 0.0;
+    rest -= residuals[i] * residuals[i];
+  }
+  residuals[size] = std::sqrt(std::max(rest, 0.0));
+  for (Eigen::Index j = 0; j < size; ++j) {
+    if (jacobians[j] == nullptr) continue;
+    Eigen::Map<Eigen::VectorXd>(jacobians[j], size) = factor.col(j);
+    jacobians[j][size] = 0;
+  }
+}
+
+template <FrictionModel F, StartKind kStart>
+class TrajectoryCostFor final : public TrajectoryCost {
+  static constexpr int kFriction = kFrictionParameters<F>;
+  static constexpr int kParameters = kFriction + 4;
+  /// Derivatives carried by the trajectory; those for release time and zero need no dual number.
+  static constexpr int kCarried = kStart == StartKind::kRelease ? kFriction + 2 : kFriction + 3;
+  static constexpr int kZero = kParameters - 1;
+  using Dual = ceres::Jet<double, kCarried>;
+
+ public:
+  TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
+      : gravity_(gravity), data_(data), used_samples_(data.time.size()) {
+    set_num_residuals(kParameters + 1);
+    mutable_parameter_block_sizes()->assign(kParameters, 1);
+  }
+
+  void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
+  void set_used_samples(std::size_t count) override { used_samples_ = count; }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    std::array<double, kParameters> p;
+    for (int i = 0; i < kParameters; ++i) p[i] = *parameters[i];
+    if (jacobians == nullptr) {
+      std::fill_n(residuals, kParameters, 0.0);
+      double sum = 0;
+      const bool valid = SumOfSquares(p, &sum);
+      residuals[kParameters] = std::sqrt(sum);
+      return valid;
+    }
+    Eigen::MatrixXd sums;
+    if (!Sums(p, &sums)) return false;
+    CompressResiduals(sums, residuals, jacobians);
+    return true;
+  }
+
+  bool SumOfSquares(std::span<const double> p, double* sum) const override {
+    const double inverse_scale = 1 / data_.scale;
+    Lanes squares{};
+    const auto add = [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
+      for (int i = 0; i < count; ++i) {
+        const double residual = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
+        squares[i] += residual * residual;
+      }
+    };
+    if (!VisitSamples<double>(p, add)) return false;
+    *sum = 0;
+    for (const double square : squares) *sum += square;
+    return std::isfinite(*sum);
+  }
+
+  bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
+    const double inverse_scale = 1 / data_.scale;
+    Products<kParameters + 1> products;
+    const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
+      std::array<Lanes, kParameters + 1> columns{};  // lanes beyond count stay zero
+      for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * inverse_scale;
+        columns[kZero][i] = -inverse_scale;
+        columns[kParameters][i] = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
+      }
+      products.Add(columns);
+    };
+    if (!VisitSamples<Dual>(p, add)) return false;
+    *sums = products.Matrix();
+    return sums->allFinite();
+  }
+
+  bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
+    const auto samples = static_cast<Eigen::Index>(used_samples_);
+    readings->resize(samples);
+    if (jacobian == nullptr) {
+      return VisitSamples<double>(p, [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
+        for (int i = 0; i < count; ++i) (*readings)[first + i] = model[0][i] + p[kZero];
+      });
+    }
+    jacobian->resize(samples, kParameters);
+    return VisitSamples<Dual>(p, [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
+      for (int i = 0; i < count; ++i) {
+        (*readings)[first + i] = model[0][i] + p[kZero];
+        for (int j = 0; j < kZero; ++j) (*jacobian)(first + i, j) = model[1 + j][i];
+        (*jacobian)(first + i, kZero) = 1;
+      }
+    });
+  }
+
+  TraceSummary Trace(std::span<const double> p) const override {
+    return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), [](const Segment<double>&) {});
+  }
+
+ private:
+  /// Parameter i as a T: carries its own derivative when T is dual.
+  template <typename T>
+  static T Carry(double value, int i) {
+    if constexpr (DualNumber<T>) {
+      return T(value, i);
+    } else {
+      return value;
+    }
+  }
+
+  template <typename T>
+  Pendulum<F, T> MakePendulum(std::span<const double> p) const {
+    Pendulum<F, T> pendulum{gravity_, Carry<T>(p[0], 0), {}};
+    for (int i = 0; i < kFriction; ++i) pendulum.friction[i] = Carry<T>(p[1 + i], 1 + i);
+    return pendulum;
+  }
+
+  template <typename T>
+  Start<T> MakeStart(std::span<const double> p) const {
+    constexpr int kAngle = 1 + kFriction;
+    if constexpr (kStart == StartKind::kRelease) {
+      return {kStart, p[kAngle + 1], Carry<T>(p[kAngle], kAngle), T(0.0)};
+    } else {
+      return {kStart, 0.0, Carry<T>(p[kAngle], kAngle), Carry<T>(p[kAngle + 1], kAngle + 1)};
+    }
+  }
+
+  TraceOptions Options() const {
+    TraceOptions options;
+    options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
+    options.tolerance = tolerance_;
+    return options;
+  }
+
+  bool IsAdmissible(std::span<const double> p) const {
+    if (!(p[0] > 0)) return false;
+    return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
+  }
+
+  /// Calls add(first sample, count <= kLanes, columns) for all samples: the model's reading, and with a dual T its
+  /// derivatives with respect to all parameters but zero, in the parameters' order.
+  template <typename T, typename Add>
+  bool VisitSamples(std::span<const double> p, Add&& add) const {
+    if (!IsAdmissible(p)) return false;
+    constexpr int kColumns = DualNumber<T> ? kParameters : 1;
+    Columns<kColumns> columns;
+    std::array<Lanes, kColumns> model;
+    std::size_t next = 0;
+    const auto visit = [&](const Segment<T>& segment) {
+      std::size_t end = next;
+      while (end < used_samples_ && data_.time[end] < segment.end) ++end;
+      if (end == next) return;
+      FillColumns(segment, columns);
+      for (; next < end; next += kLanes) {
+        const int count = static_cast<int>(std::min<std::size_t>(kLanes, end - next));
+        Lanes tau{};
+        for (int i = 0; i < count; ++i) tau[i] = data_.time[next + i] - segment.start;
+        columns.Evaluate(tau, model);
+        add(next, count, model);
+      }
+      next = end;
+    };
+    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visit);
+    return summary.outcome == TraceSummary::Outcome::kComplete && next == used_samples_;
+  }
+
+  /// Coefficients of the reading, its carried derivatives and, for a release, its derivative with respect to release
+  /// time, which is minus its time derivative: angle and rate, or rate and acceleration.
+  template <typename T>
+  void FillColumns(const Segment<T>& segment, auto& columns) const {
+    const bool rate = data_.quantity == Quantity::kRate;
+    columns.order = std::max(segment.order - (rate ? 1 : 0), 0);
+    for (int k = 0; k <= columns.order; ++k) {
+      const bool rest = segment.order == 0;
+      const double factor = rate ? (rest ? 0.0 : k + 1.0) : 1.0;
+      const T& source = segment.angle[rate && !rest ? k + 1 : k];
+      auto& row = columns.coefficient[k];
+      row[0] = factor * Value(source);
+      if constexpr (DualNumber<T>) {
+        for (int i = 0; i < kCarried; ++i) row[1 + i] = factor * source.v[i];
+        if constexpr (kStart == StartKind::kRelease) {
+          const int above = k + (rate ? 2 : 1);
+          const double slope = above <= segment.order ? segment.angle[above].a * above * (rate ? above - 1 : 1) : 0.0;
+          row[1 + kCarried] = -slope;
+        }
+      }
+    }
+  }
+
+  Gravity gravity_;
+  const TrajectoryData& data_;
+  std::size_t used_samples_;
+  double tolerance_ = 1e-10;
+};
+
+}  // namespace
+
+std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,
+                                                   const TrajectoryData& data) {
+  std::unique_ptr<TrajectoryCost> cost;
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    if (start == StartKind::kRelease) {
+      cost = std::make_unique<TrajectoryCostFor<F, StartKind::kRelease>>(model.gravity, data);
+    } else {
+      cost = std::make_unique<TrajectoryCostFor<F, StartKind::kMoving>>(model.gravity, data);
+    }
+  });
+  return cost;
+}
+
+}  // namespace pendulum

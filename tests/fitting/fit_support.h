@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests of the fit share: recordings with a known truth, and fits that must run.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pendulum/fitting/fit.h"
+#include "pendulum/trajectory/synthetic.h"
+
+namespace pendulum {
+
+// Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink) and its sensor, as
+// design.md section 2 gives them: G = (M + m/2) g l, and the slope of the straight line through the calibration table.
+inline constexpr double kTextbookTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
+inline constexpr double kCount = 0.1985 * kPi / 180;                          // rad
+
+/// The value, or an end of the test that says why there is none.
+template <typename T>
+T Must(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return *std::move(result);
+}
+
+/// Inertia and friction of the textbook rig in units of G, for any registered model: I_O 0.079 kg m², b 0.003 N m
+/// s/rad, τ_c 0.004 N m, c 0.0005 N m s²/rad², and a thousandth of G for a parameter this list does not know.
+inline std::vector<double> TextbookParameters(const MotionModel& model) {
+  std::vector<double> parameters;
+  for (const ParameterInfo& info : PhysicalParameters(model)) {
+    const double si = info.name == "inertia"   ? 0.079
+                      : info.name == "viscous" ? 0.003
+                      : info.name == "coulomb" ? 0.004
+                      : info.name == "drag"    ? 0.0005
+                                               : 0.001 * kTextbookTorque;
+    parameters.push_back(si / kTextbookTorque);
+  }
+  return parameters;
+}
+
+/// The textbook rig held at 0.423 rad for 1.9 s, 20 s at 100 Hz; the sensor's zero is 0.012 rad off. No noise.
+inline SyntheticOptions TextbookRun(std::string_view model) {
+  SyntheticOptions options;
+  options.model = Must(FindMotionModel(model));
+  options.parameters = TextbookParameters(options.model);
+  options.release_angle = 0.423;
+  options.release_time = 1.9;
+  options.zero = 0.012;
+  return options;
+}
+
+/// The same pendulum passing -0.2 rad at 1.5 rad/s when the recording begins.
+inline SyntheticOptions MovingRun(std::string_view model) {
+  SyntheticOptions options = TextbookRun(model);
+  options.start = StartKind::kMoving;
+  options.initial_angle = -0.2;
+  options.initial_rate = 1.5;
+  return options;
+}
+
+/// The parameters a fit of that recording should find, in FitParameters' order.
+inline std::vector<double> Truth(const SyntheticOptions& options) {
+  std::vector<double> truth = options.parameters;
+  if (options.start == StartKind::kRelease) {
+    truth.insert(truth.end(), {options.release_angle, options.release_time});
+  } else {
+    truth.insert(truth.end(), {options.initial_angle, options.initial_rate});
+  }
+  truth.push_back(options.zero);
+  return truth;
+}
+
+inline FitOptions ModelOptions(std::string_view model) {
+  FitOptions options;
+  options.model = model;
+  return options;
+}
+
+inline FitReport Fit(const Recording& recording, const FitOptions& options) {
+  return Must(FitRecording(recording, options));
+}
+
+/// Simulates the recording and fits the model it was made with.
+inline FitReport FitOwnModel(const SyntheticOptions& options) {
+  return Fit(Must(SimulateRecording(options)), ModelOptions(options.model.name));
+}
+
+/// (estimate - truth) / std_error of each parameter; NaN where there is no standard error.
+inline std::vector<double> Deviations(const FitReport& report, const std::vector<double>& truth) {
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const ParameterEstimate& parameter = report.parameters.at(i);
+    deviations.push_back((parameter.estimate - truth[i]) /
+                         parameter.std_error.value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return deviations;
+}
+
+}  // namespace pendulum
