@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/equation.h"
+
+#include <string_view>
+
+#include "pendulum/model/friction/registry.h"
+#include "pendulum/report/rounding.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kDigitsWithoutError = 4;
+
+/// The equation with {name} in place of the parameters' values, and {gravity_torque} for G.
+std::string EquationOf(const MotionModel& model) {
+  std::string equation = "{inertia} th'' + ";
+  FrictionModels::Visit(model.friction, [&]<typename F>() { equation += F::kFormula; });
+  return equation + " + {gravity_torque} " + (model.gravity == Gravity::kSine ? "sin th" : "th") + " = 0";
+}
+
+void Replace(std::string_view from, std::string_view to, std::string& text) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+void Fill(std::string_view name, std::string_view value, std::string& equation) {
+  Replace("{" + std::string(name) + "}", value, equation);
+}
+
+Rounding RoundingOf(const ParameterEstimate& parameter) {
+  const double error = parameter.std_error.value_or(0);
+  return error > 0 ? PdgRounding(parameter.estimate, error)
+                   : SignificantRounding(parameter.estimate, kDigitsWithoutError);
+}
+
+std::string NumberOf(const ParameterEstimate& parameter) {
+  return parameter.estimate == 0 ? "0" : RoundedText(parameter.estimate, RoundingOf(parameter));
+}
+
+}  // namespace
+
+std::string SymbolicEquation(const MotionModel& model) {
+  std::string equation = EquationOf(model);
+  for (const ParameterInfo& parameter : PhysicalParameters(model)) Fill(parameter.name, parameter.symbol, equation);
+  Fill("gravity_torque", "G", equation);
+  return equation;
+}
+
+std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig) {
+  std::string equation = EquationOf(fit.model);
+  int digits = kDigitsWithoutError;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    Fill(parameter.info.name, NumberOf(parameter), equation);
+    if (parameter.info.name == kInertia.name) digits = SignificantDigits(parameter.estimate, RoundingOf(parameter));
+  }
+  if (rig) {
+    const double torque = rig->gravity_torque.value;
+    Fill("gravity_torque", RoundedText(torque, SignificantRounding(torque, digits)), equation);
+  } else {
+    Replace("{gravity_torque} ", "", equation);
+  }
+  Replace("+ -", "- ", equation);
+  return equation;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+namespace pendulum {
+namespace {
+
+constexpr int kMostDigits = 12;       // of a value: beyond this an error says nothing a reader can use
+constexpr int kLeastExponent = -4;    // smaller numbers are shown with a power of ten, as %g does
+constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
+
+/// The three leading decimal digits (100 to 999) and the power of ten of the first one, of x != 0.
+struct LeadingDigits {
+  int digits = 0;
+  int exponent = 0;
+};
+
+LeadingDigits LeadingDigitsOf(double x) {
+  std::array<char, kBuffer> buffer{};
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(x), std::chars_format::scientific);
+  const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+  const std::size_t e = text.find('e');
+  LeadingDigits leading;
+  int count = 0;
+  for (const char c : text.substr(0, e)) {
+    if (c == '.' || count == 3) continue;
+    leading.digits = 10 * leading.digits + (c - '0');
+    ++count;
+  }
+  for (; count < 3; ++count) leading.digits *= 10;
+  leading.exponent = std::atoi(text.data() + e + 1);
+  return leading;
+}
+
+/// The power of ten of the last decimal an error is given to, and the error as it is shown: rounded in decimal digits,
+/// halves upwards, so that 0.0075 becomes 0.008 although the nearest double lies below it.
+struct RoundedError {
+  int last = 0;
+  double error = 0;
+};
+
+RoundedError RoundError(double error) {
+  const auto [digits, exponent] = LeadingDigitsOf(error);
+  if (digits <= 354) return {exponent - 1, (digits + 5) / 10 * std::pow(10.0, exponent - 1)};
+  if (digits <= 949) return {exponent, (digits + 50) / 100 * std::pow(10.0, exponent)};
+  return {exponent, std::pow(10.0, exponent + 1)};
+}
+
+/// Numbers with first digit at 10^first, shown down to 10^last.
+Rounding RoundingTo(int first, int last) {
+  last = std::max(last, first - kMostDigits + 1);
+  if (first < kLeastExponent || last > 0) return {std::max(0, first - last), first};
+  return {-last, 0};
+}
+
+int FirstDigit(double value, double error) {
+  const int of_error = LeadingDigitsOf(error).exponent;
+  return value == 0 ? of_error : std::max(of_error, LeadingDigitsOf(value).exponent);
+}
+
+std::string ExponentText(int exponent) {
+  if (exponent == 0) return "";
+  const std::string digits = std::to_string(std::abs(exponent));
+  return std::string(exponent < 0 ? "e-" : "e+") + (digits.size() < 2 ? "0" : "") + digits;
+}
+
+std::string Mantissa(double x, const Rounding& rounding) {
+  std::string text = FixedText(rounding.exponent == 0 ? x : x / std::pow(10.0, rounding.exponent), rounding.decimals);
+  const bool zero = text.find_first_of("123456789") == std::string::npos;
+  return zero && text[0] == '-' ? text.substr(1) : text;
+}
+
+}  // namespace
+
+Rounding PdgRounding(double value, double error) {
+  return RoundingTo(FirstDigit(value, error), RoundError(error).last);
+}
+
+Rounding SignificantRounding(double x, int digits) {
+  const int first = LeadingDigitsOf(x).exponent;
+  return RoundingTo(first, first - digits + 1);
+}
+
+int SignificantDigits(double x, const Rounding& rounding) {
+  return std::max(1, LeadingDigitsOf(x).exponent - (rounding.exponent - rounding.decimals) + 1);
+}
+
+ValueAndError PdgText(double value, double error) {
+  if (!(error > 0)) return {GeneralText(value, kMostDigits), GeneralText(error, 2)};
+  const RoundedError rounded = RoundError(error);
+  const int first = FirstDigit(value, error);
+  if (first - rounded.last >= kMostDigits) return {GeneralText(value, kMostDigits), GeneralText(error, 2)};
+  const Rounding rounding = RoundingTo(first, rounded.last);
+  const std::string exponent = ExponentText(rounding.exponent);
+  if (exponent.empty()) return {Mantissa(value, rounding), Mantissa(rounded.error, rounding)};
+  return {"(" + Mantissa(value, rounding), Mantissa(rounded.error, rounding) + ")" + exponent};
+}
+
+std::string RoundedText(double x, const Rounding& rounding) {
+  return Mantissa(x, rounding) + ExponentText(rounding.exponent);
+}
+
+std::string GeneralText(double x, int digits) {
+  std::array<char, kBuffer> buffer{};
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::general, digits);
+  return {buffer.data(), end};
+}
+
+std::string FixedText(double x, int decimals) {
+  std::array<char, kBuffer> buffer{};
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::fixed, std::min(decimals, 40));
+  return {buffer.data(), end};
+}
+
+}  // namespace pendulum

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/run_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pendulum {
+namespace {
+
+void AddOnce(const std::vector<Warning>& warnings, std::vector<Warning>& all) {
+  for (const Warning& warning : warnings) {
+    const bool said = std::any_of(all.begin(), all.end(), [&](const Warning& other) {
+      return other.code == warning.code && other.message == warning.message;
+    });
+    if (!said) all.push_back(warning);
+  }
+}
+
+}  // namespace
+
+DataSummary SummarizeData(const Recording& recording, const Recording& used) {
+  DataSummary data;
+  data.path = recording.path;
+  data.sha256 = recording.sha256;
+  data.quantity = used.quantity;
+  data.samples = recording.size();
+  data.used_samples = used.size();
+  data.from = used.time[0];
+  data.to = used.time[used.size() - 1];
+  data.resolution = used.resolution;
+  return data;
+}
+
+std::vector<Warning> AllWarnings(const RunReport& report) {
+  std::vector<Warning> all;
+  AddOnce(report.warnings, all);
+  for (const FitReport& fit : report.fits) AddOnce(fit.warnings, all);
+  return all;
+}
+
+double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) {
+  if (row == column) return 1;
+  return fit.covariance(row, column) / std::sqrt(fit.covariance(row, row) * fit.covariance(column, column));
+}
+
+}  // namespace pendulum

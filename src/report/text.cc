@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/report/equation.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kIndent = 4;
+constexpr int kWidth = 100;                   // columns, of prose
+constexpr double kLeastCorrelation = 0.1;     // smaller ones are not listed
+constexpr int kDigits = 6;                    // significant, of a number without an error
+constexpr std::string_view kMargin = "    ";  // kIndent blanks
+
+using Row = std::vector<std::string>;
+
+std::string Prose(std::string_view text) { return Paragraph(text, kMargin, kWidth); }
+
+std::string Heading(const std::string& title) { return "[[" + title + "]]\n"; }
+
+/// A list of names and what is said of each.
+std::string Facts(const std::vector<Row>& rows) { return AlignedTable({{""}, {""}}, rows, kIndent); }
+
+/// Another unit for a quantity: rad is shown in deg too.
+struct Conversion {
+  std::string_view unit;
+  double factor = 1;
+};
+
+std::optional<Conversion> Degrees(std::string_view unit) {
+  if (unit == "rad") return Conversion{"deg", 1 / kRadFromDeg};
+  if (unit == "rad/s") return Conversion{"deg/s", 1 / kRadFromDeg};
+  return std::nullopt;
+}
+
+/// A number of residuals or noise, in rad or rad/s with degrees beside it.
+std::string ReadingText(double value, Quantity quantity) {
+  constexpr int kReadingDigits = 3;
+  const std::string unit = quantity == Quantity::kAngle ? "rad" : "rad/s";
+  const std::optional<Conversion> degrees = Degrees(unit);
+  return GeneralText(value, kReadingDigits) + " " + unit + " (" + GeneralText(value * degrees->factor, kReadingDigits) +
+         " " + std::string(degrees->unit) + ")";
+}
+
+std::string DataText(const DataSummary& data) {
+  std::vector<Row> rows;
+  if (!data.path.empty()) rows.push_back({"file", data.path});
+  rows.push_back({"samples", std::to_string(data.used_samples) + " used of " + std::to_string(data.samples)});
+  rows.push_back({"window", GeneralText(data.from, kDigits) + " s to " + GeneralText(data.to, kDigits) + " s, " +
+                                GeneralText(data.sample_rate(), kDigits) + " Hz on average"});
+  if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.quantity)});
+  return Heading("Data") + Facts(rows);
+}
+
+std::string ModelText(const FitReport& fit) {
+  const std::string start =
+      fit.start == StartKind::kRelease ? "held at an angle, then released" : "in motion at the first used sample";
+  return Heading("Fit") +
+         Facts({{"model", std::string(fit.model.name) + ":  " + SymbolicEquation(fit.model)}, {"start", start}}) +
+         Paragraph(std::string(TerminationName(fit.termination)) + ": " + fit.reason, "    status  ", kWidth);
+}
+
+// --- parameters ------------------------------------------------------------------------------------------------------
+
+std::vector<Column> ParameterColumns() {
+  return {{"name"}, {"symbol"},        {"value", true},  {"± std error", false, 1},
+          {"unit"}, {"95 % interval"}, {"± systematic"}, {"closed form"},
+          {""}};
+}
+
+/// Shows the numbers that belong to one parameter alike: to the decimal of its standard error, if it has one.
+class ParameterNumbers {
+ public:
+  ParameterNumbers(const ParameterEstimate& parameter, double factor) : factor_(factor) {
+    const double value = factor * parameter.estimate;
+    const double error = factor * parameter.std_error.value_or(0);
+    text_ = {GeneralText(value, kDigits), ""};
+    if (!parameter.std_error) return;
+    text_ = PdgText(value, error);
+    if (error > 0) rounding_ = PdgRounding(value, error);
+  }
+
+  const std::string& Value() const { return text_.value; }
+  std::string Error() const { return text_.error.empty() ? "" : "± " + text_.error; }
+
+  std::string Number(double x) const {
+    constexpr int kDigitsWithoutError = 4;
+    return rounding_ ? RoundedText(factor_ * x, *rounding_) : GeneralText(factor_ * x, kDigitsWithoutError);
+  }
+
+  /// A second standard error, to its own decimal.
+  std::string SystematicError(const std::optional<double>& error) const {
+    if (!error || !(*error > 0)) return "";
+    Rounding rounding = PdgRounding(factor_ * *error, factor_ * *error);
+    const int last = rounding.exponent - rounding.decimals;
+    rounding.exponent = rounding_ ? rounding_->exponent : 0;
+    rounding.decimals = std::max(0, rounding.exponent - last);
+    return "± " + RoundedText(factor_ * *error, rounding);
+  }
+
+  std::string Interval(const std::optional<double>& lower, const std::optional<double>& upper) const {
+    if (!lower && !upper) return "";
+    return "[" + (lower ? Number(*lower) : "?") + ", " + (upper ? Number(*upper) : "?") + "]";
+  }
+
+ private:
+  double factor_;
+  ValueAndError text_;
+  std::optional<Rounding> rounding_;
+};
+
+std::string Note(const ParameterEstimate& parameter) {
+  if (parameter.fixed) return "fixed";
+  return parameter.at_bound ? "at its bound" : "";
+}
+
+Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversion) {
+  const ParameterNumbers numbers(parameter, conversion.factor);
+  return {"",
+          "",
+          numbers.Value(),
+          numbers.Error(),
+          std::string(conversion.unit),
+          numbers.Interval(parameter.lower95, parameter.upper95),
+          numbers.SystematicError(parameter.systematic_std_error),
+          parameter.closed_form ? numbers.Number(*parameter.closed_form) : "",
+          ""};
+}
+
+/// Why parameters have no standard error, each reason said once.
+std::string MissingErrors(const FitReport& fit) {
+  std::vector<std::pair<std::string, std::string>> names_by_reason;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.std_error || parameter.fixed || parameter.reason.empty()) continue;
+    const auto known = std::find_if(names_by_reason.begin(), names_by_reason.end(),
+                                    [&](const auto& entry) { return entry.first == parameter.reason; });
+    if (known == names_by_reason.end()) {
+      names_by_reason.emplace_back(parameter.reason, parameter.info.name);
+    } else {
+      known->second.append(", ").append(parameter.info.name);
+    }
+  }
+  std::string text;
+  for (const auto& [reason, names] : names_by_reason)
+    text += Prose("No standard error of " + names + ": " + reason + ".");
+  return text;
+}
+
+/// The rig file's own moment of inertia beside the fitted one.
+std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
+  const ParameterEstimate* fitted = fit.Find("inertia");
+  if (!rig || !rig->inertia || fitted == nullptr) return "";
+  const double from_rig = rig->inertia->value;
+  const double percent = 100 * (fitted->estimate / from_rig - 1);
+  const ValueAndError text = PdgText(from_rig, rig->inertia->std_dev);
+  const std::string value =
+      rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : GeneralText(from_rig, kDigits);
+  return Prose("The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + GeneralText(std::abs(percent), 2) +
+               " % " + (percent < 0 ? "smaller" : "larger") + ".");
+}
+
+std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig) {
+  std::vector<Row> rows;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    Row row = ParameterRow(parameter, {parameter.unit});
+    row.front() = parameter.info.name;
+    row[1] = parameter.info.symbol;
+    row.back() = Note(parameter);
+    rows.push_back(std::move(row));
+    if (const auto degrees = Degrees(parameter.unit)) rows.push_back(ParameterRow(parameter, *degrees));
+  }
+  const bool failed = fit.termination == Termination::kFailed;
+  std::string text = Heading("Parameters") + (failed ? Prose("These are start values, not estimates.") : "");
+  text += AlignedTable(ParameterColumns(), rows, kIndent) + MissingErrors(fit);
+  if (!fit.covariance_names.empty()) text += Prose("Standard errors: " + std::string(kStdErrorMethod) + ".");
+  return text + InertiaText(fit, rig);
+}
+
+// --- what follows from the parameters
+// ----------------------------------------------------------------------------------
+
+std::string DerivedText(const FitReport& fit) {
+  std::vector<Row> rows;
+  for (const DerivedQuantity& quantity : fit.derived) {
+    ValueAndError text{GeneralText(quantity.estimate, kDigits), ""};
+    if (quantity.std_error) text = PdgText(quantity.estimate, *quantity.std_error);
+    rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit});
+  }
+  if (rows.empty()) return "";
+  return Heading("Derived quantities") + AlignedTable({{""}, {"", true}, {"", false, 1}, {""}}, rows, kIndent);
+}
+
+std::string CorrelationText(const FitReport& fit) {
+  std::vector<std::pair<double, std::string>> pairs;
+  const auto size = static_cast<Eigen::Index>(fit.covariance_names.size());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = i + 1; j < size; ++j) {
+      const double correlation = Correlation(fit, i, j);
+      if (!(std::abs(correlation) >= kLeastCorrelation)) continue;
+      pairs.emplace_back(correlation, fit.covariance_names[i] + ", " + fit.covariance_names[j]);
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  if (size < 2) return "";
+  std::vector<Row> rows;
+  for (const auto& [correlation, names] : pairs) rows.push_back({names, FixedText(correlation, 3)});
+  return "[[Correlations]] (those below 0.1 in size are not listed)\n" +
+         AlignedTable({{""}, {"", true}}, rows, kIndent);
+}
+
+std::string StatisticsText(const FitReport& fit) {
+  if (fit.termination == Termination::kFailed) return "";
+  const FitStatistics& statistics = fit.statistics;
+  return Heading("Noise and statistics") +
+         Facts({{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.quantity)},
+                {"rms residual", ReadingText(statistics.rms_residual, fit.quantity)},
+                {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
+                {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+                {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
+                {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
+                                       FixedText(statistics.bic, 2)},
+                {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
+                               std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
+                               GeneralText(fit.trace_error, 1) +
+                               (fit.quantity == Quantity::kAngle ? " rad" : " rad/s")}});
+}
+
+std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
+  if (fit.termination == Termination::kFailed) return "";
+  std::string text = Heading("Equation of motion") + std::string(kMargin) + FittedEquation(fit, rig) + "\n";
+  if (rig) return text + Prose("th in rad from hanging straight down, torques in N m.");
+  return text +
+         Prose(
+             "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
+             "tells "
+             "only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
+             "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
+}
+
+std::string FitText(const FitReport& fit, const std::optional<Rig>& rig) {
+  return ModelText(fit) + ParametersText(fit, rig) + DerivedText(fit) + CorrelationText(fit) + StatisticsText(fit) +
+         EquationSection(fit, rig);
+}
+
+std::string WarningsText(const RunReport& report) {
+  const std::vector<Warning> warnings = AllWarnings(report);
+  std::string text = warnings.empty() ? "" : Heading("Warnings");
+  for (const Warning& warning : warnings) text += Paragraph(warning.message, "  - ", kWidth);
+  return text;
+}
+
+}  // namespace
+
+std::string ToText(const RunReport& report) {
+  std::string text = DataText(report.data);
+  for (const FitReport& fit : report.fits) text += FitText(fit, report.rig);
+  return text + WarningsText(report);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "pendulum/base/status.h"
+
+namespace pendulum {
+
+/// A file the command line names, and the flag that names it (for messages): {"--json", "fit.json"}.
+struct NamedFile {
+  std::string flag;
+  std::string path;
+};
+
+/// What is to be written where.
+struct Output {
+  std::string path;
+  std::string text;
+};
+
+/// True for "-" and its other names, /dev/stdout and /dev/fd/1.
+bool IsStandardOutput(const std::string& path);
+
+/// Checks before any work is done that the outputs can be written; leaves no trace.
+///
+/// kInvalidArgument: two outputs are one file (a character device such as /dev/null may be named twice), or an output
+/// is one of the inputs, or the file that standard output is redirected to. kCannotWrite: a directory, no such
+/// directory, no permission.
+Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs);
+
+/// Writes the outputs: files first, then standard output, pipes and devices in the order given.
+///
+/// A file is written beside its place under a temporary name, synchronised with the disk and renamed once all files
+/// have come so far: whoever looks sees the old file or the new one, never a part. A replaced file keeps its
+/// permissions; a symbolic link stays and its target is replaced. kCannotWrite: the system's own words follow the path.
+Result<void> WriteOutputs(std::span<const Output> outputs);
+
+}  // namespace pendulum

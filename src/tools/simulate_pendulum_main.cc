@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Simulates recordings of a pendulum's free swing, with the truth: flags, files and exit codes.
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gflags/gflags.h>
+
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/trajectory/synthetic.h"
+#include "tools/flags.h"
+#include "tools/output.h"
+#include "tools/simulate_pendulum_options.h"
+#include "tools/simulate_pendulum_text.h"
+
+DEFINE_string(model, "coulomb", "Equation of motion, one of the models named above; default coulomb.");
+DEFINE_string(gravity, "", "Law of gravity's torque, sin or linear; default the model's own.");
+DEFINE_string(rig, "", "Rig file (JSON, SI units); without it torques and inertia are in units of the gravity torque.");
+DEFINE_string(set, "",
+              "Parameters, name=value,... in SI: inertia (default the rig's), the model's friction (default 0), "
+              "release_angle and release_time or initial_angle and initial_rate, zero_angle or, for a rate, rate_bias "
+              "(default 0).");
+DEFINE_string(out, "", "Where to write the recording as CSV; - is standard output.");
+DEFINE_string(truth, "", "Where to write the true parameters as JSON; - is standard output; default nowhere.");
+DEFINE_int32(count, 1, "Recordings, with seeds --seed, --seed + 1, ... in run_001.csv, run_002.csv, ...; default 1.");
+DEFINE_uint64(seed, 1, "Seed of noise and jitter; default 1.");
+DEFINE_double(duration, 20, "Length of the recording, s; default 20.");
+DEFINE_double(rate, 100, "Sampling rate, Hz; default 100.");
+DEFINE_double(start_time, 0, "Clock at the first sample, s; default 0.");
+DEFINE_double(jitter, 0, "Standard deviation of the sampling instants, s, which the stamps tell truly; default 0.");
+DEFINE_string(unit, "deg", "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro); default deg.");
+DEFINE_double(noise, 0, "Standard deviation of white noise before quantization, in --unit; default 0.");
+DEFINE_double(resolution, 0, "Spacing of the sensor's levels, in --unit; default 0, none.");
+DEFINE_string(range, "", "What the sensor can show, low,high in --unit; its levels start at low; default unlimited.");
+
+namespace pendulum {
+namespace {
+
+std::string Usage() {
+  return "Recordings of a pendulum's free swing, simulated, with the truth.\n"
+         "\n"
+         "  simulate_pendulum --model coulomb --rig rig.json --out run.csv --truth truth.json \\\n"
+         "    --set inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,release_time=1.9\n"
+         "\n"
+         "Models: " +
+         MotionModelNames() +
+         ".\n"
+         "Exit codes: 0 done, 2 wrong flags, 3 rig not found, 4 unreadable rig, 5 the pendulum never moves, 70 a bug,\n"
+         "73 an output cannot be written.\n"
+         "\n";
+}
+
+void Say(const std::string& sentence) { std::cerr << "simulate_pendulum: " << sentence << '\n'; }
+
+int Fail(const Status& status) {
+  Say(status.message);
+  return ExitCode(status.code);
+}
+
+SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
+  SimulateFlags flags;
+  flags.model = FLAGS_model;
+  flags.gravity = FLAGS_gravity;
+  flags.set = FLAGS_set;
+  flags.unit = FLAGS_unit;
+  flags.duration = FLAGS_duration;
+  flags.rate = FLAGS_rate;
+  flags.jitter = FLAGS_jitter;
+  flags.start_time = FLAGS_start_time;
+  flags.noise = FLAGS_noise;
+  flags.resolution = FLAGS_resolution;
+  flags.range = FLAGS_range;
+  flags.seed = FLAGS_seed;
+  flags.count = FLAGS_count;
+  flags.out = FLAGS_out;
+  flags.truth = FLAGS_truth;
+  flags.positional = positional;
+  return flags;
+}
+
+Result<std::optional<Rig>> RigOfFlag() {
+  if (FLAGS_rig.empty()) return std::nullopt;
+  return ReadRig(FLAGS_rig);
+}
+
+Result<void> CheckAllOutputs(const SimulateOptions& options) {
+  std::vector<NamedFile> inputs;
+  if (!FLAGS_rig.empty()) inputs.push_back({"--rig", FLAGS_rig});
+  for (int index = 0; index < options.count; ++index) {
+    if (Result<void> checked = CheckOutputs(options.Outputs(index), inputs); !checked) return checked;
+  }
+  return {};
+}
+
+Result<void> SimulateOne(const SimulateOptions& options, int index) {
+  SyntheticOptions synthetic = options.synthetic;
+  synthetic.seed += static_cast<std::uint64_t>(index);
+  const Result<Recording> recording = SimulateRecording(synthetic);
+  if (!recording) return tl::unexpected(recording.error());
+  const std::vector<NamedFile> files = options.Outputs(index);
+  std::vector<Output> outputs = {{files.front().path, RecordingCsv(options, *recording, synthetic.seed)}};
+  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(options, synthetic.seed)});
+  return WriteOutputs(outputs);
+}
+
+Result<void> Simulate(const SimulateFlags& flags) {
+  const Result<std::optional<Rig>> rig = RigOfFlag();
+  if (!rig) return tl::unexpected(rig.error());
+  const Result<SimulateOptions> options = MakeSimulateOptions(flags, *rig);
+  if (!options) return tl::unexpected(options.error());
+  if (Result<void> checked = CheckAllOutputs(*options); !checked) return checked;
+  for (int index = 0; index < options->count; ++index) {
+    if (Result<void> simulated = SimulateOne(*options, index); !simulated) return simulated;
+  }
+  return {};
+}
+
+int Run(int argc, char** argv) {
+  const auto parsed = ParseFlags(argc, argv, __FILE__, Usage());
+  if (!parsed) return Fail(parsed.error());
+  const Result<void> done = parsed->answer.empty() ? Simulate(CurrentFlags(parsed->positional))
+                                                   : WriteOutputs(std::vector<Output>{{"-", parsed->answer}});
+  return done ? 0 : Fail(done.error());
+}
+
+}  // namespace
+}  // namespace pendulum
+
+int main(int argc, char** argv) {
+  try {
+    return pendulum::Run(argc, argv);
+  } catch (const std::exception& error) {
+    pendulum::Say(std::string("internal error: ") + error.what());
+    return pendulum::ExitCode(pendulum::StatusCode::kInternal);
+  }
+}

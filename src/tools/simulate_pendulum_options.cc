@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulate_pendulum_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/motion_model.h"
+#include "tools/command_line.h"
+
+namespace pendulum {
+namespace {
+
+constexpr std::array kUnits = {
+    OutputUnit{"deg", "angle_deg", Quantity::kAngle, kRadFromDeg},
+    OutputUnit{"rad", "angle_rad", Quantity::kAngle, 1.0},
+    OutputUnit{"deg_s", "gyro_deg_s", Quantity::kRate, kRadFromDeg},
+    OutputUnit{"rad_s", "gyro_rad_s", Quantity::kRate, 1.0},
+};
+
+using Settings = std::map<std::string, double, std::less<>>;
+
+tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
+
+Result<OutputUnit> FindUnit(const std::string& name) {
+  for (const OutputUnit& unit : kUnits) {
+    if (unit.name == name) return unit;
+  }
+  return BadFlag("--unit is '" + name + "'; it must be deg, rad, deg_s or rad_s");
+}
+
+Result<MotionModel> ChooseModel(const SimulateFlags& flags) {
+  Result<MotionModel> model = FindMotionModel(flags.model);
+  if (!model) return BadFlag("--model: " + model.error().message);
+  if (flags.gravity.empty()) return model;
+  if (flags.gravity != "sin" && flags.gravity != "linear") {
+    return BadFlag("--gravity is '" + flags.gravity + "'; it must be sin or linear");
+  }
+  const Gravity gravity = flags.gravity == "sin" ? Gravity::kSine : Gravity::kLinear;
+  if (model->name == "linear" && gravity == Gravity::kSine) {
+    return BadFlag("--gravity sin contradicts --model linear; its friction with sine gravity is --model viscous");
+  }
+  model->gravity = gravity;
+  return model;
+}
+
+/// Every parameter that --set may give, in the order of the truth file.
+std::vector<ParameterInfo> SettableParameters(const MotionModel& model, Quantity quantity) {
+  std::vector<ParameterInfo> infos = PhysicalParameters(model);
+  infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate});
+  infos.push_back(quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
+  return infos;
+}
+
+Result<void> CheckSetting(const std::vector<ParameterInfo>& infos, const std::string& name, double value) {
+  const auto info = std::ranges::find(infos, name, &ParameterInfo::name);
+  if (info == infos.end()) {
+    std::string names;
+    for (const ParameterInfo& known : infos) names += (names.empty() ? "" : ", ") + std::string(known.name);
+    return BadFlag("--set: there is no " + name + " here; the names are " + names);
+  }
+  if (value < info->lower || value > info->upper) {
+    return BadFlag("--set: " + name + " is " + NumberText(value) + "; it must lie between " + NumberText(info->lower) +
+                   " and " + NumberText(info->upper));
+  }
+  return {};
+}
+
+/// Reads one name=value into `settings`.
+Result<void> ParseSetting(const std::string& part, const std::vector<ParameterInfo>& infos, Settings& settings) {
+  const std::size_t equals = part.find('=');
+  if (equals == 0 || equals == std::string::npos) return BadFlag("--set: '" + part + "' must be name=value");
+  const std::string name = part.substr(0, equals);
+  const Result<double> value = ParseNumber("--set " + name, part.substr(equals + 1), "a number in SI units");
+  if (!value) return tl::unexpected(value.error());
+  if (Result<void> checked = CheckSetting(infos, name, *value); !checked) return checked;
+  if (!settings.emplace(name, *value).second) return BadFlag("--set: " + name + " is given twice");
+  return {};
+}
+
+Result<Settings> ParseSet(const std::string& text, const std::vector<ParameterInfo>& infos) {
+  Settings settings;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (Result<void> parsed = ParseSetting(text.substr(begin, end - begin), infos, settings); !parsed) {
+      return tl::unexpected(parsed.error());
+    }
+    begin = end + 1;
+    if (begin == text.size()) return BadFlag("--set: '" + text + "' ends with a comma");
+  }
+  return settings;
+}
+
+Result<StartKind> ChooseStart(const Settings& values) {
+  const auto given = [&](const ParameterInfo& info) { return values.contains(info.name); };
+  const bool release = given(kReleaseAngle) || given(kReleaseTime);
+  const bool moving = given(kInitialAngle) || given(kInitialRate);
+  if (release && moving) {
+    return BadFlag("--set gives two starts; keep release_angle and release_time, or initial_angle and initial_rate");
+  }
+  if (given(kReleaseAngle) && given(kReleaseTime)) return StartKind::kRelease;
+  if (given(kInitialAngle) && given(kInitialRate)) return StartKind::kMoving;
+  return BadFlag("--set lacks the start: give release_angle and release_time, or initial_angle and initial_rate");
+}
+
+/// Fills in what --set may leave out: inertia from the rig, no friction, no offset.
+Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::optional<Rig>& rig, StartKind start,
+                      Settings& values) {
+  const std::string inertia(kInertia.name);
+  if (rig && rig->inertia) values.try_emplace(inertia, rig->inertia->value);
+  if (!values.contains(inertia)) return BadFlag("--set lacks inertia, and no rig gives one");
+  if (values[inertia] <= 0) {
+    return BadFlag("--set: inertia is " + NumberText(values[inertia]) + "; it must be positive");
+  }
+  const std::array<std::string_view, 2> other_start = start == StartKind::kRelease
+                                                          ? std::array{kInitialAngle.name, kInitialRate.name}
+                                                          : std::array{kReleaseAngle.name, kReleaseTime.name};
+  for (const ParameterInfo& info : infos) {
+    if (std::ranges::find(other_start, info.name) == other_start.end()) values.try_emplace(std::string(info.name), 0.0);
+  }
+  return {};
+}
+
+double ValueOr0(const Settings& values, const ParameterInfo& info) {
+  const auto found = values.find(info.name);
+  return found == values.end() ? 0.0 : found->second;
+}
+
+void SetMotion(const Settings& values, double gravity_torque, SyntheticOptions& synthetic) {
+  for (const ParameterInfo& info : PhysicalParameters(synthetic.model)) {
+    const double unit = info.scales_with_gravity() ? gravity_torque : 1.0;
+    synthetic.parameters.push_back(ValueOr0(values, info) / unit);
+  }
+  synthetic.release_angle = ValueOr0(values, kReleaseAngle);
+  synthetic.release_time = ValueOr0(values, kReleaseTime);
+  synthetic.initial_angle = ValueOr0(values, kInitialAngle);
+  synthetic.initial_rate = ValueOr0(values, kInitialRate);
+  synthetic.zero = ValueOr0(values, synthetic.quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
+}
+
+/// The motion that --set asks of the model already chosen: start and parameters, in `options` and in its truth.
+Result<void> ChooseMotion(const std::string& set, const std::optional<Rig>& rig, SimulateOptions& options) {
+  SyntheticOptions& synthetic = options.synthetic;
+  const std::vector<ParameterInfo> infos = SettableParameters(synthetic.model, synthetic.quantity);
+  Result<Settings> values = ParseSet(set, infos);
+  if (!values) return tl::unexpected(values.error());
+  const Result<StartKind> start = ChooseStart(*values);
+  if (!start) return tl::unexpected(start.error());
+  synthetic.start = *start;
+  if (Result<void> complete = Complete(infos, rig, *start, *values); !complete) return complete;
+  SetMotion(*values, rig ? rig->gravity_torque.value : 1.0, synthetic);
+  for (const ParameterInfo& info : infos) {
+    if (const auto found = values->find(info.name); found != values->end()) options.truth.emplace_back(*found);
+  }
+  return {};
+}
+
+Result<std::optional<SensorRange>> ParseRange(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return BadFlag("--range is '" + text + "'; it must be low,high");
+  const Result<double> low = ParseNumber("--range", text.substr(0, comma), "two numbers: low,high");
+  const Result<double> high = ParseNumber("--range", text.substr(comma + 1), "two numbers: low,high");
+  if (!low) return tl::unexpected(low.error());
+  if (!high) return tl::unexpected(high.error());
+  if (*low >= *high) return BadFlag("--range is '" + text + "'; low must be less than high");
+  return SensorRange{*low, *high};
+}
+
+/// A number that a flag gives, and the least it may be.
+struct NumberFlag {
+  std::string_view name;
+  double value;
+  bool may_be_0;
+};
+
+Result<void> CheckNumbers(const SimulateFlags& flags) {
+  const std::array numbers = {
+      NumberFlag{"--duration", flags.duration, false},    NumberFlag{"--rate", flags.rate, false},
+      NumberFlag{"--jitter", flags.jitter, true},         NumberFlag{"--noise", flags.noise, true},
+      NumberFlag{"--resolution", flags.resolution, true},
+  };
+  for (const NumberFlag& number : numbers) {
+    if (std::isfinite(number.value) && (number.value > 0 || (number.may_be_0 && number.value == 0))) continue;
+    return BadFlag(std::string(number.name) + " is " + NumberText(number.value) + "; it must be " +
+                   (number.may_be_0 ? "0 or more" : "positive"));
+  }
+  return {};
+}
+
+Result<void> CheckFiles(const SimulateFlags& flags) {
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (flags.out.empty()) return BadFlag("--out is missing: the file for the recording, or - for standard output");
+  if (flags.count < 1) return BadFlag("--count is " + std::to_string(flags.count) + "; it must be at least 1");
+  if (flags.count > 1 && (IsStandardOutput(flags.out) || IsStandardOutput(flags.truth))) {
+    return BadFlag("--count " + std::to_string(flags.count) + " needs files; standard output takes one recording");
+  }
+  return {};
+}
+
+/// Sensor and sampling; noise, resolution and range become SI.
+Result<void> ChooseSensor(const SimulateFlags& flags, SimulateOptions& options) {
+  const Result<std::optional<SensorRange>> range = ParseRange(flags.range);
+  if (!range) return tl::unexpected(range.error());
+  options.range = *range;
+  options.resolution = flags.resolution;
+  if (options.range && flags.resolution > options.range->high - options.range->low) {
+    return BadFlag("--resolution is " + NumberText(flags.resolution) + "; it must be no wider than --range");
+  }
+  const double si = options.unit.si;
+  SyntheticOptions& synthetic = options.synthetic;
+  synthetic.noise = flags.noise * si;
+  synthetic.resolution = flags.resolution * si;
+  if (options.range) synthetic.range = SensorRange{options.range->low * si, options.range->high * si};
+  synthetic.start_time = flags.start_time;
+  synthetic.duration = flags.duration;
+  synthetic.sample_rate = flags.rate;
+  synthetic.jitter = flags.jitter;
+  synthetic.seed = flags.seed;
+  return {};
+}
+
+}  // namespace
+
+Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const std::optional<Rig>& rig) {
+  for (const auto check : {CheckFiles, CheckNumbers}) {
+    if (Result<void> checked = check(flags); !checked) return tl::unexpected(checked.error());
+  }
+  const Result<OutputUnit> unit = FindUnit(flags.unit);
+  if (!unit) return tl::unexpected(unit.error());
+  const Result<MotionModel> model = ChooseModel(flags);
+  if (!model) return tl::unexpected(model.error());
+  SimulateOptions options;
+  options.unit = *unit;
+  options.synthetic.quantity = unit->quantity;
+  options.synthetic.model = *model;
+  options.count = flags.count;
+  options.out = flags.out;
+  options.truth_out = flags.truth;
+  if (Result<void> chosen = ChooseSensor(flags, options); !chosen) return tl::unexpected(chosen.error());
+  if (Result<void> chosen = ChooseMotion(flags.set, rig, options); !chosen) return tl::unexpected(chosen.error());
+  return options;
+}
+
+std::vector<NamedFile> SimulateOptions::Outputs(int index) const {
+  std::vector<NamedFile> outputs = {{"--out", NumberedPath(out, index, count)}};
+  if (!truth_out.empty()) outputs.push_back({"--truth", NumberedPath(truth_out, index, count)});
+  return outputs;
+}
+
+std::string NumberedPath(const std::string& path, int index, int count) {
+  if (count == 1) return path;
+  constexpr std::size_t kDigits = 3;
+  const std::size_t digits = std::max(kDigits, std::to_string(count).size());
+  std::string number = std::to_string(index + 1);
+  number.insert(0, digits - number.size(), '0');
+  std::filesystem::path numbered(path);
+  numbered.replace_filename(numbered.stem().string() + "_" + number + numbered.extension().string());
+  return numbered.string();
+}
+
+}  // namespace pendulum

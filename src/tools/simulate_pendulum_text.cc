@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulate_pendulum_text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/base/version.h"
+
+namespace pendulum {
+namespace {
+
+/// As many decimals as `value` needs, without an exponent.
+int Decimals(double value) {
+  std::array<char, 512> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  const char* point = std::find(text.data(), end, '.');
+  return point == end ? 0 : static_cast<int>(end - point) - 1;
+}
+
+/// The double nearest to `value` rounded to `decimals`, so that its shortest text has no more of them.
+double RoundedTo(int decimals, double value) {
+  std::array<char, 512> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
+  double rounded = value;
+  std::from_chars(text.data(), end, rounded);
+  return rounded + 0.0;  // no -0
+}
+
+/// Turns readings in SI into the file's unit.
+class FileUnit {
+ public:
+  explicit FileUnit(const SimulateOptions& options)
+      : options_(options), low_(options.range ? options.range->low : 0.0) {
+    decimals_ = std::max(Decimals(options.resolution), Decimals(low_));
+  }
+
+  double operator()(double si) const {
+    if (options_.resolution > 0) return Level(si);
+    if (options_.range && si == options_.synthetic.range->low) return options_.range->low;
+    if (options_.range && si == options_.synthetic.range->high) return options_.range->high;
+    return si / options_.unit.si;
+  }
+
+ private:
+  /// Up to here a sum of two decimals is exact enough to be rounded to their last digit.
+  static constexpr int kMostDecimals = 10;
+
+  double Level(double si) const {
+    const double step = options_.resolution;
+    const double level = std::round((si / options_.unit.si - low_) / step);
+    const double value = low_ + step * level;
+    return decimals_ <= kMostDecimals ? RoundedTo(decimals_, value) : value;
+  }
+
+  const SimulateOptions& options_;
+  double low_;
+  int decimals_;
+};
+
+/// The shortest text that reads back, without an exponent where people would not write one.
+void AppendNumber(double value, std::string& text) {
+  std::array<char, 32> buffer{};  // 17 digits, sign, point and five zeros; with an exponent at most 24 characters
+  const double size = std::abs(value);
+  const bool is_plain = size == 0 || (size >= 1e-6 && size < 1e15);
+  const auto format = is_plain ? std::chars_format::fixed : std::chars_format::scientific;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format);
+  text.append(buffer.data(), end);
+}
+
+std::string Head(const SimulateOptions& options, std::uint64_t seed) {
+  const MotionModel& model = options.synthetic.model;
+  std::string text = "# simulate_pendulum " + std::string(kVersion) + ", model " + std::string(model.name) +
+                     ", gravity " + (model.gravity == Gravity::kSine ? "sin" : "linear") + ", seed " +
+                     std::to_string(seed) + "\n";
+  if (options.resolution > 0) text += "# resolution: " + NumberText(options.resolution) + "\n";
+  if (options.range) {
+    text += "# range: " + NumberText(options.range->low) + "," + NumberText(options.range->high) + "\n";
+  }
+  return text + "time_s," + std::string(options.unit.column) + "\n";
+}
+
+}  // namespace
+
+std::string RecordingCsv(const SimulateOptions& options, const Recording& recording, std::uint64_t seed) {
+  constexpr std::size_t kTypicalLine = 24;  // bytes
+  std::string text = Head(options, seed);
+  text.reserve(text.size() + kTypicalLine * static_cast<std::size_t>(recording.size()));
+  const FileUnit file_unit(options);
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    AppendNumber(recording.time[i], text);
+    text += ',';
+    AppendNumber(file_unit(recording.value[i]), text);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string TruthJson(const SimulateOptions& options, std::uint64_t seed) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : options.truth) json[name] = value;
+  const std::string unit = options.unit.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
+  json["sigma" + unit] = options.synthetic.noise;
+  json["resolution" + unit] = options.synthetic.resolution;
+  json["seed"] = seed;
+  constexpr int kIndent = 2;
+  return json.dump(kIndent) + "\n";
+}
+
+}  // namespace pendulum

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "pendulum/recording/recording.h"
+#include "tools/simulate_pendulum_options.h"
+
+namespace pendulum {
+
+/// The recording as a CSV file: comments that say what made it, metadata `resolution` and `range` in the file's unit,
+/// then time_s and the column of options.unit. Numbers are the shortest text that reads back; the levels of a sensor
+/// whose resolution and range are decimals are those decimals, low + k resolution, without the rounding of radians.
+std::string RecordingCsv(const SimulateOptions& options, const Recording& recording, std::uint64_t seed);
+
+/// The truth as a flat JSON object: the parameters' names, SI with a rig, then sigma_rad, resolution_rad and seed;
+/// sigma_rad_s and resolution_rad_s for a rate.
+std::string TruthJson(const SimulateOptions& options, std::uint64_t seed);
+
+}  // namespace pendulum

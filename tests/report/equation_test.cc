@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/equation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/model/friction/registry.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(SymbolicEquation, WritesTheLawsOfFrictionAndGravity) {
+  EXPECT_EQ(SymbolicEquation({"linear", "viscous", Gravity::kLinear}), "I_O th'' + b th' + G th = 0");
+  EXPECT_EQ(SymbolicEquation({"coulomb", "coulomb", Gravity::kSine}), "I_O th'' + b th' + τ_c sgn(th') + G sin th = 0");
+  EXPECT_EQ(SymbolicEquation({"drag", "drag", Gravity::kSine}),
+            "I_O th'' + b th' + τ_c sgn(th') + c th' |th'| + G sin th = 0");
+}
+
+TEST(SymbolicEquation, NamesEveryParameterOfEveryModel) {
+  for (const MotionModel& model : MotionModels()) {
+    const std::string equation = SymbolicEquation(model);
+    EXPECT_THAT(equation, Not(HasSubstr("{"))) << model.name;
+    for (const ParameterInfo& parameter : PhysicalParameters(model)) {
+      EXPECT_THAT(equation, HasSubstr(parameter.symbol)) << model.name;
+    }
+  }
+}
+
+TEST(FittedEquation, RoundsEachNumberAsItsErrorSaysAndTorqueAsInertia) {
+  FitReport fit = ExampleFit();
+  fit.parameters = {ExampleParameter(kInertia, "kg m^2", 0.07902, 0.0008),
+                    ExampleParameter(kViscous, "N m s/rad", 0.00302, 0.00016),
+                    ExampleParameter(kCoulomb, "N m", 0.00101, 0.00025)};
+  const Rig rig{{1.8034, 0.02}, std::nullopt, {}};
+  EXPECT_EQ(FittedEquation(fit, rig), "0.0790 th'' + 0.00302 th' + 0.00101 sgn(th') + 1.80 sin th = 0");
+}
+
+TEST(FittedEquation, HasOneForGravityWithoutARig) {
+  EXPECT_EQ(FittedEquation(ExampleRateReport().fits.front(), std::nullopt),
+            "0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0");
+}
+
+TEST(FittedEquation, KeepsTheTermOfAParameterAtItsBoundAndTheSignOfANegativeOne) {
+  FitReport fit = ExampleFit();
+  fit.parameters[1].estimate = -0.003;
+  EXPECT_EQ(FittedEquation(fit, std::nullopt), "0.07900 th'' - 0.0030 th' + 0 sgn(th') + sin th = 0");
+}
+
+}  // namespace
+}  // namespace pendulum

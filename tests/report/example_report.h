@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/friction/registry.h"
+#include "pendulum/report/run_report.h"
+
+namespace pendulum {
+
+/// A parameter as a fit would give it, numbers in the unit of `unit`.
+inline ParameterEstimate ExampleParameter(const ParameterInfo& info, std::string_view unit, double estimate,
+                                          double std_error) {
+  ParameterEstimate parameter;
+  parameter.info = info;
+  parameter.unit = unit;
+  parameter.estimate = estimate;
+  parameter.std_error = std_error;
+  parameter.lower95 = estimate - 2 * std_error;
+  parameter.upper95 = estimate + 2 * std_error;
+  return parameter;
+}
+
+/// A converged fit of the textbook rig, numbers made up by hand: inertia and viscous free, coulomb at its bound, the
+/// rest fixed. The only correlation is 0.5.
+inline FitReport ExampleFit() {
+  FitReport fit;
+  fit.model = {"coulomb", "coulomb", Gravity::kSine};
+  fit.termination = Termination::kConverged;
+  fit.reason = "the last step changed no parameter by more than 0.001 standard errors";
+  fit.start = StartKind::kRelease;
+  fit.has_rig = true;
+  fit.parameters = {ExampleParameter(kInertia, "kg m^2", 0.079, 0.00025),
+                    ExampleParameter(kViscous, "N m s/rad", 0.003, 0.0005), ExampleParameter(kCoulomb, "N m", 0, 0),
+                    ExampleParameter(kReleaseAngle, "rad", 0.423, 0.0002)};
+  fit.parameters[0].systematic_std_error = 0.001;
+  fit.parameters[0].closed_form = 0.0788;
+  ParameterEstimate& coulomb = fit.parameters[2];
+  coulomb.std_error.reset();
+  coulomb.lower95 = 0;
+  coulomb.upper95 = 0.000125;
+  coulomb.at_bound = true;
+  coulomb.reason = "the estimate is at its lower bound 0";
+  ParameterEstimate zero = ExampleParameter(kZeroAngle, "rad", 0.01, 0);
+  zero.std_error.reset();
+  zero.lower95.reset();
+  zero.upper95.reset();
+  zero.fixed = true;
+  zero.reason = "fixed";
+  fit.parameters.push_back(zero);
+  fit.derived = {{"natural_frequency", "rad/s", 4.778, 0.0075}, {"damping_ratio", "1", 0.004, std::nullopt}};
+  fit.covariance_names = {"inertia", "viscous", "release_angle"};
+  fit.covariance = Eigen::Matrix3d{{6.25e-8, 6.25e-8, 0}, {6.25e-8, 2.5e-7, 0}, {0, 0, 4e-8}};
+  fit.noise = {0.0035, 0.125};
+  fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75};
+  fit.solver = {7, 15, "Convergence. (made up)"};
+  fit.trace_error = 2e-10;
+  fit.warnings = {{"lack_of_fit", "the residuals are not white; friction may be of another kind"}};
+  return fit;
+}
+
+/// A run with a rig whose masses are uncertain, and one warning of the recording.
+inline RunReport ExampleReport() {
+  RunReport report;
+  report.data = {"swing.csv", std::string(64, 'a'), Quantity::kAngle, 2000, 1801, 1.5, 19.5, kRadFromDeg / 4};
+  report.rig = Rig{{1.8, 0.01}, RigValue{0.076, 0.0005}, {}};
+  report.rig->source = {{"gravity_torque", {{"value", 1.8}, {"std_dev", 0.01}}},
+                        {"inertia", {{"value", 0.076}, {"std_dev", 0.0005}}}};
+  report.fits = {ExampleFit()};
+  report.warnings = {{"gap", "there is a gap of 0.5 s after 7 s"}};
+  return report;
+}
+
+/// The same for a gyro, without a rig, and not converged: no standard errors.
+inline RunReport ExampleRateReport() {
+  RunReport report = ExampleReport();
+  report.rig.reset();
+  report.data.quantity = Quantity::kRate;
+  report.data.resolution = 0;
+  FitReport& fit = report.fits.front();
+  fit.has_rig = false;
+  fit.quantity = Quantity::kRate;
+  fit.termination = Termination::kNotConverged;
+  fit.reason = "100 iterations were not enough";
+  fit.start = StartKind::kMoving;
+  fit.parameters = {ExampleParameter(kInertia, "s^2", 0.0439, 0), ExampleParameter(kViscous, "s", 0.0017, 0),
+                    ExampleParameter(kCoulomb, "1", 0.0005, 0), ExampleParameter(kRateBias, "rad/s", 0.25, 0)};
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.std_error.reset();
+    parameter.lower95.reset();
+    parameter.upper95.reset();
+    parameter.reason = "the fit did not converge";
+  }
+  fit.derived.clear();
+  fit.covariance_names.clear();
+  fit.covariance.resize(0, 0);
+  return report;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/json.h"
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/version.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> Keys(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return keys;
+}
+
+std::string FileText(const char* path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The example was written from design and schema, number by number; tests/tools/result_schema_test.py validates it.
+TEST(ToJsonText, GivesTheExampleByteForByte) {
+  EXPECT_EQ(ToJsonText(ExampleReport()), FileText("tests/report/result_example.json"));
+}
+
+TEST(ToJson, KeepsTheOrderOfKeys) {
+  const Json json = ToJson(ExampleReport());
+  EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "warnings"));
+  EXPECT_THAT(Keys(json["fits"][0]), ElementsAre("model", "status", "reason", "parameters", "derived", "covariance",
+                                                 "correlation", "noise", "std_error_method", "statistics", "solver"));
+  EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
+              ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
+  EXPECT_EQ(json["tool"]["version"], kVersion);
+}
+
+TEST(ToJson, SaysWhyThereIsNoStandardError) {
+  const Json parameters = ToJson(ExampleReport())["fits"][0]["parameters"];
+  EXPECT_FALSE(parameters["inertia"].contains("reason"));
+  EXPECT_TRUE(parameters["coulomb"]["std_error"].is_null());
+  EXPECT_EQ(parameters["coulomb"]["reason"], "the estimate is at its lower bound 0");
+  EXPECT_EQ(parameters["coulomb"]["interval95"], Json::array({0.0, 0.000125}));
+  EXPECT_EQ(parameters["zero_angle"]["fixed"], true);
+  EXPECT_TRUE(parameters["zero_angle"]["interval95"].is_null());
+}
+
+TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
+  const Json parameters = ToJson(ExampleReport())["fits"][0]["parameters"];
+  EXPECT_EQ(parameters["inertia"]["systematic_std_error"], 0.001);
+  EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
+}
+
+TEST(ToJson, GivesARateItsOwnUnits) {
+  const Json json = ToJson(ExampleRateReport());
+  EXPECT_TRUE(json["rig"].is_null());
+  EXPECT_TRUE(json["data"].contains("resolution_rad_s"));
+  EXPECT_FALSE(json["data"].contains("resolution_rad"));
+  EXPECT_EQ(json["fits"][0]["noise"]["sigma_rad_s"], 0.0035);
+  EXPECT_EQ(json["fits"][0]["statistics"]["rms_residual_rad_s"], 0.00349);
+  EXPECT_EQ(json["fits"][0]["parameters"]["inertia"]["unit"], "s^2");
+}
+
+TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
+  const Json fit = ToJson(ExampleRateReport())["fits"][0];
+  EXPECT_EQ(fit["status"], "not_converged");
+  EXPECT_EQ(fit["parameters"]["inertia"]["estimate"], 0.0439);
+  EXPECT_EQ(fit["parameters"]["inertia"]["reason"], "the fit did not converge");
+  EXPECT_EQ(fit["covariance"]["matrix"], Json::array());
+  EXPECT_TRUE(fit["std_error_method"].is_null());
+}
+
+TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {
+  RunReport report = ExampleRateReport();
+  report.fits[0].termination = Termination::kFailed;
+  const Json fit = ToJson(report)["fits"][0];
+  EXPECT_TRUE(fit["noise"].is_null());
+  EXPECT_TRUE(fit["statistics"].is_null());
+}
+
+TEST(ToJson, TurnsNumbersThatAreNoneIntoNullWithAReason) {
+  RunReport report = ExampleReport();
+  FitReport& fit = report.fits[0];
+  fit.statistics.aicc = std::numeric_limits<double>::infinity();
+  fit.parameters[0].estimate = kNan;
+  fit.parameters[1].upper95 = kNan;
+  fit.covariance(0, 0) = kNan;
+  const Json json = ToJson(report)["fits"][0];
+  EXPECT_TRUE(json["statistics"]["aicc"].is_null());
+  EXPECT_EQ(json["statistics"]["reason"], "aicc is not a finite number");
+  EXPECT_TRUE(json["parameters"]["inertia"]["estimate"].is_null());
+  EXPECT_EQ(json["parameters"]["inertia"]["reason"], "estimate is not a finite number");
+  EXPECT_TRUE(json["parameters"]["viscous"]["interval95"][1].is_null());
+  EXPECT_TRUE(json["covariance"]["matrix"][0][0].is_null());
+  EXPECT_TRUE(json["correlation"]["matrix"][0][1].is_null());
+}
+
+TEST(ToJson, SaysThatADerivedQuantityLacksItsError) {
+  const Json derived = ToJson(ExampleReport())["fits"][0]["derived"];
+  EXPECT_EQ(derived["natural_frequency"]["std_error"], 0.0075);
+  EXPECT_TRUE(derived["damping_ratio"]["std_error"].is_null());
+  EXPECT_THAT(derived["damping_ratio"]["reason"], HasSubstr("no standard error"));
+}
+
+TEST(ToJson, LeavesOutWhatARecordingInMemoryDoesNotHave) {
+  RunReport report = ExampleReport();
+  report.data.path.clear();
+  report.data.sha256.clear();
+  const Json data = ToJson(report)["data"];
+  EXPECT_TRUE(data["path"].is_null());
+  EXPECT_TRUE(data["sha256"].is_null());
+}
+
+TEST(ToJsonText, ReplacesBytesThatAreNotUtf8) {
+  RunReport report = ExampleReport();
+  report.data.path = "w\xFCrfel.csv";
+  const std::string text = ToJsonText(report);
+  EXPECT_THAT(text, HasSubstr("w\xEF\xBF\xBDrfel.csv"));
+  EXPECT_TRUE(Json::accept(text));
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/layout.h"
+
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+TEST(DisplayWidth, CountsCharactersNotBytes) {
+  EXPECT_EQ(DisplayWidth("I_O"), 3);
+  EXPECT_EQ(DisplayWidth("τ_c"), 3);
+  EXPECT_EQ(DisplayWidth("±"), 1);
+  EXPECT_EQ(DisplayWidth(""), 0);
+}
+
+TEST(AlignedTable, AlignsSymbolsOfSeveralBytes) {
+  const std::vector<Column> columns = {{"symbol"}, {"value", true}, {"± error", false, 1}};
+  EXPECT_EQ(AlignedTable(columns, {{"b", "0.003", "± 0.1"}, {"τ_c", "12", "± 3"}, {"ω", "7", ""}}, 2),
+            "  symbol  value ± error\n"
+            "  b       0.003 ± 0.1\n"
+            "  τ_c        12 ± 3\n"
+            "  ω           7\n");
+}
+
+TEST(AlignedTable, LeavesOutEmptyColumns) {
+  EXPECT_EQ(AlignedTable({{"name"}, {"systematic"}, {"unit"}}, {{"b", "", "s"}}, 0), "name  unit\nb     s\n");
+}
+
+TEST(AlignedTable, LeavesOutAnEmptyLineOfHeaders) {
+  EXPECT_EQ(AlignedTable({{""}, {""}}, {{"file", "run.csv"}, {"rows", "12"}}, 1), " file  run.csv\n rows  12\n");
+}
+
+TEST(Paragraph, FillsLinesAndIndentsThem) {
+  EXPECT_EQ(Paragraph("one two  three four", "- ", 9), "- one two\n  three\n  four\n");
+}
+
+TEST(Paragraph, GivesAWordThatIsTooLongALineOfItsOwn) {
+  EXPECT_EQ(Paragraph("a incomprehensible b", "", 4), "a\nincomprehensible\nb\n");
+}
+
+TEST(Paragraph, MeasuresWidthInCharacters) { EXPECT_EQ(Paragraph("ττττ ωω", "", 7), "ττττ ωω\n"); }
+
+}  // namespace
+}  // namespace pendulum

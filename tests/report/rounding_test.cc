@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/rounding.h"
+
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+std::string Pdg(double value, double error) {
+  const ValueAndError text = PdgText(value, error);
+  return text.value + " ± " + text.error;
+}
+
+// The two examples of the Review of Particle Physics, Introduction, section 5.3.
+TEST(PdgText, GivesThePublishedExamples) {
+  EXPECT_EQ(Pdg(0.827, 0.119), "0.83 ± 0.12");
+  EXPECT_EQ(Pdg(0.827, 0.367), "0.8 ± 0.4");
+}
+
+TEST(PdgText, ChangesDigitsAtTheLimitsOfTheRule) {
+  EXPECT_EQ(Pdg(0.827, 0.100), "0.83 ± 0.10");
+  EXPECT_EQ(Pdg(0.827, 0.354), "0.83 ± 0.35");
+  EXPECT_EQ(Pdg(0.827, 0.3549), "0.83 ± 0.35");  // three digits are read, not rounded
+  EXPECT_EQ(Pdg(0.827, 0.355), "0.8 ± 0.4");
+  EXPECT_EQ(Pdg(0.827, 0.949), "0.8 ± 0.9");
+  EXPECT_EQ(Pdg(0.827, 0.950), "0.8 ± 1.0");
+  EXPECT_EQ(Pdg(0.827, 0.999), "0.8 ± 1.0");
+  EXPECT_EQ(Pdg(82.7, 9.5), "83 ± 10");
+}
+
+TEST(PdgText, RoundsHalvesOfTheErrorUpwardsInDecimalDigits) {
+  EXPECT_EQ(Pdg(4.778, 0.0075), "4.778 ± 0.008");
+  EXPECT_EQ(Pdg(4.778, 0.00145), "4.7780 ± 0.0015");
+}
+
+TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndForErrorsOfTensAndMore) {
+  EXPECT_EQ(Pdg(3e-6, 1.2e-7), "(3.00 ± 0.12)e-06");
+  EXPECT_EQ(Pdg(0.0001234, 5e-6), "0.000123 ± 0.000005");
+  EXPECT_EQ(Pdg(12345, 678), "(1.23 ± 0.07)e+04");
+  EXPECT_EQ(Pdg(12345, 25), "12345 ± 25");
+  EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
+}
+
+TEST(PdgText, TakesTheDecimalOfAnErrorLargerThanTheValue) {
+  EXPECT_EQ(Pdg(0.02, 12), "0 ± 12");
+  EXPECT_EQ(Pdg(0, 0.0012), "0.0000 ± 0.0012");
+  EXPECT_EQ(Pdg(-0.0001, 0.02), "0.000 ± 0.020");
+  EXPECT_EQ(Pdg(-0.0151, 0.02), "-0.015 ± 0.020");
+}
+
+TEST(PdgText, ShowsNoMoreDigitsThanMeanSomething) {
+  EXPECT_EQ(Pdg(0.079, 0), "0.079 ± 0");
+  EXPECT_EQ(Pdg(0.07900000000001234, 1e-16), "0.079 ± 1e-16");
+}
+
+TEST(RoundedText, GivesWhateverBelongsToAQuantityToTheSameDecimal) {
+  const Rounding milli = PdgRounding(0.0790, 0.0012);
+  EXPECT_EQ(RoundedText(0.08123, milli), "0.0812");
+  const Rounding micro = PdgRounding(3e-6, 1.2e-7);
+  EXPECT_EQ(RoundedText(2.76e-6, micro), "2.76e-06");
+}
+
+TEST(SignificantRounding, KeepsTrailingZeros) {
+  EXPECT_EQ(RoundedText(1.8, SignificantRounding(1.8, 3)), "1.80");
+  EXPECT_EQ(RoundedText(0.00017, SignificantRounding(0.00017, 3)), "0.000170");
+  EXPECT_EQ(RoundedText(1.7e-5, SignificantRounding(1.7e-5, 3)), "1.70e-05");
+}
+
+TEST(SignificantDigits, CountsFromTheFirstDigitThatIsNotZero) {
+  EXPECT_EQ(SignificantDigits(0.0790, {4, 0}), 3);
+  EXPECT_EQ(SignificantDigits(3.1e-6, {2, -6}), 3);
+  EXPECT_EQ(SignificantDigits(0.0001, {2, 0}), 1);
+}
+
+TEST(GeneralText, AgreesWithPrintf) {
+  EXPECT_EQ(GeneralText(0.5, 6), "0.5");
+  EXPECT_EQ(GeneralText(1234567, 6), "1.23457e+06");
+  EXPECT_EQ(FixedText(-1.005e300, 0).substr(0, 5), "-1005");
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/run_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/recording/window.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::Field;
+
+TEST(SummarizeData, TellsTheWindowFromTheWhole) {
+  Recording recording;
+  recording.path = "a.csv";
+  recording.time = Eigen::VectorXd::LinSpaced(101, 0, 10);
+  recording.value = Eigen::VectorXd::Zero(101);
+  recording.resolution = 0.5;
+  const DataSummary data = SummarizeData(recording, *SelectWindow(recording, 1.95, 4.05));
+  EXPECT_EQ(data.path, "a.csv");
+  EXPECT_EQ(data.samples, 101);
+  EXPECT_EQ(data.used_samples, 21);
+  EXPECT_DOUBLE_EQ(data.from, 2);
+  EXPECT_DOUBLE_EQ(data.to, 4);
+  EXPECT_DOUBLE_EQ(data.duration(), 2);
+  EXPECT_DOUBLE_EQ(data.sample_rate(), 10);
+  EXPECT_EQ(data.resolution, 0.5);
+}
+
+TEST(AllWarnings, SaysEachOnceDataFirst) {
+  RunReport report = ExampleReport();
+  report.fits.push_back(report.fits.front());
+  report.fits.back().warnings.push_back({"gap", "another gap"});
+  EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap"), Field(&Warning::code, "lack_of_fit"),
+                                               Field(&Warning::message, "another gap")));
+}
+
+TEST(Correlation, IsCovarianceOverBothStandardErrors) {
+  const FitReport fit = ExampleFit();
+  EXPECT_DOUBLE_EQ(Correlation(fit, 0, 1), 0.5);
+  EXPECT_EQ(Correlation(fit, 2, 2), 1);
+  EXPECT_EQ(Correlation(fit, 0, 2), 0);
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,289 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs fit_pendulum as its users do: exit codes, sentences, files.
+
+  fit_pendulum_cli_test.py PATH/TO/fit_pendulum
+"""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import swing
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TOOL = ""  # path of the binary, from the command line
+
+GOOD_DATA = swing.angle_csv()
+
+
+def strict_json(text):
+    """Parses JSON that must not hold NaN or Infinity."""
+
+    def refuse(constant):
+        raise ValueError(f"{constant} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("run.csv", GOOD_DATA)
+        self.write("rig.json", json.dumps(swing.RIG))
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def run_tool(self, *flags, stdout=subprocess.PIPE):
+        return subprocess.run([TOOL, *flags], cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE, text=True,
+                              encoding="utf-8", timeout=60, check=False)
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()}
+
+    def assert_refused(self, code, sentence, *flags):
+        """The tool stops with the code and one sentence that matches, and writes nothing."""
+        before = self.names()
+        run = self.run_tool(*flags)
+        self.assertEqual(run.returncode, code, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertRegex(run.stderr, r"\Afit_pendulum: [^\n]+\n\Z")
+        self.assertRegex(run.stderr, sentence)
+        self.assertEqual(self.names(), before)
+
+    def assert_data_refused(self, code, sentence, text):
+        self.write("bad.csv", text)
+        self.assert_refused(code, sentence, "--data", "bad.csv", "--json", "fit.json", "--residuals", "res.csv")
+
+    def assert_flags_refused(self, sentence, *flags):
+        self.assert_refused(2, sentence, "--json", "fit.json", *flags)
+
+
+class BadData(CliTest):
+    def test_missing_file(self):
+        self.assert_refused(3, "nowhere.csv", "--data", "nowhere.csv", "--json", "fit.json")
+
+    def test_empty_file(self):
+        self.assert_data_refused(5, "bad.csv", "")
+
+    def test_header_only(self):
+        self.assert_data_refused(5, "bad.csv", "time_s,angle_deg\n")
+
+    def test_unknown_column(self):
+        self.assert_data_refused(4, "bad.csv", GOOD_DATA.replace("angle_deg", "amplitude"))
+
+    def test_text_in_a_number(self):
+        self.assert_data_refused(4, "bad.csv:6:", GOOD_DATA.replace("\n0.040,", "\n0.04O,"))
+
+    def test_nan(self):
+        lines = GOOD_DATA.splitlines()
+        lines[10] = lines[10].split(",")[0] + ",nan"
+        self.assert_data_refused(4, "bad.csv:11:", "\n".join(lines) + "\n")
+
+    def test_three_samples(self):
+        self.assert_data_refused(5, "bad.csv", "time_s,angle_deg\n0,1\n0.1,2\n0.2,1\n")
+
+    def test_constant_signal(self):
+        rows = "".join(f"{k / 100},1.5\n" for k in range(1000))
+        self.assert_data_refused(5, "fit_pendulum: ", "time_s,angle_deg\n" + rows)
+
+    def test_window_beyond_the_recording(self):
+        self.assert_refused(5, "window", "--data", "run.csv", "--from", "100")
+
+
+class BadRig(CliTest):
+    def test_negative_mass(self):
+        self.write("bad.json", json.dumps({**swing.RIG, "bob_mass": -0.38}))
+        self.assert_refused(4, "bad.json.*bob_mass", "--data", "run.csv", "--rig", "bad.json", "--json", "fit.json")
+
+    def test_unknown_key(self):
+        self.write("bad.json", json.dumps({**swing.RIG, "colour": 1}))
+        self.assert_refused(4, "bad.json.*colour", "--data", "run.csv", "--rig", "bad.json")
+
+    def test_missing_file(self):
+        self.assert_refused(3, "nowhere.json", "--data", "run.csv", "--rig", "nowhere.json")
+
+
+class BadFlags(CliTest):
+    def test_unknown_flag(self):
+        self.assert_flags_refused("--residual is not a flag.*--residuals", "--data", "run.csv", "--residual", "r.csv")
+
+    def test_flag_without_value(self):
+        self.assert_flags_refused("--data needs a value", "--data")
+
+    def test_no_data(self):
+        self.assert_flags_refused("--data")
+
+    def test_positional_argument(self):
+        self.assert_flags_refused("'run.csv' belongs to no flag; .*--data", "run.csv")
+
+    def test_standard_input(self):
+        self.assert_flags_refused("standard input", "--data", "-")
+
+    def test_unknown_model_lists_those_there_are(self):
+        self.assert_flags_refused("linear, viscous, coulomb, drag", "--data", "run.csv", "--model", "columb")
+
+    def test_several_models(self):
+        self.assert_flags_refused("several models", "--data", "run.csv", "--model", "viscous,coulomb")
+
+    def test_fix_of_an_unknown_name(self):
+        self.assert_flags_refused("no parameter 'mass'", "--data", "run.csv", "--fix", "mass=1")
+
+    def test_fix_outside_the_bounds(self):
+        self.assert_flags_refused("viscous", "--data", "run.csv", "--fix", "viscous=-1")
+
+    def test_from_after_to(self):
+        self.assert_flags_refused("--from 5 s does not lie before --to 2 s", "--data", "run.csv", "--from", "5", "--to",
+                                  "2")
+
+    def test_flags_in_a_file_are_refused_with_2_too(self):
+        self.write("flags", "--colour=red\n")
+        self.assertEqual(self.run_tool("--flagfile", "flags").returncode, 2)
+
+
+class BadOutputs(CliTest):
+    def test_no_such_folder(self):
+        self.assert_refused(73, "no/fit.json", "--data", "run.csv", "--json", "no/fit.json", "--residuals", "res.csv")
+
+    def test_folder(self):
+        self.assert_refused(73, "directory", "--data", "run.csv", "--json", str(self.folder))
+
+    def test_is_checked_before_the_data_are_read(self):
+        self.assert_refused(73, "no/fit.json", "--data", "nowhere.csv", "--json", "no/fit.json")
+
+    def test_the_data_themselves(self):
+        self.assert_refused(2, "--residuals", "--data", "run.csv", "--residuals", "./run.csv")
+        self.assertEqual((self.folder / "run.csv").read_text(encoding="utf-8"), GOOD_DATA)
+
+    def test_one_file_twice(self):
+        self.assert_refused(2, "--json", "--data", "run.csv", "--json", "x", "--residuals", "./x")
+
+    def test_an_old_result_survives_a_failure(self):
+        self.write("fit.json", "old")
+        self.write("bad.csv", "time_s,angle_deg\n")
+        self.assertEqual(self.run_tool("--data", "bad.csv", "--json", "fit.json").returncode, 5)
+        self.assertEqual((self.folder / "fit.json").read_text(encoding="utf-8"), "old")
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_full_disk(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            run = self.run_tool("--data", "run.csv", stdout=full)
+        self.assertEqual(run.returncode, 73)
+        self.assertIn("No space left on device", run.stderr)
+
+
+class GoodRun(CliTest):
+    def fit(self, *flags):
+        run = self.run_tool("--data", "run.csv", "--json", "fit.json", *flags)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.stderr, "")
+        return run.stdout, strict_json((self.folder / "fit.json").read_text(encoding="utf-8"))
+
+    def test_finds_the_truth_within_four_standard_errors(self):
+        _, result = self.fit("--rig", "rig.json")
+        fit = result["fits"][0]
+        self.assertEqual(fit["status"], "converged")
+        self.assertEqual(set(fit["parameters"]), set(swing.TRUTH))
+        for name, parameter in fit["parameters"].items():
+            self.assertLess(abs(parameter["estimate"] - swing.TRUTH[name]), 4 * parameter["std_error"], name)
+        self.assertEqual(result["data"]["samples"], GOOD_DATA.count("\n") - 1)
+
+    def test_table_shows_what_people_look_for(self):
+        table, _ = self.fit("--rig", "rig.json")
+        for part in ("[[Parameters]]", "inertia", "kg m^2", " ± ", "95 % interval", "closed form", "th'' + ",
+                     " sin th = 0", "[[Correlations]]", "The rig file gives I_O"):
+            self.assertIn(part, table)
+
+    def test_without_a_rig_torques_are_in_units_of_gravitys(self):
+        table, result = self.fit()
+        self.assertIsNone(result["rig"])
+        inertia = result["fits"][0]["parameters"]["inertia"]
+        self.assertEqual(inertia["unit"], "s^2")
+        self.assertAlmostEqual(inertia["estimate"], swing.TRUTH["inertia"] / swing.GRAVITY_TORQUE, places=4)
+        self.assertIn("give --rig", " ".join(table.split()))
+
+    def test_same_bytes_every_time(self):
+        first = self.fit("--rig", "rig.json")
+        self.assertEqual(first, self.fit("--rig", "rig.json"))
+
+    def test_window_and_fixed_parameter(self):
+        _, result = self.fit("--from", "3", "--to", "9", "--fix", "zero_angle=0.01")
+        self.assertEqual(result["data"]["window_s"], [3, 9])
+        self.assertEqual(result["data"]["start"], "moving")
+        zero = result["fits"][0]["parameters"]["zero_angle"]
+        self.assertEqual((zero["estimate"], zero["std_error"], zero["fixed"]), (0.01, None, True))
+        self.assertIn("initial_angle", result["fits"][0]["parameters"])
+
+    def test_residuals_are_measured_minus_fitted(self):
+        self.fit("--residuals", "res.csv")
+        with open(self.folder / "res.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["time_s", "measured_rad", "fitted_rad", "residual_rad"])
+        self.assertEqual(len(rows), GOOD_DATA.count("\n") - 1)
+        for row in rows:
+            difference = float(row["measured_rad"]) - float(row["fitted_rad"])
+            self.assertAlmostEqual(float(row["residual_rad"]), difference, delta=1e-15)
+
+    def test_dash_makes_standard_output_the_file_alone(self):
+        run = self.run_tool("--data", "run.csv", "--json", "-")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(strict_json(run.stdout)["schema_version"], 1)
+
+    def test_leaves_only_the_files_asked_for(self):
+        before = self.names()
+        self.fit("--residuals", "/dev/null")
+        self.assertEqual(self.names(), before | {"fit.json"})
+
+    def test_gyro(self):
+        self.write("gyro.csv", swing.rate_csv())
+        run = self.run_tool("--data", "gyro.csv", "--from", "2", "--json", "-")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        fit = strict_json(run.stdout)["fits"][0]
+        self.assertIn("rms_residual_rad_s", fit["statistics"])
+        bias = fit["parameters"]["rate_bias"]
+        self.assertLess(abs(bias["estimate"] - 0.02), 4 * bias["std_error"])
+
+    def test_every_model(self):
+        for model in ("linear", "viscous", "coulomb", "drag"):
+            with self.subTest(model=model):
+                run = self.run_tool("--data", "run.csv", "--model", model, "--json", "fit.json")
+                self.assertIn(run.returncode, (0, 1), run.stderr)
+                result = strict_json((self.folder / "fit.json").read_text(encoding="utf-8"))
+                self.assertEqual(result["fits"][0]["model"], model)
+                self.assertEqual(run.returncode == 0, result["fits"][0]["status"] == "converged")
+
+    def test_the_textbooks_rig(self):
+        data = ROOT / "datasets" / "textbook_rig.csv"
+        if not data.exists():
+            self.skipTest("datasets/textbook_rig.csv is not there")
+        run = self.run_tool("--data", str(data), "--rig", str(data.with_suffix(".json")), "--json", "-")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertAlmostEqual(strict_json(run.stdout)["fits"][0]["parameters"]["inertia"]["estimate"], 0.079, places=3)
+
+
+class Answers(CliTest):
+    def test_help_shows_our_flags_only(self):
+        run = self.run_tool("--help")
+        self.assertEqual(run.returncode, 0)
+        for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "help", "version"):
+            self.assertRegex(run.stdout, rf"(?m)^  --{flag} ")
+        self.assertNotIn("logtostderr", run.stdout)
+
+    def test_version_is_the_projects(self):
+        project = re.search(r"VERSION ([0-9.]+)\n", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8").split("project(")[1])
+        self.assertEqual(self.run_tool("--version").stdout, f"fit_pendulum {project.group(1)}\n")
+
+
+if __name__ == "__main__":
+    TOOL = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

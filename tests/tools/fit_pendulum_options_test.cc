@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fit_pendulum_options.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+FitPendulumFlags WithData() {
+  FitPendulumFlags flags;
+  flags.data = "run.csv";
+  return flags;
+}
+
+/// The message with which flags are refused; empty when they are not.
+std::string Refusal(const FitPendulumFlags& flags) {
+  const auto options = MakeFitPendulumOptions(flags);
+  if (options) return "";
+  EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
+  return options.error().message;
+}
+
+std::string RefusalOfFix(const std::string& fix) {
+  FitPendulumFlags flags = WithData();
+  flags.fix = fix;
+  return Refusal(flags);
+}
+
+TEST(MakeFitPendulumOptions, HasDefaultsForAllButTheData) {
+  const auto options = MakeFitPendulumOptions(WithData());
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->data, "run.csv");
+  EXPECT_EQ(options->fit.model, "coulomb");
+  EXPECT_EQ(options->fit.start, StartChoice::kAuto);
+  EXPECT_THAT(options->fit.fixed, IsEmpty());
+  EXPECT_TRUE(std::isnan(options->from));
+  EXPECT_TRUE(std::isnan(options->to));
+  EXPECT_THAT(options->Outputs(), IsEmpty());
+  EXPECT_EQ(options->Inputs().size(), 1);
+}
+
+TEST(MakeFitPendulumOptions, TakesEveryFlag) {
+  FitPendulumFlags flags = WithData();
+  flags.rig = "rig.json";
+  flags.model = "drag";
+  flags.start = "moving";
+  flags.from = "-1.5";
+  flags.to = "2e1";
+  flags.fix = "drag=0.001,initial_angle=-0.25";
+  flags.json = "-";
+  flags.residuals = "r.csv";
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->fit.model, "drag");
+  EXPECT_EQ(options->fit.start, StartChoice::kMoving);
+  EXPECT_EQ(options->from, -1.5);
+  EXPECT_EQ(options->to, 20);
+  EXPECT_THAT(options->fit.fixed, ElementsAre(Pair("drag", 0.001), Pair("initial_angle", -0.25)));
+  EXPECT_THAT(options->Outputs(),
+              ElementsAre(testing::FieldsAre("--json", "-"), testing::FieldsAre("--residuals", "r.csv")));
+  EXPECT_THAT(options->Inputs(),
+              ElementsAre(testing::FieldsAre("--data", "run.csv"), testing::FieldsAre("--rig", "rig.json")));
+}
+
+TEST(MakeFitPendulumOptions, NeedsOneRecordingInAFile) {
+  FitPendulumFlags flags;
+  EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
+  flags.data = "-";
+  EXPECT_EQ(Refusal(flags), "--data - (standard input) is not supported; name a file");
+  flags.data = "a.csv,b.csv";
+  EXPECT_EQ(Refusal(flags), "--data 'a.csv,b.csv' has a comma; it takes one file, whose name has none");
+  flags.positional = {"run.csv"};
+  EXPECT_EQ(Refusal(flags), "'run.csv' belongs to no flag; the recording is given with --data");
+}
+
+TEST(MakeFitPendulumOptions, NamesTheModelsThereAre) {
+  FitPendulumFlags flags = WithData();
+  flags.model = "columb";
+  EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames());
+  for (const char* several : {"viscous,coulomb", "all"}) {
+    flags.model = several;
+    EXPECT_EQ(Refusal(flags),
+              "--model '" + std::string(several) + "' asks for several models; it takes one of " + MotionModelNames());
+  }
+}
+
+TEST(MakeFitPendulumOptions, KnowsThreeKindsOfStart) {
+  FitPendulumFlags flags = WithData();
+  flags.start = "held";
+  EXPECT_EQ(Refusal(flags), "--start is 'held'; it must be auto, release or moving");
+  flags.start = "release";
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->fit.start, StartChoice::kRelease);
+}
+
+TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
+  FitPendulumFlags flags = WithData();
+  flags.from = "3";
+  flags.to = "2.5";
+  EXPECT_EQ(Refusal(flags), "--from 3 s does not lie before --to 2.5 s");
+  flags.to = "3";
+  EXPECT_EQ(Refusal(flags), "--from 3 s does not lie before --to 3 s");
+  flags.to = "later";
+  EXPECT_EQ(Refusal(flags), "--to is 'later'; it must be a time in seconds on the file's clock");
+  flags.to.clear();
+  EXPECT_EQ(Refusal(flags), "");
+}
+
+TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
+  EXPECT_EQ(RefusalOfFix("drag=0.1"),
+            "--fix: the model 'coulomb' has no parameter 'drag'; its parameters are inertia, viscous, coulomb, "
+            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias");
+}
+
+TEST(MakeFitPendulumOptions, RefusesToFixWhatIsNotNameAndNumberOnce) {
+  EXPECT_EQ(RefusalOfFix("viscous"), "--fix: 'viscous' must be name=value");
+  EXPECT_EQ(RefusalOfFix("viscous=1,,coulomb=2"), "--fix: '' must be name=value");
+  EXPECT_EQ(RefusalOfFix("viscous=1,"), "--fix: 'viscous=1,' ends with a comma");
+  EXPECT_EQ(RefusalOfFix("viscous=b"), "--fix viscous is 'b'; it must be a number in SI units");
+  EXPECT_EQ(RefusalOfFix("viscous=nan"), "--fix viscous is 'nan'; it must be a number in SI units");
+  EXPECT_EQ(RefusalOfFix("viscous=1,viscous=2"), "--fix: 'viscous' stands there twice");
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/flags.h"
+
+#include <gflags/gflags.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+DEFINE_string(shape, "round", "Shape of the bob.");
+DEFINE_double(width, 1, "Width, m.");
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class FlagsTest : public testing::Test {
+ protected:
+  static Result<ParsedFlags> Parse(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "/usr/bin/weigh_pendulum");
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    return ParseFlags(static_cast<int>(argv.size()), argv.data(), __FILE__, "Weighs.\n");
+  }
+
+ private:
+  gflags::FlagSaver saver_;  // puts all flags back after each test
+};
+
+TEST_F(FlagsTest, SetsFlagsAndLeavesOtherArguments) {
+  const auto parsed = Parse({"--shape=flat", "--width", "-0.5", "bob"});
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(FLAGS_shape, "flat");
+  EXPECT_EQ(FLAGS_width, -0.5);
+  EXPECT_EQ(parsed->answer, "");
+  EXPECT_THAT(parsed->positional, ElementsAre("bob"));
+}
+
+TEST_F(FlagsTest, RefusesWithoutSettingAnything) {
+  const auto parsed = Parse({"--width=2", "--shap=flat"});
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(parsed.error().message, "--shap is not a flag of this tool; did you mean --shape?");
+  EXPECT_EQ(FLAGS_width, 1);
+}
+
+TEST_F(FlagsTest, AnswersHelpWithTheToolsFlags) {
+  const auto parsed = Parse({"--help"});
+  ASSERT_TRUE(parsed);
+  EXPECT_THAT(parsed->answer, HasSubstr("Weighs.\n  --shape    Shape of the bob.\n  --width    Width, m.\n"));
+  EXPECT_THAT(parsed->answer, HasSubstr("  --version  Print the version.\n"));
+  EXPECT_THAT(parsed->answer, Not(HasSubstr("flagfile")));
+}
+
+TEST_F(FlagsTest, AnswersVersion) {
+  const auto parsed = Parse({"--version"});
+  ASSERT_TRUE(parsed);
+  EXPECT_THAT(parsed->answer, testing::MatchesRegex("weigh_pendulum [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+// What only gflags itself finds: the flags in a file.
+TEST_F(FlagsTest, ExitsWithTwoWhenGflagsRefuses) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(Parse({"--flagfile=/nonexistent/flags"}), testing::ExitedWithCode(2), "");
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/output.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace pendulum {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+/// A directory of its own for each test.
+class OutputTest : public testing::Test {
+ protected:
+  OutputTest() {
+    std::string name = (fs::temp_directory_path() / "output_test_XXXXXX").string();
+    EXPECT_NE(::mkdtemp(name.data()), nullptr);
+    directory_ = name;
+  }
+  OutputTest(const OutputTest&) = delete;
+  OutputTest& operator=(const OutputTest&) = delete;
+  ~OutputTest() override {
+    std::error_code error;
+    fs::remove_all(directory_, error);
+  }
+
+  std::string Path(const std::string& name) const { return (directory_ / name).string(); }
+
+  void Create(const std::string& name, const std::string& text) const { std::ofstream(Path(name)) << text; }
+
+  std::string Text(const std::string& name) const {
+    std::ifstream file(Path(name));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_)) names.push_back(entry.path().filename());
+    return names;
+  }
+
+  fs::path directory_;
+};
+
+/// The status of outputs --a, --b, ... given their paths, and of inputs --in; "" when all is well.
+std::string Check(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, StatusCode code) {
+  std::vector<NamedFile> out;
+  std::vector<NamedFile> in;
+  for (const std::string& path : outputs) out.push_back({"--out" + std::to_string(out.size()), path});
+  for (const std::string& path : inputs) in.push_back({"--in", path});
+  const auto checked = CheckOutputs(out, in);
+  if (checked) return "";
+  EXPECT_EQ(checked.error().code, code) << checked.error().message;
+  return checked.error().message;
+}
+
+std::string Unwritable(const std::string& path) { return Check({path}, {}, StatusCode::kCannotWrite); }
+
+std::string Write(const std::vector<Output>& outputs) {
+  const auto written = WriteOutputs(outputs);
+  if (written) return "";
+  EXPECT_EQ(written.error().code, StatusCode::kCannotWrite);
+  return written.error().message;
+}
+
+TEST_F(OutputTest, CheckLeavesNoTrace) {
+  Create("old", "kept");
+  EXPECT_EQ(Check({Path("new"), Path("old"), "-", "/dev/null"}, {Path("data")}, StatusCode::kCannotWrite), "");
+  EXPECT_THAT(Names(), UnorderedElementsAre("old"));
+  EXPECT_EQ(Text("old"), "kept");
+}
+
+TEST_F(OutputTest, CheckRefusesWhatCannotBeWritten) {
+  EXPECT_EQ(Unwritable(directory_), "cannot write " + directory_.string() + ": it is a directory");
+  EXPECT_EQ(Unwritable(Path("no/x")), "cannot write " + Path("no/x") + ": No such file or directory");
+  EXPECT_EQ(Unwritable(Path("new/")), "cannot write " + Path("new/") + ": No such file or directory");
+  EXPECT_THAT(Unwritable(Path(std::string(300, 'x'))), HasSubstr("File name too long"));
+  Create("file", "");
+  EXPECT_THAT(Unwritable(Path("file/x")), HasSubstr("Not a directory"));
+}
+
+TEST_F(OutputTest, CheckRefusesAReadOnlyFileAndDirectory) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  Create("file", "");
+  fs::permissions(Path("file"), fs::perms::owner_read);
+  EXPECT_THAT(Unwritable(Path("file")), HasSubstr("Permission denied"));
+  fs::permissions(directory_, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(Unwritable(Path("new")), HasSubstr("Permission denied"));
+  fs::permissions(directory_, fs::perms::owner_all);
+}
+
+TEST_F(OutputTest, CheckRefusesTwoNamesOfOneFile) {
+  Create("data", "x");
+  fs::create_symlink("data", Path("link"));
+  fs::create_hard_link(Path("data"), Path("hard"));
+  const auto same = [&](const std::string& a, const std::string& b) {
+    return Check({a, b}, {}, StatusCode::kInvalidArgument);
+  };
+  EXPECT_EQ(same(Path("new"), Path("./new")), "--out0 " + Path("new") + " is the output of --out1 too");
+  EXPECT_NE(same(Path("link"), Path("data")), "");
+  EXPECT_NE(same("-", "/dev/stdout"), "");
+  EXPECT_EQ(same("/dev/null", "/dev/null"), "");
+  EXPECT_EQ(Check({Path("hard")}, {Path("data")}, StatusCode::kInvalidArgument),
+            "--out0 " + Path("hard") + " would overwrite the input of --in");
+}
+
+TEST_F(OutputTest, CheckSeesThroughALinkToAFileThatIsNotThereYet) {
+  fs::create_symlink("new", Path("link"));
+  EXPECT_NE(Check({Path("link"), Path("new")}, {}, StatusCode::kInvalidArgument), "");
+}
+
+TEST_F(OutputTest, WritesAndReplacesWholeFiles) {
+  Create("old", "a much longer text than the new one");
+  EXPECT_EQ(Write({{Path("old"), "new"}, {Path("b"), std::string(1 << 20, 'b')}}), "");
+  EXPECT_EQ(Text("old"), "new");
+  EXPECT_EQ(Text("b").size(), 1 << 20);
+  EXPECT_THAT(Names(), UnorderedElementsAre("old", "b"));
+}
+
+TEST_F(OutputTest, WritesNothingWhenOneFileCannotBeWritten) {
+  EXPECT_EQ(Write({{Path("a"), "a"}, {Path("no/b"), "b"}}),
+            "cannot write " + Path("no/b") + ": No such file or directory");
+  EXPECT_TRUE(Names().empty());
+}
+
+TEST_F(OutputTest, KeepsThePermissionsOfAFileItReplacesAndFollowsTheUmaskForANewOne) {
+  Create("old", "");
+  fs::permissions(Path("old"), fs::perms(0640));
+  const mode_t mask = ::umask(027);
+  EXPECT_EQ(Write({{Path("old"), "x"}, {Path("new"), "x"}}), "");
+  ::umask(mask);
+  EXPECT_EQ(fs::status(Path("old")).permissions(), fs::perms(0640));
+  EXPECT_EQ(fs::status(Path("new")).permissions(), fs::perms(0640));
+}
+
+TEST_F(OutputTest, ReplacesTheTargetOfALinkAndKeepsTheLink) {
+  fs::create_directory(Path("deep"));
+  Create("deep/file", "old");
+  fs::create_symlink("deep/file", Path("link"));
+  EXPECT_EQ(Write({{Path("link"), "new"}}), "");
+  EXPECT_TRUE(fs::is_symlink(Path("link")));
+  EXPECT_EQ(Text("deep/file"), "new");
+}
+
+TEST_F(OutputTest, WritesIntoANamedPipe) {
+  ASSERT_EQ(::mkfifo(Path("pipe").c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = Text("pipe"); });
+  EXPECT_EQ(Check({Path("pipe")}, {}, StatusCode::kCannotWrite), "");
+  EXPECT_EQ(Write({{Path("pipe"), "through"}}), "");
+  reader.join();
+  EXPECT_EQ(read, "through");
+  EXPECT_TRUE(fs::is_fifo(Path("pipe")));
+}
+
+TEST_F(OutputTest, WritesIntoDevicesAndTellsWhenTheyAreFull) {
+  EXPECT_EQ(Write({{"/dev/null", "gone"}}), "");
+  EXPECT_EQ(Write({{"/dev/full", "x"}}), "cannot write /dev/full: No space left on device");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(IsStandardOutput, HasThreeNames) {
+  EXPECT_TRUE(IsStandardOutput("-"));
+  EXPECT_TRUE(IsStandardOutput("/dev/stdout"));
+  EXPECT_TRUE(IsStandardOutput("/dev/fd/1"));
+  EXPECT_FALSE(IsStandardOutput("./-"));
+}
+
+}  // namespace
+}  // namespace pendulum

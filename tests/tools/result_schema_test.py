@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the published schema against the example that json_test.cc proves, and against results of fit_pendulum.
+
+  result_schema_test.py PATH/TO/fit_pendulum       needs python3-jsonschema
+"""
+
+import copy
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import jsonschema
+
+import swing
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCHEMA = json.loads((ROOT / "include/pendulum/report/result.schema.json").read_text(encoding="utf-8"))
+EXAMPLE = json.loads((ROOT / "tests/report/result_example.json").read_text(encoding="utf-8"))
+VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
+TOOL = ""  # path of the binary, from the command line
+
+
+class Schema(unittest.TestCase):
+    def assert_refused(self, change):
+        """The example is no longer valid once `change` has been at it."""
+        result = copy.deepcopy(EXAMPLE)
+        change(result)
+        self.assertNotEqual(result, EXAMPLE)
+        self.assertFalse(VALIDATOR.is_valid(result))
+
+    def test_is_a_schema(self):
+        VALIDATOR.check_schema(SCHEMA)
+
+    def test_holds_for_the_example(self):
+        VALIDATOR.validate(EXAMPLE)
+
+    def test_wants_every_key_and_no_other(self):
+        for path in ([], ["tool"], ["data"], ["fits", 0], ["fits", 0, "parameters", "viscous"], ["fits", 0, "noise"],
+                     ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"], ["warnings", 0]):
+            part = EXAMPLE
+            for step in path:
+                part = part[step]
+            for key in part:
+                with self.subTest(path=path, missing=key):
+                    self.assert_refused(lambda result, key=key: self.at(result, path).pop(key))
+            with self.subTest(path=path, unknown=True):
+                self.assert_refused(lambda result: self.at(result, path).update(unknown=1))
+
+    @staticmethod
+    def at(result, path):
+        for step in path:
+            result = result[step]
+        return result
+
+    def test_wants_a_reason_for_a_missing_standard_error(self):
+        self.assert_refused(lambda result: result["fits"][0]["parameters"]["coulomb"].pop("reason"))
+        self.assert_refused(lambda result: result["fits"][0]["derived"]["damping_ratio"].pop("reason"))
+
+    def test_wants_one_unit_for_residuals(self):
+        self.assert_refused(lambda result: result["data"].update(resolution_rad_s=None))
+
+    def test_knows_four_outcomes(self):
+        self.assert_refused(lambda result: result["fits"][0].update(status="ok"))
+
+    def test_wants_no_statistics_of_a_failed_fit(self):
+        self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
+
+
+class Results(unittest.TestCase):
+    def assert_valid(self, data, *flags, rig=None):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "run.csv").write_text(data, encoding="utf-8")
+            if rig:
+                (pathlib.Path(folder) / "rig.json").write_text(json.dumps(rig), encoding="utf-8")
+                flags = (*flags, "--rig", "rig.json")
+            run = subprocess.run([TOOL, "--data", "run.csv", "--json", "-", *flags], cwd=folder, capture_output=True,
+                                 text=True, encoding="utf-8", timeout=60, check=False)
+        self.assertIn(run.returncode, (0, 1), run.stderr)
+        VALIDATOR.validate(json.loads(run.stdout))
+
+    def test_angle_without_a_rig(self):
+        self.assert_valid(swing.angle_csv(), "--model", "viscous")
+
+    def test_angle_with_an_uncertain_rig(self):
+        self.assert_valid(swing.angle_csv(), rig={**swing.RIG, "bob_mass": {"value": 0.38, "std_dev": 0.001}})
+
+    def test_rate(self):
+        self.assert_valid(swing.rate_csv())
+
+    def test_resolution_in_the_file(self):
+        self.assert_valid("# resolution: 0.00001\n" + swing.angle_csv(), "--from", "2.5")
+
+    def test_fixed_parameters_and_one_at_its_bound(self):
+        frictionless = {**swing.TRUTH, "viscous": 0.0, "coulomb": 0.0}
+        self.assert_valid(swing.angle_csv(truth=frictionless), "--model", "drag", "--fix", "zero_angle=0.01")
+
+
+if __name__ == "__main__":
+    TOOL = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""simulate_pendulum as a process: files, exit codes and messages. simulate_pendulum_cli_test.py PATH_OF_simulate_pendulum."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BINARY = pathlib.Path()
+START = "release_angle=0.4,release_time=0.5"
+MOTION = f"inertia=0.04,viscous=0.001,{START}"
+NOISY = ["--set", MOTION, "--noise", "0.2", "--resolution", "0.1985"]
+
+
+class SimulatePendulumTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def run_tool(self, *arguments):
+        return subprocess.run([BINARY, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=60)
+
+    def check_refused(self, code, message, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(message, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(list(self.folder.glob("*.csv")), [])
+
+    def check_made(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done.stdout
+
+    def write_rig(self, text):
+        (self.folder / "rig.json").write_text(text)
+
+    def test_writes_recording_and_truth(self):
+        self.write_rig('{"gravity_torque": 1.8}')
+        self.check_made(*NOISY, "--rig", "rig.json", "--out", "run.csv", "--truth", "truth.json", "--duration", "2")
+        lines = (self.folder / "run.csv").read_text().splitlines()
+        self.assertEqual(lines[1:3], ["# resolution: 0.1985", "time_s,angle_deg"])
+        self.assertEqual(len(lines), 3 + 200)
+        truth = json.loads((self.folder / "truth.json").read_text())
+        self.assertEqual(list(truth), ["inertia", "viscous", "coulomb", "release_angle", "release_time", "zero_angle",
+                                       "sigma_rad", "resolution_rad", "seed"])
+        self.assertEqual(truth["inertia"], 0.04)
+
+    def test_rig_turns_si_into_the_same_motion(self):
+        self.write_rig('{"gravity_torque": 2}')
+        with_rig = self.check_made("--set", MOTION, "--rig", "rig.json", "--out", "-")
+        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", "--out", "-")
+        self.assertEqual(with_rig, without)
+
+    def test_same_seed_gives_the_same_bytes_and_another_seed_others(self):
+        once = self.check_made(*NOISY, "--out", "-", "--seed", "5", "--jitter", "0.001")
+        again = self.check_made(*NOISY, "--out", "-", "--seed", "5", "--jitter", "0.001")
+        other = self.check_made(*NOISY, "--out", "-", "--seed", "6", "--jitter", "0.001")
+        self.assertEqual(once, again)
+        self.assertNotEqual(once.splitlines()[4:], other.splitlines()[4:])
+
+    def test_count_numbers_the_files_and_counts_the_seeds_up(self):
+        self.check_made(*NOISY, "--out", "run.csv", "--truth", "truth.json", "--count", "3", "--seed", "5")
+        names = sorted(path.name for path in self.folder.iterdir())
+        self.assertEqual(names, [f"run_00{i}.csv" for i in (1, 2, 3)] + [f"truth_00{i}.json" for i in (1, 2, 3)])
+        alone = self.check_made(*NOISY, "--out", "-", "--seed", "7")
+        self.assertEqual((self.folder / "run_003.csv").read_text(), alone)
+        self.assertEqual(json.loads((self.folder / "truth_003.json").read_text())["seed"], 7)
+
+    def test_clock_starts_where_asked_and_stamps_increase(self):
+        text = self.check_made("--set", MOTION, "--out", "-", "--start_time", "100", "--jitter", "0.02")
+        times = [float(line.split(",")[0]) for line in text.splitlines()[2:]]
+        self.assertEqual(times[0], 100)
+        self.assertTrue(all(before < after for before, after in zip(times, times[1:])))
+
+    def test_units_name_the_column(self):
+        for unit, column in (("deg", "angle_deg"), ("rad", "angle_rad"), ("deg_s", "gyro_deg_s"), ("rad_s", "gyro_rad_s")):
+            text = self.check_made("--set", MOTION, "--out", "-", "--unit", unit)
+            self.assertEqual(text.splitlines()[1], f"time_s,{column}")
+
+    def test_an_existing_recording_is_replaced_and_survives_a_failure(self):
+        run = self.folder / "run.csv"
+        run.write_text("old")
+        self.assertEqual(self.run_tool("--set", MOTION, "--out", "run.csv", "--truth", "none/t.json").returncode, 73)
+        self.assertEqual(run.read_text(), "old")
+        self.check_made("--set", MOTION, "--out", "run.csv")
+        self.assertTrue(run.read_text().startswith("# simulate_pendulum "))
+
+    def test_help_and_version_succeed_on_stdout(self):
+        self.assertIn("linear, viscous, coulomb", self.check_made("--help"))
+        self.assertRegex(self.check_made("--version"), r"^simulate_pendulum \d+\.\d+\.\d+\n$")
+
+    def test_wrong_flags_exit_2(self):
+        self.check_refused(2, "did you mean --noise?", "--niose", "1", "--set", MOTION, "--out", "run.csv")
+        self.check_refused(2, "abc", "--rate", "abc", "--set", MOTION, "--out", "run.csv")
+        self.check_refused(2, "--out is missing", "--set", MOTION)
+        self.check_refused(2, "'stray' belongs to no flag", "stray", "--set", MOTION, "--out", "run.csv")
+        self.check_refused(2, "there is no drag here; the names are inertia, viscous, coulomb, release_angle",
+                           "--set", f"drag=1,{MOTION}", "--out", "run.csv")
+        self.check_refused(2, "is the output of --truth too", "--set", MOTION, "--out", "run.csv", "--truth", "run.csv")
+
+    def test_missing_rig_exits_3_and_a_bad_one_4(self):
+        self.check_refused(3, "rig.json", "--rig", "rig.json", "--set", MOTION, "--out", "run.csv")
+        self.write_rig('{"gravity_torque": -1}')
+        self.check_refused(4, "gravity_torque", "--rig", "rig.json", "--set", MOTION, "--out", "run.csv")
+
+    def test_the_rig_is_not_overwritten(self):
+        self.write_rig('{"gravity_torque": 1}')
+        self.check_refused(2, "--rig", "--rig", "rig.json", "--set", MOTION, "--out", "rig.json")
+        self.assertEqual((self.folder / "rig.json").read_text(), '{"gravity_torque": 1}')
+
+    def test_a_pendulum_that_never_moves_exits_5(self):
+        self.check_refused(5, "never moves", "--set", f"inertia=0.04,coulomb=0.5,{START}", "--out", "run.csv")
+        self.check_refused(5, "comes after the last sample", "--set", "inertia=1,release_angle=1,release_time=99",
+                           "--out", "run.csv")
+
+    def test_an_output_that_cannot_be_written_exits_73(self):
+        self.check_refused(73, "cannot write", "--set", MOTION, "--out", "none/run.csv")
+        self.check_refused(73, "cannot write", "--set", MOTION, "--out", ".")
+
+
+if __name__ == "__main__":
+    BINARY = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()
