@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/jet.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "pendulum/model/series.h"
+#include "reference_run.h"
+
+/// What Ceres' users write without this library: a trajectory by Runge-Kutta steps from sample to sample,
+/// differentiated automatically, six parameters in one block of fixed size.
+namespace pendulum::benchmarks {
+
+/// Gravity, viscous and dry friction over the inertia [1/s^2, 1/s, 1/s^2].
+template <typename T>
+struct Ratios {
+  T gravity;
+  T viscous;
+  T coulomb;
+
+  Ratios(double gravity_torque, const T* p)
+      : gravity(gravity_torque / p[0]), viscous(p[1] / p[0]), coulomb(p[2] / p[0]) {}
+};
+
+/// One step of the classical Runge-Kutta method for θ'' = f(θ, θ'), the sums over θ' written out. `step` [s] is a
+/// double or a T.
+template <typename T, typename Step, typename Acceleration>
+void RungeKuttaStep(const Step& step, const Acceleration& f, T& angle, T& rate) {
+  const Step half = 0.5 * step;
+  const T k1 = f(angle, rate);
+  const T rate2 = rate + half * k1;
+  const T k2 = f(angle + half * rate, rate2);
+  const T rate3 = rate + half * k2;
+  const T k3 = f(angle + half * rate2, rate3);
+  const T k4 = f(angle + step * rate3, rate + step * k3);
+  angle += step * (rate + step * (k1 + k2 + k3) * (1.0 / 6.0));
+  rate += step * (k1 + 2.0 * (k2 + k3) + k4) * (1.0 / 6.0);
+}
+
+/// Friction's sign smoothed to tanh(ω / 0.01 rad/s): the straightforward way.
+template <typename T>
+class SmoothedSwing {
+ public:
+  SmoothedSwing(double gravity_torque, const T* p) : ratios_(gravity_torque, p), angle_(p[3]), rate_(0.0) {}
+
+  /// Moves on by a step [s], a double or a T.
+  template <typename Step>
+  void Advance(const Step& step) {
+    RungeKuttaStep(
+        step,
+        [&](const T& angle, const T& rate) {
+          using std::sin, std::tanh;
+          return -(ratios_.gravity * sin(angle) + ratios_.viscous * rate + ratios_.coulomb * tanh(100.0 * rate));
+        },
+        angle_, rate_);
+  }
+
+  const T& angle() const { return angle_; }
+
+ private:
+  Ratios<T> ratios_;
+  T angle_;
+  T rate_;
+};
+
+/// Reversals located within their step, their instants differentiated by the implicit function theorem: the careful
+/// way, and of about the accuracy that the steps allow.
+template <typename T>
+class LocatedSwing {
+ public:
+  LocatedSwing(double gravity_torque, const T* p) : ratios_(gravity_torque, p), angle_(p[3]), rate_(0.0) { Turn(); }
+
+  /// Moves on by a step [s], a double or a T.
+  template <typename Step>
+  void Advance(const Step& step) {
+    if (direction_ == 0) return;
+    T angle = angle_;
+    T rate = rate_;
+    RungeKuttaStep(step, Law(), angle, rate);
+    if (direction_ * Value(rate) <= 0) return AdvanceThroughReversal(T(step));
+    angle_ = angle;
+    rate_ = rate;
+  }
+
+  const T& angle() const { return angle_; }
+
+ private:
+  auto Law() const {
+    return [this](const T& angle, const T& rate) {
+      using std::sin;
+      return -(ratios_.gravity * sin(angle) + ratios_.viscous * rate + direction_ * ratios_.coulomb);
+    };
+  }
+
+  /// Direction of the motion that starts from rest at this angle.
+  void Turn() {
+    const double pull = Value(ratios_.gravity) * std::sin(Value(angle_));
+    direction_ = std::abs(pull) <= Value(ratios_.coulomb) ? 0.0 : pull > 0 ? -1.0 : 1.0;
+  }
+
+  void AdvanceThroughReversal(const T& step) {
+    const double since_start = TimeToReversal(Value(step));
+    RungeKuttaStep(since_start, Law(), angle_, rate_);
+    T reversal(since_start);
+    if constexpr (DualNumber<T>) reversal.v = -rate_.v / Law()(angle_, T(0.0)).a;
+    rate_ = T(0.0);
+    Turn();
+    Advance(T(step - reversal));
+  }
+
+  /// Newton's method on the rate at the end of a shortened step, in doubles, from the chord.
+  double TimeToReversal(double step) const {
+    const auto law = [&](double angle, double rate) {
+      return -(Value(ratios_.gravity) * std::sin(angle) + Value(ratios_.viscous) * rate +
+               direction_ * Value(ratios_.coulomb));
+    };
+    double time = Value(rate_) == 0 ? step : -Value(rate_) / law(Value(angle_), Value(rate_));
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      double angle = Value(angle_);
+      double rate = Value(rate_);
+      RungeKuttaStep(time, law, angle, rate);
+      const double change = rate / law(angle, rate);
+      time -= change;
+      if (std::abs(change) < 1e-14) break;
+    }
+    return time;
+  }
+
+  Ratios<T> ratios_;
+  T angle_;
+  T rate_;
+  double direction_ = 0;
+};
+
+/// Residuals of the reference run, measured - modelled, for ceres::AutoDiffCostFunction.
+template <template <typename> typename Swing>
+struct RungeKuttaResiduals {
+  const Recording& recording;
+  double gravity_torque;
+
+  template <typename T>
+  bool operator()(const T* p, T* residuals) const {
+    const Eigen::VectorXd& time = recording.time;
+    Swing<T> swing(gravity_torque, p);
+    const T& release_time = p[4];
+    for (Eigen::Index i = 0; i < time.size(); ++i) {
+      if (time[i] > Value(release_time)) {
+        const bool first = i == 0 || time[i - 1] <= Value(release_time);
+        if (first) {
+          swing.Advance(T(time[i] - release_time));
+        } else {
+          swing.Advance(time[i] - time[i - 1]);
+        }
+      }
+      residuals[i] = recording.value[i] - (swing.angle() + p[5]);
+    }
+    return true;
+  }
+};
+
+template <template <typename> typename Swing>
+using RungeKuttaCost = ceres::AutoDiffCostFunction<RungeKuttaResiduals<Swing>, ceres::DYNAMIC, 6>;
+
+/// The cost function over a recording, which must outlive it.
+template <template <typename> typename Swing>
+RungeKuttaCost<Swing> MakeRungeKuttaCost(const Recording& recording) {
+  return {new RungeKuttaResiduals<Swing>{recording, ReferenceRig().gravity_torque.value},
+          static_cast<int>(recording.size())};
+}
+
+/// Where Ceres arrives from a start with DENSE_QR and its default tolerances, and what it counts on the way.
+struct CeresSolution {
+  Parameters parameters;
+  ceres::Solver::Summary summary;
+};
+
+inline CeresSolution SolveByCeres(ceres::CostFunction& cost, const Parameters& start) {
+  CeresSolution solution{start, {}};
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(problem_options);
+  problem.AddResidualBlock(&cost, nullptr, solution.parameters.data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  ceres::Solve(options, &problem, &solution.summary);
+  return solution;
+}
+
+}  // namespace pendulum::benchmarks

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include "pendulum/fitting/start_values.h"
+#include "pendulum/recording/read_recording.h"
+#include "pendulum/report/json.h"
+#include "pendulum_benchmarks.h"
+#include "reference_run.h"
+
+namespace pendulum::benchmarks {
+namespace {
+
+FitOptions ReferenceOptions() {
+  FitOptions options;
+  options.rig = ReferenceRig();
+  return options;
+}
+
+void Report(benchmark::State& state, const FitReport& fit) {
+  Parameters estimates;
+  for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i] = fit.parameters[i].estimate;
+  state.counters["std_errors_from_optimum"] = DistanceFromOptimum(estimates);
+  state.counters["max_error_rad"] = fit.trace_error;
+  state.counters["iterations"] = fit.solver.iterations;
+  state.counters["samples"] = static_cast<double>(fit.residual.size());
+}
+
+void FindStartValues(benchmark::State& state) {
+  const Recording recording = ReferenceRecording();
+  const MotionModel model = Expect(FindMotionModel("coulomb"));
+  for (auto _ : state) {
+    Result<StartValues> values = EstimateStartValues(recording, model, StartChoice::kAuto);
+    if (!values) return state.SkipWithError(values.error().message.c_str());
+    benchmark::DoNotOptimize(values);
+  }
+}
+
+/// From raw samples to estimates, sigma and covariance.
+void Fit(benchmark::State& state, int samples) {
+  const Recording recording = ReferenceRecording(samples);
+  const FitOptions options = ReferenceOptions();
+  Result<FitReport> fit;
+  for (auto _ : state) {
+    fit = FitRecording(recording, options);
+    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (fit->termination != Termination::kConverged) return state.SkipWithError(fit->reason.c_str());
+  }
+  Report(state, *fit);
+  // The optimum is that of the reference run.
+  if (samples != kSamples) state.counters.erase("std_errors_from_optimum");
+}
+
+void ParseCsv(benchmark::State& state) {
+  const std::string csv = ReferenceCsv();
+  for (auto _ : state) {
+    Result<Recording> recording = ParseRecording(csv, "reference.csv");
+    if (!recording) return state.SkipWithError(recording.error().message.c_str());
+    benchmark::DoNotOptimize(recording);
+  }
+  state.counters["samples"] = kSamples;
+}
+
+/// A file that is deleted with this object.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() / ("pendulum_benchmarks_" + std::to_string(getpid()) + ".csv")) {
+    std::ofstream(path_) << text;
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile(TemporaryFile&&) = delete;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What fit_pendulum does between its flags and its output.
+Result<std::string> FitFile(const std::filesystem::path& path, const FitOptions& options, RunReport& report) {
+  const Result<Recording> recording = ReadRecording(path);
+  if (!recording) return tl::unexpected(recording.error());
+  Result<FitReport> fit = FitRecording(*recording, options);
+  if (!fit) return tl::unexpected(fit.error());
+  report = {SummarizeData(*recording, *recording), options.rig, {}, recording->warnings};
+  report.fits.push_back(*std::move(fit));
+  return ToJsonText(report);
+}
+
+void FileToJson(benchmark::State& state) {
+  const TemporaryFile file(ReferenceCsv());
+  const FitOptions options = ReferenceOptions();
+  RunReport report;
+  for (auto _ : state) {
+    Result<std::string> json = FitFile(file.path(), options, report);
+    if (!json) return state.SkipWithError(json.error().message.c_str());
+    benchmark::DoNotOptimize(json);
+  }
+  Report(state, report.fits.front());
+}
+
+}  // namespace
+
+void RegisterFitBenchmarks() {
+  benchmark::RegisterBenchmark("start_values", FindStartValues)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("fit", Fit, kSamples)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("parse_csv", ParseCsv)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("file_to_json", FileToJson)->Unit(benchmark::kMicrosecond);
+  for (const int samples : {1'000, 10'000, 100'000, 1'000'000}) {
+    benchmark::RegisterBenchmark(("fit/samples:" + std::to_string(samples)).c_str(), Fit, samples)
+        ->Unit(benchmark::kMicrosecond);
+  }
+}
+
+}  // namespace pendulum::benchmarks
