@@ -145,8 +145,9 @@ def check_listed(root, path):
         return
     inner = path.relative_to("include/pendulum" if path.parts[0] == "include" else path.parts[0])
     if path.parts[0] == "tests":
-        listed = {f"{test[0]}_test.cc" for test in cmake_calls(root, "tests", "pendulum_add_test")}
-        is_listed = not path.stem.endswith("_test") or str(inner) in listed
+        function = "pendulum_add_process_test" if path.suffix == ".py" else "pendulum_add_test"
+        listed = {test[0] for test in cmake_calls(root, "tests", function)}
+        is_listed = not path.stem.endswith("_test") or str(inner.with_suffix("")).removesuffix("_test") in listed
     elif path.stem.endswith("_main"):
         is_listed = [path.stem.removesuffix("_main")] in cmake_calls(root, "src", "pendulum_add_tool")
     else:
@@ -161,6 +162,7 @@ def check_listed(root, path):
 def complaints(root):
     """Every offence in the tree, as "path:line: what is wrong"."""
     paths = [path.relative_to(root) for top in ("include", "src", "tests") for path in cpp_text.sources(root / top)]
+    paths += [path.relative_to(root) for path in sorted((root / "tests").rglob("*_test.py"))]
     found = list(check_links(root))
     for check in (check_includes, check_words, check_companions, check_listed):
         for path in paths:
@@ -211,6 +213,7 @@ BAD_TREE = {
     "src/model/friction/alone.cc": ("", "tests/model/friction/alone_test.cc is missing"),
     "include/pendulum/model/unlisted.h": ("", "src/CMakeLists.txt does not name it"),
     "src/tools/unlisted_main.cc": ("", "src/CMakeLists.txt does not name it"),
+    "tests/tools/unlisted_test.py": ("", "tests/CMakeLists.txt does not name it"),
     "tests/model/unlisted_test.cc": ("", "tests/CMakeLists.txt does not name it"),
 }
 

@@ -88,8 +88,9 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   std::vector<Extremum> extrema;
   if (points.size() >= 3) {
     const double half_width = 0.15 * TypicalSpacing(recording.time, points);
-    // The first candidate is where the recording began, not where the pendulum turned, unless data lie on both sides.
-    const bool turned = recording.time[points[0]] - recording.time[0] > half_width;
+    // The first candidate may be where the recording began, or lie in its hold: then nothing before it is elsewhere.
+    const auto before = recording.value.head(points[0] + 1).array() - recording.value[points[0]];
+    const bool turned = before.abs().maxCoeff() > std::min(threshold, 0.1 * range);
     for (std::size_t i = turned ? 0 : 1; i < points.size(); ++i) {
       extrema.push_back(Vertex(recording, points[i], half_width));
     }

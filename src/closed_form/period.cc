@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
+
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/parameter.h"
@@ -36,6 +39,17 @@ std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const 
   return {phase, time};
 }
 
+/// ω0 from the slope of the crossings, with amplitudes as they are at another ω0.
+double FrequencyAtAmplitudesOf(const HalfSwingTable& table, double natural_frequency) {
+  const auto [phase, time] = CrossingsAgainstPhase(table, natural_frequency);
+  double phase_phase = 0, phase_time = 0;
+  for (std::size_t i = 0; i < phase.size(); ++i) {
+    phase_phase += phase[i] * phase[i];
+    phase_time += phase[i] * time[i];
+  }
+  return phase_phase / phase_time;
+}
+
 }  // namespace
 
 double PeriodRatio(double amplitude) {
@@ -56,18 +70,19 @@ double AngleAmplitude(Quantity quantity, double amplitude, double natural_freque
 }
 
 double NaturalFrequency(const HalfSwingTable& table) {
-  // An angle's amplitude does not depend on ω0 and one pass is final; a rate's does, and the correction converges fast.
-  double natural_frequency = kUnbounded;
-  for (int pass = 0; pass < (table.quantity == Quantity::kAngle ? 1 : 8); ++pass) {
-    const auto [phase, time] = CrossingsAgainstPhase(table, natural_frequency);
-    double phase_phase = 0, phase_time = 0;
-    for (std::size_t i = 0; i < phase.size(); ++i) {
-      phase_phase += phase[i] * phase[i];
-      phase_time += phase[i] * time[i];
-    }
-    natural_frequency = phase_phase / phase_time;
-  }
-  return natural_frequency;
+  if (table.quantity == Quantity::kAngle) return FrequencyAtAmplitudesOf(table, kUnbounded);
+  // A rate's amplitudes depend on ω0 too: the larger ω0, the smaller they are and the smaller the ω0 they give, so that
+  // the two agree once. At the smallest ω0 the largest peak can belong to, the pendulum would swing to the top.
+  double peak = 0;
+  for (const HalfSwing& half : table.half_swings) peak = std::max({peak, half.before, half.after});
+  const double smallest = 0.5 * peak;
+  const double largest = std::max(FrequencyAtAmplitudesOf(table, smallest), 1.01 * smallest);
+  const auto excess = [&](double frequency) { return FrequencyAtAmplitudesOf(table, frequency) - frequency; };
+  if (!(excess(smallest) > 0)) return smallest;
+  std::uintmax_t most_evaluations = 100;
+  const boost::math::tools::eps_tolerance<double> precise(40);
+  const auto [low, high] = boost::math::tools::toms748_solve(excess, smallest, largest, precise, most_evaluations);
+  return 0.5 * (low + high);
 }
 
 }  // namespace pendulum

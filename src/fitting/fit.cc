@@ -11,35 +11,32 @@
 namespace pendulum {
 namespace {
 
-/// Largest difference of the readings to those of a trajectory of a hundredth of the tolerance.
-double TraceError(TrajectoryCost& cost, const std::vector<double>& parameters, double tolerance) {
-  Eigen::VectorXd readings, finer;
-  cost.set_tolerance(tolerance);
-  if (!cost.Readings(parameters, &readings, nullptr)) return kUnbounded;
+/// The readings at a solution, and their largest difference to those of a hundredth of the tolerance.
+bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution) {
+  Eigen::VectorXd finer;
   cost.set_tolerance(1e-2 * tolerance);
-  if (!cost.Readings(parameters, &finer, nullptr)) return kUnbounded;
+  const bool finer_traced = cost.Readings(solution.parameters, &finer, nullptr);
   cost.set_tolerance(tolerance);
-  return (readings - finer).cwiseAbs().maxCoeff();
+  if (!cost.Readings(solution.parameters, &solution.readings, nullptr) || !finer_traced) return false;
+  solution.trace_error = (solution.readings - finer).cwiseAbs().maxCoeff();
+  return true;
 }
 
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
-Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
-                         double* trace_error) {
-  const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.noise), 1e-12);
+Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
+  constexpr double kSmallestError = 1e-12;  // rad; rounding over a long recording comes near it
+  constexpr int kMostRefinements = 3;
+  const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.noise), kSmallestError);
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
   Solution solution = Search(cost, problem.data, problem.first_guess, problem.solve);
-  *trace_error = TraceError(cost, solution.parameters, tolerance);
-  for (int attempt = 0; solution.usable && *trace_error > max_error && attempt < 3; ++attempt) {
+  for (int refinement = 0; solution.usable; ++refinement) {
+    solution.usable = MeasureAccuracy(cost, tolerance, solution);
+    if (solution.trace_error <= max_error || refinement == kMostRefinements) break;
     tolerance = std::max(1e-2 * tolerance, 1e-17);
     cost.set_tolerance(tolerance);
-    const Solution coarse = solution;
-    solution = Solve(cost, coarse.parameters, problem.solve);
-    solution.iterations += coarse.iterations;
-    solution.evaluations += coarse.evaluations;
-    solution.rivals = coarse.rivals;
-    *trace_error = TraceError(cost, solution.parameters, tolerance);
+    solution = Continue(cost, solution, problem.solve);
   }
   return solution;
 }
@@ -68,11 +65,7 @@ Result<FitReport> FitRecording(const Recording& recording, const FitOptions& opt
   const Result<FitProblem> problem = MakeFitProblem(recording, options);
   if (!problem) return tl::unexpected(problem.error());
   const auto cost = MakeTrajectoryCost(problem->model, problem->start.start, problem->data);
-  double trace_error = 0;
-  const Solution solution = SolveToAccuracy(*cost, *problem, options, &trace_error);
-  FitReport report = Judge(recording, options, *problem, *cost, solution);
-  report.trace_error = trace_error;
-  return report;
+  return Judge(recording, options, *problem, *cost, SolveToAccuracy(*cost, *problem, options));
 }
 
 }  // namespace pendulum

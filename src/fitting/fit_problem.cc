@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/model/friction/registry.h"
 
@@ -37,9 +38,8 @@ Result<void> FixParameters(const FitOptions& options, FitProblem& problem) {
     }
     const bool is_inertia = info->name == kInertia.name;
     if (!std::isfinite(value) || value < info->lower || value > info->upper || (is_inertia && value == 0)) {
-      return Error(StatusCode::kInvalidArgument,
-                   name + " cannot be fixed at " + std::to_string(value) + "; it must be " +
-                       (is_inertia ? "positive" : "at least " + std::to_string(info->lower)));
+      return Error(StatusCode::kInvalidArgument, name + " cannot be fixed at " + NumberText(value) + "; it must be " +
+                                                     (is_inertia ? "positive" : "at least " + NumberText(info->lower)));
     }
     const auto i = static_cast<std::size_t>(info - problem.infos.begin());
     problem.first_guess[i] = (value - problem.offset[i]) / problem.si_per_internal[i];

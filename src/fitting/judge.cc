@@ -99,14 +99,14 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   report.termination = Termination::kNotConverged;
   if (unexplained > kMostUnexplained) {
     report.reason = "this is not a free pendulum's swing: the best trajectory leaves " +
-                    FormatNumber(100 * unexplained, 2) +
+                    NumberText(100 * unexplained, 2) +
                     " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
   } else if (!(shift <= kLargestShift)) {
-    report.reason = "a step of " + FormatNumber(shift, 2) +
-                    " standard errors is left to make; the solver said: " + solution.message;
+    report.reason =
+        "a step of " + NumberText(shift, 2) + " standard errors is left to make; the solver said: " + solution.message;
   } else {
     report.termination = Termination::kConverged;
-    report.reason = "the step left to make is below " + FormatNumber(kLargestShift, 1) + " standard errors";
+    report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
   }
 }
 
@@ -194,11 +194,11 @@ void WarnOfLackOfFit(const Recording& recording, FitReport& report) {
   residuals.value = report.residual;
   const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
   if (!(ratio > kRatio) || report.noise.lag1_correlation < kCorrelation) return;
-  const std::string times = ratio > kLargestSaid ? "more than 100" : FormatNumber(ratio, 2);
+  const std::string times = ratio > kLargestSaid ? "more than 100" : NumberText(ratio, 2);
   report.warnings.push_back(
       {"lack_of_fit", "the residuals are " + times +
                           " times the noise between neighbouring samples and follow each other (correlation " +
-                          FormatNumber(report.noise.lag1_correlation, 2) +
+                          NumberText(report.noise.lag1_correlation, 2) +
                           "): the model does not describe everything in this recording, and the error bars, which take "
                           "the residuals as independent, are too small"});
 }
@@ -214,18 +214,19 @@ void WarnOfRivals(const FitProblem& problem, const Solution& solution, FitReport
     if (samples * std::log(rival.sum / solution.sum) > 9 || std::abs(distance) < error) continue;
     report.warnings.push_back(
         {"another_minimum", "a second minimum at " + std::string(problem.infos[holding].name) + " " +
-                                FormatNumber(problem.si_per_internal[holding] * rival.parameters[holding], 6) +
+                                NumberText(problem.si_per_internal[holding] * rival.parameters[holding], 6) +
                                 " explains the recording nearly as well"});
     return;
   }
 }
 
 /// A stop that the data can hardly date: at the last reversals gravity is within three standard errors of dry friction.
-void WarnOfKink(const FitProblem& problem, const TraceSummary& trace, FitReport& report) {
+void WarnOfKink(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution, FitReport& report) {
   const int holding = problem.solve.holding_parameter;
   if (holding < 0 || !report.parameters[holding].std_error) return;
   const double error = *report.parameters[holding].std_error / problem.si_per_internal[holding];
-  if (!(trace.last_reversal_margin < 3 * error)) return;
+  const TraceSummary trace = cost.Trace(solution.parameters);
+  if (!(trace.stop_time < problem.data.time.back() && trace.last_reversal_margin < 3 * error)) return;
   report.warnings.push_back(
       {"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " +
                              std::string(problem.infos[holding].name) +
@@ -234,21 +235,23 @@ void WarnOfKink(const FitProblem& problem, const TraceSummary& trace, FitReport&
 
 }  // namespace
 
-FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
-                const Solution& solution) {
+FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                const TrajectoryCost& cost, const Solution& solution) {
   FitReport report;
   report.model = problem.model;
   report.start = problem.start.start;
   report.quantity = recording.quantity;
   report.has_rig = options.rig.has_value();
   report.solver = {solution.iterations, solution.evaluations, solution.message};
-  if (!solution.usable || !cost.Readings(solution.parameters, &report.fitted, nullptr)) {
+  if (!solution.usable) {
     report.termination = Termination::kFailed;
     report.reason = "no trajectory can be traced from the start values: " + solution.message;
     SetParameters(options, problem, Optimum{}, solution, report);
     return report;
   }
+  report.fitted = solution.readings;
   report.residual = recording.value - report.fitted;
+  report.trace_error = solution.trace_error;
   const Optimum optimum = Linearize(problem, cost, solution);
   report.noise = {problem.data.scale * std::sqrt(optimum.variance), Lag1Correlation(report.residual)};
   report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum.free.size()), recording.resolution);
@@ -258,7 +261,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   if (report.termination == Termination::kConverged) SetCovariance(problem, optimum, report);
   WarnOfLackOfFit(recording, report);
   WarnOfRivals(problem, solution, report);
-  WarnOfKink(problem, cost.Trace(solution.parameters), report);
+  WarnOfKink(problem, cost, solution, report);
   return report;
 }
 

@@ -124,6 +124,15 @@ Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const Sol
   return solution;
 }
 
+Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options) {
+  Solution solution = Solve(cost, from.parameters, options);
+  if (!solution.usable) solution.parameters = from.parameters;
+  solution.iterations += from.iterations;
+  solution.evaluations += from.evaluations;
+  solution.rivals = from.rivals;
+  return solution;
+}
+
 namespace {
 
 /// A start explains the data when it leaves less than this share of their variance.
@@ -132,15 +141,6 @@ constexpr double kExplained = 0.1;
 double Variance(const TrajectoryData& data) {
   const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
   return (value.array() - value.mean()).square().sum() / (data.scale * data.scale);
-}
-
-/// Keeps the work of all solves in the count of the one that is returned.
-Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options) {
-  Solution solution = Solve(cost, from.parameters, options);
-  if (!solution.usable) solution.parameters = from.parameters;
-  solution.iterations += from.iterations;
-  solution.evaluations += from.evaluations;
-  return solution;
 }
 
 std::size_t SamplesBefore(const TrajectoryData& data, double time) {
@@ -228,7 +228,9 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vec
   const double begin = MotionStart(data, start);
   double sum = 0;
   const bool traced = cost.SumOfSquares(start, &sum);
-  const double stop = traced ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
+  const int holding = options.holding_parameter;
+  const bool may_rest = traced && holding >= 0 && start[holding] > 0;
+  const double stop = may_rest ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
   if (!traced || sum > kExplained * Variance(data)) {
     const double cycle = 2 * kPi * std::sqrt(start[0]);
     solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
@@ -238,9 +240,8 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vec
                             {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
   }
   solution = Continue(cost, solution, options);
-  const int holding = options.holding_parameter;
-  if (!solution.usable || holding < 0 || options.fixed[holding] || !ReachesRest(cost, data, solution.parameters))
-    return solution;
+  if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
+  if (!ReachesRest(cost, data, solution.parameters)) return solution;
   return TryNeighbours(cost, solution, options);
 }
 

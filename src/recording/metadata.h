@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include "csv.h"
@@ -25,11 +26,21 @@ inline bool IsCount(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-inline bool IsRange(std::string_view text) {
+/// The ends of the values a sensor can give, in the unit of the file.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+inline bool ParseRange(std::string_view text, Range& range) {
   const std::size_t comma = std::min(text.find(','), text.size());
-  double low = 0, high = 0;
-  return ParseNumber(Trim(text.substr(0, comma)), low) &&
-         ParseNumber(Trim(text.substr(std::min(comma + 1, text.size()))), high) && low < high;
+  return ParseNumber(Trim(text.substr(0, comma)), range.low) &&
+         ParseNumber(Trim(text.substr(std::min(comma + 1, text.size()))), range.high) && range.low < range.high;
+}
+
+inline bool IsRange(std::string_view text) {
+  Range range;
+  return ParseRange(text, range);
 }
 
 inline bool IsObject(std::string_view text) { return text.starts_with('{') && text.ends_with('}'); }
@@ -43,7 +54,7 @@ struct MetadataKey {
 
 constexpr std::array kMetadataKeys = {
     MetadataKey{"resolution", IsZeroOrMore, "a number, 0 or more, in the unit of the file", false},
-    MetadataKey{"range", IsRange, "two increasing numbers: low,high", true},
+    MetadataKey{"range", IsRange, "two increasing numbers: low,high", false},
     MetadataKey{"sample_rate_hz", IsPositive, "a positive number", false},
     MetadataKey{"clock_scale", IsPositive, "a positive number", true},
     MetadataKey{"clock_scale_std_dev", IsZeroOrMore, "a number, 0 or more", true},

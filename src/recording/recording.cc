@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/recording.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
+
+#include "pendulum/base/format.h"
 
 namespace pendulum {
 namespace {
@@ -50,13 +50,6 @@ Result<Recording> MakeRecording(Recording recording) {
     }
   }
   return recording;
-}
-
-std::string NumberText(double value) {
-  constexpr std::size_t kLongest = 32;  // "-2.2250738585072014e-308" has 24 characters.
-  std::array<char, kLongest> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
 }
 
 }  // namespace pendulum

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "pendulum/base/format.h"
+
 namespace pendulum {
 namespace {
 

@@ -7,7 +7,10 @@
 namespace pendulum {
 namespace {
 
-std::string Blanks(int count) { return std::string(static_cast<std::size_t>(std::max(count, 0)), ' '); }
+std::string Blanks(int count) {
+  std::string blanks;
+  return blanks.append(static_cast<std::size_t>(std::max(count, 0)), ' ');
+}
 
 std::string Padded(const std::string& cell, int width, bool right_aligned) {
   const std::string blanks = Blanks(width - DisplayWidth(cell));
@@ -48,6 +51,7 @@ std::string AlignedTable(const std::vector<Column>& columns, const std::vector<s
                          int indent) {
   const std::vector<int> widths = ColumnWidths(columns, rows);
   std::vector<std::string> headers;
+  headers.reserve(columns.size());
   for (const Column& column : columns) headers.push_back(column.header);
   std::string table = Line(columns, widths, headers, indent);
   if (table == "\n") table.clear();

@@ -48,8 +48,10 @@ struct RoundedError {
 
 RoundedError RoundError(double error) {
   const auto [digits, exponent] = LeadingDigitsOf(error);
-  if (digits <= 354) return {exponent - 1, (digits + 5) / 10 * std::pow(10.0, exponent - 1)};
-  if (digits <= 949) return {exponent, (digits + 50) / 100 * std::pow(10.0, exponent)};
+  const int tens = (digits + 5) / 10;
+  const int hundreds = (digits + 50) / 100;
+  if (digits <= 354) return {exponent - 1, tens * std::pow(10.0, exponent - 1)};
+  if (digits <= 949) return {exponent, hundreds * std::pow(10.0, exponent)};
   return {exponent, std::pow(10.0, exponent + 1)};
 }
 

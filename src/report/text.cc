@@ -151,8 +151,9 @@ std::string MissingErrors(const FitReport& fit) {
     }
   }
   std::string text;
-  for (const auto& [reason, names] : names_by_reason)
-    text += Prose("No standard error of " + names + ": " + reason + ".");
+  for (const auto& [reason, names] : names_by_reason) {
+    text += Prose(std::string("No standard error of ").append(names).append(": ").append(reason).append("."));
+  }
   return text;
 }
 
@@ -214,6 +215,7 @@ std::string CorrelationText(const FitReport& fit) {
                    [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
   if (size < 2) return "";
   std::vector<Row> rows;
+  rows.reserve(pairs.size());
   for (const auto& [correlation, names] : pairs) rows.push_back({names, FixedText(correlation, 3)});
   return "[[Correlations]] (those below 0.1 in size are not listed)\n" +
          AlignedTable({{""}, {"", true}}, rows, kIndent);

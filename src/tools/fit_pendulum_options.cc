@@ -88,8 +88,8 @@ Result<void> ParseTime(std::string_view flag, const std::string& value, double& 
 }
 
 Result<void> ParseWindow(const FitPendulumFlags& flags, FitPendulumOptions& options) {
-  if (const auto parsed = ParseTime("--from", flags.from, options.from); !parsed) return parsed;
-  if (const auto parsed = ParseTime("--to", flags.to, options.to); !parsed) return parsed;
+  if (auto parsed = ParseTime("--from", flags.from, options.from); !parsed) return parsed;
+  if (auto parsed = ParseTime("--to", flags.to, options.to); !parsed) return parsed;
   if (options.from >= options.to) {
     return Wrong("--from " + flags.from + " s does not lie before --to " + flags.to + " s");
   }

@@ -158,9 +158,10 @@ bool IsStandardOutput(const std::string& path) { return path == "-" || path == "
 
 Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const auto& [flag, path] = outputs[i];
+    const std::string& path = outputs[i].path;
     const auto refuse = [&](const std::string& why) {
-      return Error(StatusCode::kInvalidArgument, flag + " " + path + " " + why);
+      return Error(StatusCode::kInvalidArgument,
+                   std::string(outputs[i].flag).append(" ").append(path).append(" ").append(why));
     };
     std::error_code error;
     const bool device = fs::is_character_file(path, error);
@@ -172,7 +173,7 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
     }
     if (IsStandardOutput(path)) continue;
     if (IsRedirectionOfStdout(path)) return refuse("is where standard output goes; give - instead");
-    if (const auto writable = CheckWritable(path); !writable) return writable;
+    if (auto writable = CheckWritable(path); !writable) return writable;
   }
   return {};
 }
@@ -182,15 +183,15 @@ Result<void> WriteOutputs(std::span<const Output> outputs) {
   for (const Output& output : outputs) {
     if (IsStandardOutput(output.path) || IsStream(output.path)) continue;
     files.emplace_back(output.path);
-    if (const auto opened = files.back().Open(); !opened) return opened;
-    if (const auto written = files.back().Write(output.text); !written) return written;
+    if (auto opened = files.back().Open(); !opened) return opened;
+    if (auto written = files.back().Write(output.text); !written) return written;
   }
   for (StagedFile& file : files) {
-    if (const auto committed = file.Commit(); !committed) return committed;
+    if (auto committed = file.Commit(); !committed) return committed;
   }
   for (const Output& output : outputs) {
     if (!IsStandardOutput(output.path) && !IsStream(output.path)) continue;
-    if (const auto written = WriteStream(output); !written) return written;
+    if (auto written = WriteStream(output); !written) return written;
   }
   return {};
 }

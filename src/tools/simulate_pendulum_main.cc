@@ -122,9 +122,12 @@ Result<void> Simulate(const SimulateFlags& flags) {
 int Run(int argc, char** argv) {
   const auto parsed = ParseFlags(argc, argv, __FILE__, Usage());
   if (!parsed) return Fail(parsed.error());
-  const Result<void> done = parsed->answer.empty() ? Simulate(CurrentFlags(parsed->positional))
-                                                   : WriteOutputs(std::vector<Output>{{"-", parsed->answer}});
-  return done ? 0 : Fail(done.error());
+  if (!parsed->answer.empty()) {
+    const auto written = WriteOutputs(std::vector<Output>{{"-", parsed->answer}});
+    return written ? 0 : Fail(written.error());
+  }
+  const auto simulated = Simulate(CurrentFlags(parsed->positional));
+  return simulated ? 0 : Fail(simulated.error());
 }
 
 }  // namespace

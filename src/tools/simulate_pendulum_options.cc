@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/model/motion_model.h"
 #include "tools/command_line.h"

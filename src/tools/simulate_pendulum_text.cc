@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/version.h"
 
 namespace pendulum {

@@ -12,6 +12,7 @@
 
 #include <boost/random/normal_distribution.hpp>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/trajectory/tolerance.h"
 
@@ -193,6 +194,10 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
     const double time = recording.time[i];
     const double truth = is_angle ? trajectory->Angle(time) : trajectory->Rate(time);
     recording.value[i] = SensorReading(truth + options.zero + noise[i], options.resolution, options.range);
+  }
+  if (!recording.value.allFinite()) {
+    return Error(StatusCode::kFailedPrecondition,
+                 "the motion cannot be traced with these parameters: a number overflows");
   }
   return MakeRecording(std::move(recording));
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
@@ -34,7 +35,7 @@ Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const doub
                                                    " parameters, not " + std::to_string(parameters.size()));
   }
   if (!(parameters[0] > 0)) {
-    return Error(StatusCode::kInvalidArgument, "inertia is " + std::to_string(parameters[0]) + "; it must be positive");
+    return Error(StatusCode::kInvalidArgument, "inertia is " + NumberText(parameters[0]) + "; it must be positive");
   }
   Trajectory trajectory;
   FrictionModels::Visit(model.friction, [&]<typename F>() {

@@ -16,7 +16,7 @@ TEST(ExitCode, IsThatOfTheDocumentedTable) {
   EXPECT_EQ(ExitCode(StatusCode::kNotFound), 3);
   EXPECT_EQ(ExitCode(StatusCode::kDataLoss), 4);
   EXPECT_EQ(ExitCode(StatusCode::kFailedPrecondition), 5);
-  EXPECT_EQ(ExitCode(StatusCode::kInternal), 70);      // EX_SOFTWARE of sysexits.h
+  EXPECT_EQ(ExitCode(StatusCode::kInternal), 70);     // EX_SOFTWARE of sysexits.h
   EXPECT_EQ(ExitCode(StatusCode::kCannotWrite), 73);  // EX_CANTCREAT
 }
 

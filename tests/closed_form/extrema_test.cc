@@ -137,12 +137,6 @@ TEST(FindExtrema, RefusesFewerThanThreeTurningPointsAndSaysHowManyThereWere) {
   EXPECT_TRUE(FindExtrema(Sample(wave, 2.0, 100)));
 }
 
-TEST(FindExtrema, RefusesNoiseAloneBecauseNothingStandsOutOfIt) {
-  const auto found = FindExtrema(WithNoise(Sample([](double) { return 0.3; }, 10, 100), 0.01, 5));
-  ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
-}
-
 // ---- Noise between neighbours -------------------------------------------------------------------------------------
 
 TEST(SuccessiveDifferenceNoise, IsTheStandardDeviationOfWhiteNoise) {

@@ -16,6 +16,7 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/recording/recording.h"
+#include "tests/model/undamped_pendulum.h"
 
 namespace pendulum {
 
@@ -55,13 +56,8 @@ inline Recording WithoutSamples(const Recording& recording, double from, double 
   return Must(MakeRecording(std::move(rest)));
 }
 
-/// Angle of the undamped pendulum that turns at `amplitude` at t = 0: sin(θ/2) = k cd(ω0 t, k), k = sin(amplitude/2).
-inline double UndampedAngle(double amplitude, double natural_frequency, double t) {
-  const double k = std::sin(0.5 * amplitude);
-  return 2 * std::asin(k * boost::math::jacobi_cd(k, natural_frequency * t));
-}
-
-/// Its rate, the time derivative of the above.
+/// Rate of the undamped pendulum that turns at `amplitude` at t = 0, the time derivative of sin(θ/2) = k cd(ω0 t, k), k
+/// = sin(amplitude / 2).
 inline double UndampedRate(double amplitude, double natural_frequency, double t) {
   const double k = std::sin(0.5 * amplitude);
   return -2 * natural_frequency * k * std::cos(0.5 * amplitude) * boost::math::jacobi_sd(k, natural_frequency * t);

@@ -92,8 +92,7 @@ TEST(PhysicalParameters, HaveTheDocumentedUnitsWithAndWithoutARig) {
 }
 
 TEST(ParameterInfo, AngleTimeAndRateDoNotScaleWithGravity) {
-  for (const ParameterInfo& info :
-       {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias}) {
+  for (const ParameterInfo& info : {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias}) {
     EXPECT_FALSE(info.scales_with_gravity()) << info.name;
     EXPECT_EQ(info.lower, -kUnbounded) << info.name;
     EXPECT_EQ(info.upper, kUnbounded) << info.name;

@@ -169,9 +169,17 @@ TEST(ParseRecording, WarnsOfMetadataThatWouldChangeTheNumbers) {
       "# sample_rate_hz: 100\n# lost_samples: 3\n# operator: resolution unknown\n# range: -45, 45\n"
       "# clock_scale: 1.0001\n# clock_scale_std_dev: 0\n# rig: {}\n# calibration: {\"input\": \"counts\"}\n" +
       kHeader + Rows());
-  ASSERT_EQ(recording.warnings.size(), 5);
+  ASSERT_EQ(recording.warnings.size(), 4);
   EXPECT_EQ(recording.warnings[0].code, "metadata_not_applied");
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:4: the metadata range is not applied");
+  EXPECT_EQ(recording.warnings[0].message, "run.csv:5: the metadata clock_scale is not applied");
+}
+
+TEST(ParseRecording, CountsTheReadingsAtAnEndOfTheDeclaredRange) {
+  const std::string values = "0,-45\n1,-44\n2,0\n3,1\n4,2\n5,44\n6,45\n7,45\n";
+  const Recording recording = RecordingOf("# range: -45,45\n# resolution: 1\ntime_s,angle_deg\n" + values);
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].code, "saturated");
+  EXPECT_EQ(recording.warnings[0].message.substr(0, 11), "3 readings ");
 }
 
 // ---- What is refused ---------------------------------------------------------------------------------------------

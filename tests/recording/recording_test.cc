@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/base/format.h"
+
 namespace pendulum {
 namespace {
 
@@ -92,15 +94,6 @@ TEST(MakeRecording, RefusesAResolutionThatIsNoSpacing) {
     recording.resolution = bad;
     EXPECT_EQ(FaultOf(recording).code, StatusCode::kDataLoss);
     EXPECT_THAT(FaultOf(recording).message, StartsWith("the resolution is " + NumberText(bad)));
-  }
-}
-
-TEST(NumberText, IsTheShortestTextThatReadsBack) {
-  EXPECT_EQ(NumberText(0.1), "0.1");
-  EXPECT_EQ(NumberText(-3), "-3");
-  EXPECT_EQ(NumberText(0.1 + 0.2), "0.30000000000000004");  // IEEE 754: the best known of all examples.
-  for (const double number : {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::denorm_min(), 1e22}) {
-    EXPECT_EQ(std::strtod(NumberText(number).c_str(), nullptr), number);
   }
 }
 

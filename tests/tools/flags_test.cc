@@ -20,6 +20,7 @@ class FlagsTest : public testing::Test {
   static Result<ParsedFlags> Parse(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "/usr/bin/weigh_pendulum");
     std::vector<char*> argv;
+    argv.reserve(arguments.size());
     for (std::string& argument : arguments) argv.push_back(argument.data());
     return ParseFlags(static_cast<int>(argv.size()), argv.data(), __FILE__, "Weighs.\n");
   }

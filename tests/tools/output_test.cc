@@ -24,14 +24,13 @@ using testing::UnorderedElementsAre;
 /// A directory of its own for each test.
 class OutputTest : public testing::Test {
  protected:
-  OutputTest() {
+  void SetUp() override {
     std::string name = (fs::temp_directory_path() / "output_test_XXXXXX").string();
-    EXPECT_NE(::mkdtemp(name.data()), nullptr);
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
     directory_ = name;
   }
-  OutputTest(const OutputTest&) = delete;
-  OutputTest& operator=(const OutputTest&) = delete;
-  ~OutputTest() override {
+
+  void TearDown() override {
     std::error_code error;
     fs::remove_all(directory_, error);
   }
@@ -56,10 +55,10 @@ class OutputTest : public testing::Test {
 
 /// The status of outputs --a, --b, ... given their paths, and of inputs --in; "" when all is well.
 std::string Check(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, StatusCode code) {
-  std::vector<NamedFile> out;
-  std::vector<NamedFile> in;
-  for (const std::string& path : outputs) out.push_back({"--out" + std::to_string(out.size()), path});
-  for (const std::string& path : inputs) in.push_back({"--in", path});
+  std::vector<NamedFile> out(outputs.size());
+  std::vector<NamedFile> in(inputs.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {"--out" + std::to_string(i), outputs[i]};
+  for (std::size_t i = 0; i < in.size(); ++i) in[i] = {"--in", inputs[i]};
   const auto checked = CheckOutputs(out, in);
   if (checked) return "";
   EXPECT_EQ(checked.error().code, code) << checked.error().message;

@@ -355,6 +355,7 @@ TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
       {unusable, "7 samples; at least 8", [](SyntheticOptions& o) { o.duration = 0.07; }},
       {unusable, "it never moves", [](SyntheticOptions& o) { o.release_angle = 0; }},
       {unusable, "the release at 20 s comes after", [](SyntheticOptions& o) { o.release_time = 20; }},
+      {unusable, "cannot be traced", [](SyntheticOptions& o) { o.parameters[0] = 1e-320; }},
   };
   for (const Refusal& refusal : refusals) {
     SyntheticOptions options = TextbookRig();

@@ -71,8 +71,7 @@ TEST(UndampedPendulum, FollowsTheEllipticFunctionsFromOneTo179Degrees) {
     const Trajectory trajectory = Released(kViscousModel, {kReferenceInertia, 0}, amplitude, 20);
     double largest = 0;
     for (double time = 0; time <= 20; time += 0.0937) {
-      largest =
-          std::max(largest, std::abs(trajectory.Angle(time) - UndampedAngle(amplitude, kReferenceInertia, time)));
+      largest = std::max(largest, std::abs(trajectory.Angle(time) - UndampedAngle(amplitude, kReferenceInertia, time)));
     }
     EXPECT_THAT(largest, Le(1e-9)) << degrees << " deg";
   }
@@ -182,8 +181,7 @@ class LinearPendulum {
 
 void ExpectLinearMotion(double viscous, double coulomb, double angle, double duration) {
   const LinearPendulum closed(kReferenceInertia, viscous, coulomb, angle);
-  const Trajectory trajectory =
-      Released(kLinearCoulomb, {kReferenceInertia, viscous, coulomb}, angle, duration);
+  const Trajectory trajectory = Released(kLinearCoulomb, {kReferenceInertia, viscous, coulomb}, angle, duration);
   for (double time = 0; time <= duration; time += 0.0097) {
     const auto [expected_angle, expected_rate] = closed.AngleAndRate(time);
     ASSERT_THAT(trajectory.Angle(time), DoubleNear(expected_angle, 1e-12)) << "at " << time;

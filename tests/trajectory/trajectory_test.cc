@@ -103,10 +103,9 @@ TEST(Trajectory, ComesToRestWhereTheStaircaseEnds) {
 }
 
 TEST(Trajectory, WithoutDryFrictionNeverStops) {
-  const Trajectory trajectory =
-      MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{0.04, 0.01}, {StartKind::kRelease, 0, 0.4, 0},
-                     Until(60))
-          .value();
+  const Trajectory trajectory = MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{0.04, 0.01},
+                                               {StartKind::kRelease, 0, 0.4, 0}, Until(60))
+                                    .value();
   EXPECT_EQ(trajectory.summary().stop_time, kInfinity);
   EXPECT_GT(trajectory.summary().reversals, 90);
 }
@@ -174,10 +173,9 @@ TEST(MovingStart, InsideTheRestBandMovesWhileItHasARate) {
 }
 
 TEST(MovingStart, FastEnoughGoesOverTheTop) {
-  const Trajectory trajectory =
-      MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{1.0, 0.0}, {StartKind::kMoving, 0, 0.0, 3.0},
-                     Until(20, 1e-16))
-          .value();
+  const Trajectory trajectory = MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{1.0, 0.0},
+                                               {StartKind::kMoving, 0, 0.0, 3.0}, Until(20, 1e-16))
+                                    .value();
   EXPECT_EQ(trajectory.summary().reversals, 0);
   EXPECT_GT(trajectory.Angle(20), 4 * kPi);
   // Energy: ω² = 9 - 2 (1 - cos θ).

@@ -6,6 +6,9 @@
 namespace pendulum {
 
 /// A number for a sentence: that many significant digits, in the shorter of fixed and scientific notation.
-std::string FormatNumber(double value, int significant_digits);
+std::string NumberText(double value, int significant_digits);
+
+/// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.
+std::string NumberText(double value);
 
 }  // namespace pendulum

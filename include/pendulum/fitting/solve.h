@@ -31,6 +31,8 @@ struct Solution {
   int iterations = 0;
   int evaluations = 0;
   std::string message;        ///< Ceres' own words.
+  Eigen::VectorXd readings;   ///< N x 1, the model's, rad or rad/s; set by FitRecording.
+  double trace_error = 0;     ///< Largest difference of readings to those at a hundredth of the tolerance; likewise.
   std::vector<Rival> rivals;  ///< Where the neighbouring starts of Search ended; the same minimum may be among them.
 };
 
@@ -40,6 +42,9 @@ struct Solution {
 /// again when the cost pulls it inwards at their optimum. Each run stops when the cost changes by less than 1e-10 of
 /// itself, which leaves the estimates within some 1e-3 standard errors. `cost` is not owned.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
+
+/// Solve from where `from` ended; the work of both is counted, its rivals are kept.
+Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options);
 
 /// Solve for a whole recording from start values that may be rough, and where there are several minima.
 ///

@@ -39,7 +39,4 @@ struct Recording {
 /// first offending sample (0-based).
 Result<Recording> MakeRecording(Recording recording);
 
-/// The shortest decimal text that reads back as `value`: what a message or a file shows of a number.
-std::string NumberText(double value);
-
 }  // namespace pendulum

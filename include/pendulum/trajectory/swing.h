@@ -105,12 +105,13 @@ void ExpandSwing(const Pendulum<F, T>& pendulum, double direction, int order, co
 
 /// Longest step whose truncation error stays near `tolerance` [rad]: the least of (tol / |c_k|)^(1/k) over the last
 /// four coefficients (from rest the series is even, at 90 deg every fourth coefficient vanishes), at most `longest`
-/// [s].
+/// [s]. 0 when a coefficient is not finite.
 template <typename T>
 double StepLength(const Series<T>& angle, int order, double tolerance, double longest) {
   double log_step = std::numeric_limits<double>::infinity();
   for (int k = order - 3; k <= order; ++k) {
     const double size = std::abs(Value(angle[k]));
+    if (!std::isfinite(size)) return 0.0;
     if (size > 0) log_step = std::min(log_step, std::log2(tolerance / size) / k);
   }
   return std::min(std::exp2(log_step), longest);

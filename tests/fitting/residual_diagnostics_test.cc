@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/residual_diagnostics.h"
+
+#include <cmath>
+
+#include <boost/math/distributions/normal.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+
+/// Four residuals whose sums are in the head: Σ r² = 6, Σ r_i r_{i-1} = -3, Σ (r_i - r_{i-1})² = 17.
+const Eigen::Vector4d kFour(1, -1, 2, 0);
+
+/// Residuals that look like noise and are none: 1 + sin of a fast phase, scaled.
+Eigen::VectorXd Scattered(Eigen::Index count) {
+  return Eigen::ArrayXd::LinSpaced(count, 1, static_cast<double>(count)).unaryExpr([](double i) {
+    return 0.01 * std::sin(i * i);
+  });
+}
+
+TEST(ComputeStatistics, AgreesWithFourResidualsReckonedByHand) {
+  const FitStatistics statistics = ComputeStatistics(kFour, 1, 0);
+  EXPECT_THAT(statistics.rms_residual, DoubleNear(1.224744871391589, 1e-15));     // sqrt(6 / 4)
+  EXPECT_THAT(statistics.log_likelihood, DoubleNear(-6.486684349035020, 1e-13));  // -4/2 (ln(2 π 6/4) + 1)
+  EXPECT_THAT(statistics.aic, DoubleNear(4 + 12.97336869807004, 1e-12));          // k = 2: one parameter and sigma
+  EXPECT_THAT(statistics.aicc, DoubleNear(4 + 12.97336869807004 + 12, 1e-12));    // + 2 k (k + 1) / (N - k - 1)
+  EXPECT_THAT(statistics.bic, DoubleNear(2.772588722239781 + 12.97336869807004, 1e-12));  // 2 ln 4
+  EXPECT_THAT(statistics.durbin_watson, DoubleNear(17.0 / 6, 1e-15));
+}
+
+TEST(ComputeStatistics, LogLikelihoodIsTheSumOfNormalLogDensities) {
+  const Eigen::VectorXd residual = Scattered(500);
+  const boost::math::normal normal(0, std::sqrt(residual.squaredNorm() / 500));
+  double expected = 0;
+  for (const double r : residual) expected += std::log(boost::math::pdf(normal, r));
+  EXPECT_THAT(ComputeStatistics(residual, 5, 0).log_likelihood, DoubleNear(expected, 1e-9));
+}
+
+TEST(ComputeStatistics, ADensityTimesTheResolutionIsAProbability) {
+  const Eigen::VectorXd residual = Scattered(500);
+  const FitStatistics density = ComputeStatistics(residual, 5, 0);
+  const FitStatistics probability = ComputeStatistics(residual, 5, 0.003);
+  EXPECT_THAT(probability.log_likelihood - density.log_likelihood, DoubleNear(500 * std::log(0.003), 1e-9));
+  EXPECT_THAT(density.bic - probability.bic, DoubleNear(1000 * std::log(0.003), 1e-9));
+  EXPECT_EQ(probability.durbin_watson, density.durbin_watson);
+}
+
+TEST(ComputeStatistics, EachFreeParameterCostsTwoInAicAndLogNInBic) {
+  const Eigen::VectorXd residual = Scattered(500);
+  const FitStatistics five = ComputeStatistics(residual, 5, 0);
+  const FitStatistics six = ComputeStatistics(residual, 6, 0);
+  EXPECT_THAT(six.aic - five.aic, DoubleNear(2, 1e-9));
+  EXPECT_THAT(six.bic - five.bic, DoubleNear(std::log(500), 1e-9));
+  EXPECT_EQ(six.log_likelihood, five.log_likelihood);
+}
+
+TEST(ComputeStatistics, DurbinWatsonTellsAlternatingFromConstantFromScattered) {
+  Eigen::VectorXd alternating = Eigen::VectorXd::Ones(1000);
+  for (Eigen::Index i = 1; i < 1000; i += 2) alternating[i] = -1;
+  EXPECT_THAT(ComputeStatistics(alternating, 1, 0).durbin_watson, DoubleNear(4, 0.01));
+  EXPECT_EQ(ComputeStatistics(Eigen::VectorXd::Ones(1000), 1, 0).durbin_watson, 0);
+  EXPECT_THAT(ComputeStatistics(Scattered(2000), 1, 0).durbin_watson, DoubleNear(2, 0.2));
+}
+
+TEST(ComputeStatistics, StaysFiniteForAPerfectFit) {
+  const FitStatistics statistics = ComputeStatistics(Eigen::VectorXd::Zero(100), 5, 0.001);
+  EXPECT_THAT(statistics.rms_residual, DoubleNear(0, 1e-150));
+  EXPECT_TRUE(std::isfinite(statistics.log_likelihood));
+  EXPECT_TRUE(std::isfinite(statistics.bic));
+  EXPECT_EQ(statistics.durbin_watson, 0);
+}
+
+TEST(Lag1Correlation, OfKnownSequences) {
+  EXPECT_EQ(Lag1Correlation(kFour), -0.5);
+  EXPECT_THAT(Lag1Correlation(Eigen::VectorXd::Ones(1000)), DoubleNear(0.999, 1e-12));
+  EXPECT_EQ(Lag1Correlation(Eigen::VectorXd::Zero(10)), 0);
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The derivatives of the readings, of every model, start and quantity.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/trajectory_cost.h"
+#include "tests/fitting/trajectory_cost_examples.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::Ge;
+using testing::Le;
+using testing::SizeIs;
+
+/// When the motion begins, turns and stops [s].
+std::vector<double> Instants(const MotionModel& model, StartKind start, const std::vector<double>& p, double end) {
+  const double begin = start == StartKind::kRelease ? p[p.size() - 2] : 0.0;
+  std::vector<double> instants = {begin};
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    Pendulum<F, double> pendulum{model.gravity, p[0], {}};
+    std::copy_n(p.begin() + 1, pendulum.friction.size(), pendulum.friction.begin());
+    TraceOptions options;
+    options.end = end;
+    options.tolerance = 1e-14;
+    const double rate = start == StartKind::kRelease ? 0.0 : p[p.size() - 2];
+    TraceTrajectory(pendulum, Start<double>{start, begin, p[p.size() - 3], rate}, options,
+                    [&](const Segment<double>& segment) {
+                      const bool turns = segment.order == 0 || segment.angle[1] == 0;
+                      if (turns && segment.start > begin) instants.push_back(segment.start);
+                    });
+  });
+  return instants;
+}
+
+/// Samples that no instant passes while a parameter is shifted.
+std::vector<Eigen::Index> QuietSamples(const std::vector<double>& time,
+                                       const std::array<std::vector<double>, 3>& instants) {
+  std::vector<Eigen::Index> quiet;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    bool is_passed = false;
+    for (std::size_t k = 0; k < instants[0].size(); ++k) {
+      const auto [first, last] = std::minmax({instants[0][k], instants[1][k], instants[2][k]});
+      is_passed |= time[i] >= first - 1e-9 && time[i] <= last + 1e-9;
+    }
+    if (!is_passed) quiet.push_back(static_cast<Eigen::Index>(i));
+  }
+  return quiet;
+}
+
+void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const TrajectoryCost& cost,
+                               const TrajectoryData& data, const std::vector<double>& p, int column,
+                               const Eigen::MatrixXd& jacobian) {
+  const double step = 1e-6 * std::abs(p[column]);
+  std::vector<double> above = p, below = p;
+  above[column] += step;
+  below[column] -= step;
+  const double end = data.time.back();
+  const std::array instants = {Instants(model, start, p, end), Instants(model, start, above, end),
+                               Instants(model, start, below, end)};
+  ASSERT_THAT(instants, Each(SizeIs(instants[0].size())));
+  ASSERT_THAT(instants[0].size(), Ge(31));
+  const std::vector<Eigen::Index> quiet = QuietSamples(data.time, instants);
+  EXPECT_THAT(quiet.size(), Ge(0.95 * static_cast<double>(data.time.size())));
+  const Eigen::VectorXd difference = (ReadingsOf(cost, above) - ReadingsOf(cost, below)) / (2 * step);
+  const double scale = jacobian.col(column).lpNorm<Eigen::Infinity>();
+  EXPECT_GT(scale, 0);
+  const double error = (jacobian.col(column) - difference)(quiet).lpNorm<Eigen::Infinity>();
+  EXPECT_THAT(error, Le(1e-6 * scale)) << "column " << column;
+}
+
+TEST(Readings, HaveTheJacobianOfCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
+  ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
+    const TrajectoryData data = Samples(quantity, 4500);
+    const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model, start, data);
+    cost->set_tolerance(1e-14);
+    const std::vector<double> p = TypicalParameters(model, start);
+    Eigen::VectorXd readings;
+    Eigen::MatrixXd jacobian;
+    ASSERT_TRUE(cost->Readings(p, &readings, &jacobian));
+    ASSERT_EQ(readings.size(), 4500);
+    ASSERT_EQ(jacobian.rows(), 4500);
+    ASSERT_EQ(jacobian.cols(), static_cast<Eigen::Index>(p.size()));
+    EXPECT_THAT((readings - ReadingsOf(*cost, p)).lpNorm<Eigen::Infinity>(), Le(1e-12));
+    for (int i = 0; i < static_cast<int>(p.size()); ++i) {
+      ExpectColumnOfDifferences(model, start, *cost, data, p, i, jacobian);
+    }
+  });
+}
+
+// Undamped and linear: A cos(ω0 (t - t_r)) + zero, and its derivatives, by hand.
+TEST(Readings, AreThoseOfTheUndampedLinearPendulum) {
+  for (const Quantity quantity : kQuantities) {
+    const TrajectoryData data = Samples(quantity, 1001);
+    const auto cost = MakeTrajectoryCost({"linear", "viscous", Gravity::kLinear}, StartKind::kRelease, data);
+    cost->set_tolerance(1e-16);
+    constexpr double kAngle = 0.5, kRelease = 0.7, kZero = 0.25, kOmega = 5;
+    Eigen::VectorXd readings;
+    Eigen::MatrixXd jacobian;
+    ASSERT_TRUE(cost->Readings(std::array{0.04, 0.0, kAngle, kRelease, kZero}, &readings, &jacobian));
+    for (Eigen::Index i = 0; i < readings.size(); ++i) {
+      const double t = std::max(data.time[static_cast<std::size_t>(i)] - kRelease, 0.0);
+      const double s = std::sin(kOmega * t), c = std::cos(kOmega * t);
+      const bool rate = quantity == Quantity::kRate;
+      const double acceleration = t > 0 ? -kAngle * kOmega * kOmega * c : 0.0;
+      ASSERT_THAT(readings[i], DoubleNear(kZero + (rate ? -kAngle * kOmega * s : kAngle * c), 1e-12)) << i;
+      ASSERT_THAT(jacobian(i, 2), DoubleNear(rate ? -kOmega * s : c, 1e-12)) << i;
+      ASSERT_THAT(jacobian(i, 3), DoubleNear(rate ? -acceleration : kAngle * kOmega * s, 1e-11)) << i;
+      ASSERT_EQ(jacobian(i, 4), 1) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pendulum

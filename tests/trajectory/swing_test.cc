@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/trajectory/swing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include <ceres/jet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::Lt;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The coefficients given, and NaN beyond: what must not be read.
+Series<double> Coefficients(std::initializer_list<double> given) {
+  Series<double> series;
+  series.fill(kNan);
+  std::copy(given.begin(), given.end(), series.begin());
+  return series;
+}
+
+TEST(OrderForTolerance, FollowsTheFormulaWithinItsLimits) {
+  EXPECT_EQ(OrderForTolerance(1e-10), 15);  // 1 + 0.6 · 23.03 = 14.8
+  EXPECT_EQ(OrderForTolerance(1e-14), 21);  // 1 + 0.6 · 32.24 = 20.3
+  EXPECT_EQ(OrderForTolerance(1e-17), 25);  // 1 + 0.6 · 39.14 = 24.5
+  EXPECT_EQ(OrderForTolerance(1e-30), kMaxOrder);
+  EXPECT_EQ(OrderForTolerance(0.1), 8);
+}
+
+TEST(EvaluateSeries, IsThePolynomialUpToTheOrderGiven) {
+  const Series<double> series = Coefficients({1, 2, 3});
+  EXPECT_EQ(EvaluateSeries(series, 2, 2.0), 17);
+  EXPECT_EQ(EvaluateSeries(series, 1, 2.0), 5);
+  EXPECT_EQ(EvaluateSeries(series, 0, 2.0), 1);
+}
+
+TEST(GravityTorque, IsTheSineOrTheAngle) {
+  EXPECT_DOUBLE_EQ(GravityTorque(Gravity::kSine, kPi / 6), 0.5);
+  EXPECT_EQ(GravityTorque(Gravity::kLinear, 0.75), 0.75);
+}
+
+// ---- Direction of motion -----------------------------------------------------------------------------------------
+
+TEST(DirectionOfMotion, IsThatOfTheRateHoweverSlow) {
+  const Pendulum<CoulombFriction, double> stuck{Gravity::kSine, 0.04, {0, 2}};
+  for (const double angle : {-0.5, 0.0, 0.5}) {
+    EXPECT_EQ(DirectionOfMotion(stuck, angle, 1e-300), 1);
+    EXPECT_EQ(DirectionOfMotion(stuck, angle, -3.0), -1);
+  }
+}
+
+TEST(DirectionOfMotion, FromRestIsThatOfGravityBeyondDryFrictionAndNoneWithin) {
+  const Pendulum<CoulombFriction, double> linear{Gravity::kLinear, 0.04, {0.1, 0.25}};
+  const Pendulum<CoulombFriction, double> sine{Gravity::kSine, 0.04, {0.1, 0.25}};
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(DirectionOfMotion(linear, sign * 0.2501, 0), -sign);
+    EXPECT_EQ(DirectionOfMotion(linear, sign * 0.2499, 0), 0);
+    EXPECT_EQ(DirectionOfMotion(sine, sign * (std::asin(0.25) + 1e-9), 0), -sign);
+    EXPECT_EQ(DirectionOfMotion(sine, sign * (std::asin(0.25) - 1e-9), 0), 0);
+    EXPECT_EQ(DirectionOfMotion(sine, sign * (kPi - 0.3), 0), -sign);
+  }
+}
+
+TEST(DirectionOfMotion, AtEqualityIsNone) {
+  const Pendulum<CoulombFriction, double> linear{Gravity::kLinear, 0.04, {0, 0.25}};
+  for (const double angle : {0.25, std::nextafter(0.25, 1.0), -0.25, std::nextafter(-0.25, -1.0)}) {
+    EXPECT_EQ(DirectionOfMotion(linear, angle, 0), 0) << angle - 0.25;
+  }
+}
+
+TEST(DirectionOfMotion, WithoutDryFrictionIsNoneOnlyAtTheBottom) {
+  const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {0.1}};
+  EXPECT_EQ(DirectionOfMotion(pendulum, 0, 0), 0);
+  EXPECT_EQ(DirectionOfMotion(pendulum, 1e-12, 0), -1);
+  EXPECT_EQ(DirectionOfMotion(pendulum, -1e-12, 0), 1);
+}
+
+// ---- Expansion ---------------------------------------------------------------------------------------------------
+
+template <FrictionModel F>
+Series<double> Expand(const Pendulum<F, double>& pendulum, double direction, double angle, double rate) {
+  Series<double> angles = Coefficients({}), rates = Coefficients({});
+  ExpandSwing(pendulum, direction, kMaxOrder, State<double>{0, angle, rate}, angles, rates);
+  for (int n = 0; n < kMaxOrder; ++n) EXPECT_DOUBLE_EQ(rates[n], (n + 1) * angles[n + 1]) << "coefficient " << n;
+  return angles;
+}
+
+// θ = s (A cos ω0 τ + ...): with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
+TEST(ExpandSwing, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
+  const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.25, {0, 0.125}};
+  for (const double direction : {1.0, -1.0}) {
+    const Series<double> angle = Expand(pendulum, direction, 0.5, direction);
+    const double cosine = 0.5 + direction * 0.125, sine = direction / 2;
+    double power = 1;  // ω0^n / n!
+    for (int n = 1; n <= kMaxOrder; ++n) {
+      power *= 2.0 / n;
+      const double expected = std::array{cosine, sine, -cosine, -sine}[n % 4] * power;
+      EXPECT_DOUBLE_EQ(angle[n], expected) << "coefficient " << n;
+    }
+  }
+}
+
+// θ = π/2 + u, u'' = -cos u: u = -τ²/2 + τ⁶/240 - τ¹⁰/19200 + ..., by inserting the series into itself.
+TEST(ExpandSwing, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
+  const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 1, {0}};
+  const Series<double> angle = Expand(pendulum, -1, std::acos(0.0), 0);
+  const std::array<double, 13> expected = {std::acos(0.0), 0, -0.5, 0, 0, 0, 1.0 / 240, 0, 0, 0, -1.0 / 19200, 0, 0};
+  for (int n = 0; n < 13; ++n) EXPECT_THAT(angle[n], DoubleNear(expected[n], 1e-16)) << "coefficient " << n;
+}
+
+// ---- Step length -------------------------------------------------------------------------------------------------
+
+TEST(StepLength, IsTheLeastOverTheLastFourCoefficients) {
+  // (1e-12 / c)^(1/k) of each alone: 1/4 for c = 1e-12 · 4^k.
+  for (int k = 7; k <= 10; ++k) {
+    Series<double> angle{};
+    angle[k] = -1e-12 * std::pow(4.0, k);
+    EXPECT_THAT(StepLength(angle, 10, 1e-12, 9.0), DoubleNear(0.25, 1e-12)) << "coefficient " << k;
+    for (int other = 7; other <= 10; ++other) {
+      if (other != k) angle[other] = 1e-12 * std::pow(2.0, other);  // 1/2
+    }
+    EXPECT_THAT(StepLength(angle, 10, 1e-12, 9.0), DoubleNear(0.25, 1e-12)) << "coefficient " << k;
+  }
+}
+
+TEST(StepLength, IsAtMostTheLongest) {
+  Series<double> angle{};
+  EXPECT_EQ(StepLength(angle, 10, 1e-12, 9.0), 9);
+  angle[10] = 1e-12;
+  EXPECT_EQ(StepLength(angle, 10, 1e-12, 0.5), 0.5);
+}
+
+// ---- Reversals ---------------------------------------------------------------------------------------------------
+
+// (0.5 - τ)(1 + τ²): one root.
+TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
+  const Series<double> rate = Coefficients({0.5, -1, 0.5, -1});
+  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 0.5), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 0.4999), Lt(0));
+  const Series<double> mirrored = Coefficients({-0.5, 1, -0.5, 1});
+  EXPECT_THAT(FirstReversal(mirrored, 3, -1.0, 1.0), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(FirstReversal(mirrored, 3, -1.0, 0.4999), Lt(0));
+}
+
+// τ (0.25 - τ): the root at 0 is where it starts.
+TEST(FirstReversal, FromRestIsTheNextRoot) {
+  const Series<double> rate = Coefficients({0, 0.25, -1});
+  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
+  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 0.2), Lt(0));
+}
+
+// 1 - 1e6 τ²: Newton's method alone would leave the step from its end.
+TEST(FirstReversal, IsFoundNearTheBeginningOfALongStep) {
+  const Series<double> rate = Coefficients({1, 0, -1e6});
+  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
+  // 1e-9 - τ + τ³ / 2, flat near its end
+  const Series<double> flat = Coefficients({1e-9, -1, 0, 0.5});
+  EXPECT_THAT(FirstReversal(flat, 3, 1.0, 0.816), DoubleNear(1e-9, 1e-24));
+}
+
+// Linear, θ = v √I sin(τ / √I): the turn is at τ = π √I / 2, θ = v √I, for v = I = 1; I, v carry derivatives.
+TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
+  using Dual = ceres::Jet<double, 2>;
+  const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
+  const State<Dual> start{Dual(3.0), Dual(0.0), Dual(1, 1)};
+  Series<Dual> angle, rate;
+  ExpandSwing(pendulum, 1.0, kMaxOrder, start, angle, rate);
+  const double root = FirstReversal(rate, kMaxOrder - 1, 1.0, 1.6);
+  EXPECT_THAT(root, DoubleNear(kPi / 2, 1e-15));
+  const State<Dual> reversal = StateAtReversal(start, angle, rate, kMaxOrder, root);
+  EXPECT_THAT(reversal.time.a, DoubleNear(3 + kPi / 2, 1e-14));
+  EXPECT_THAT(reversal.time.v[0], DoubleNear(kPi / 4, 1e-13));  // d(π √I / 2)/dI
+  EXPECT_THAT(reversal.time.v[1], DoubleNear(0, 1e-13));
+  EXPECT_THAT(reversal.angle.a, DoubleNear(1, 1e-14));
+  EXPECT_THAT(reversal.angle.v[0], DoubleNear(0.5, 1e-13));  // d(v √I)/dI
+  EXPECT_THAT(reversal.angle.v[1], DoubleNear(1, 1e-13));
+  EXPECT_EQ(reversal.rate.a, 0);
+  EXPECT_EQ(reversal.rate.v.norm(), 0);
+}
+
+TEST(StateAtReversal, AddsToTheShiftThatThePreviousReversalsLeft) {
+  using Dual = ceres::Jet<double, 1>;
+  const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
+  State<Dual> start{Dual(0.0), Dual(0.0), Dual(1.0)};
+  start.time.v[0] = 10;
+  Series<Dual> angle, rate;
+  ExpandSwing(pendulum, 1.0, kMaxOrder, start, angle, rate);
+  const State<Dual> reversal = StateAtReversal(start, angle, rate, kMaxOrder, kPi / 2);
+  EXPECT_THAT(reversal.time.v[0], DoubleNear(10 + kPi / 4, 1e-13));
+}
+
+// θ = 1 + 3 τ + 5 τ², θ_p = 10 + 20 τ + 30 τ² at fixed τ, ∂start/∂p = 2: θ_p - 2 (3 + 10 τ).
+TEST(FixAbsoluteTime, SubtractsTheRateTimesTheShiftOfTheStart) {
+  using Dual = ceres::Jet<double, 1>;
+  Series<Dual> angle;
+  const std::array<double, 3> values = {1, 3, 5}, derivatives = {10, 20, 30};
+  for (int k = 0; k < 3; ++k) {
+    angle[k].a = values[k];
+    angle[k].v[0] = derivatives[k];
+  }
+  Dual start(7.0);
+  start.v[0] = 2;
+  FixAbsoluteTime(start, 2, angle);
+  const std::array<double, 3> expected = {4, 0, 30};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(angle[k].a, values[k]);
+    EXPECT_EQ(angle[k].v[0], expected[k]) << "coefficient " << k;
+  }
+}
+
+TEST(Values, KeepsTheNumbersAndDropsTheDerivatives) {
+  using Dual = ceres::Jet<double, 2>;
+  const Pendulum<CoulombFriction, Dual> dual{Gravity::kLinear, Dual(0.04, 0), {Dual(0.5, 1), Dual(0.25)}};
+  const Pendulum<CoulombFriction, double> values = Values(dual);
+  EXPECT_EQ(values.gravity, Gravity::kLinear);
+  EXPECT_EQ(values.inertia, 0.04);
+  EXPECT_THAT(values.friction, testing::ElementsAre(0.5, 0.25));
+}
+
+}  // namespace
+}  // namespace pendulum
