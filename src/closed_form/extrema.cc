@@ -83,7 +83,9 @@ double SuccessiveDifferenceNoise(const Recording& recording) {
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   const double noise = SuccessiveDifferenceNoise(recording);
-  const double threshold = std::max({6 * noise, 2 * recording.resolution, 0.03 * range});
+  // Twice what the largest of N deviations is expected to be, and one more: noise alone turns nowhere.
+  const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 1;
+  const double threshold = std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
   const std::vector<Index> points = TurningPoints(recording.value, threshold);
   std::vector<Extremum> extrema;
   if (points.size() >= 3) {

@@ -87,7 +87,8 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
 
 void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum,
                     const Solution& solution, FitReport& report) {
-  constexpr double kMostUnexplained = 0.5;
+  // Noise may be as large as a small swing, but it does not follow itself.
+  const double most_unexplained = report.noise.lag1_correlation > 0.5 ? 0.2 : 0.8;
   constexpr double kLargestShift = 0.03;
   if (!optimum.inverse.identifiable) {
     report.termination = Termination::kNotIdentifiable;
@@ -97,8 +98,8 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   const double unexplained = UnexplainedShare(recording, report.residual);
   const double shift = RemainingShift(optimum);
   report.termination = Termination::kNotConverged;
-  if (unexplained > kMostUnexplained) {
-    report.reason = "this is not a free pendulum's swing: the best trajectory leaves " +
+  if (unexplained > most_unexplained) {
+    report.reason = "this is not a free pendulum's swing, or not one of this model: the best trajectory leaves " +
                     NumberText(100 * unexplained, 2) +
                     " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
   } else if (!(shift <= kLargestShift)) {

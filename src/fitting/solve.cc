@@ -190,27 +190,49 @@ Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<d
   return direction.allFinite() ? direction : Eigen::VectorXd();
 }
 
-/// The neighbouring minima of a recording that reaches rest: dry friction a little stronger or weaker, the others
-/// following.
-Solution TryNeighbours(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
-  Solution best = found;
+/// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
+/// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
+std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<double>& from, double side,
+                              const SolveOptions& options) {
+  constexpr double kFirstShift = 1e-3;
+  constexpr double kLargestShift = 0.2;
+  constexpr double kGrowth = 1.15;
   const int k = options.holding_parameter;
-  const Eigen::VectorXd direction = ProfileDirection(cost, found.parameters, k, options);
-  if (direction.size() == 0) return best;
-  for (const double shift : {-0.012, -0.008, -0.004, 0.004, 0.008, 0.012}) {
-    std::vector<double> start = found.parameters;
-    const double change = shift * found.parameters[k];
+  const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
+  if (direction.size() == 0) return {};
+  const auto shifted = [&](double shift) {
+    std::vector<double> start = from;
     for (std::size_t i = 0; i < start.size(); ++i) {
-      start[i] = std::max(start[i] + change * direction[static_cast<Eigen::Index>(i)], options.lower[i]);
+      const double change = shift * from[k] * direction[static_cast<Eigen::Index>(i)];
+      start[i] = std::max(start[i] + change, options.lower[i]);
     }
-    Solution trial = Solve(cost, start, options);
-    trial.iterations += best.iterations;
-    trial.evaluations += best.evaluations;
-    trial.rivals = best.rivals;
-    if (trial.usable && trial.sum < best.sum) std::swap(trial, best);
-    if (trial.usable) best.rivals.push_back({trial.parameters, trial.sum});
-    best.iterations = std::max(best.iterations, trial.iterations);
-    best.evaluations = std::max(best.evaluations, trial.evaluations);
+    return start;
+  };
+  const int reversals = cost.Trace(from).reversals;
+  for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
+    if (cost.Trace(shifted(side * shift)).reversals != reversals) return shifted(side * shift * kGrowth);
+  }
+  return {};
+}
+
+/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
+Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
+  Solution best = found;
+  for (const double side : {-1.0, 1.0}) {
+    for (bool better = true; better;) {
+      Solution trial = best;
+      trial.parameters = NextBasin(cost, best.parameters, side, options);
+      if (trial.parameters.empty()) break;
+      trial = Continue(cost, trial, options);
+      better = trial.usable && trial.sum < best.sum;
+      const Solution& other = better ? best : trial;
+      std::vector<Rival> rivals = best.rivals;
+      if (other.usable) rivals.push_back({other.parameters, other.sum});
+      best.iterations = trial.iterations;
+      best.evaluations = trial.evaluations;
+      if (better) best = trial;
+      best.rivals = rivals;
+    }
   }
   return best;
 }
@@ -242,7 +264,7 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vec
   solution = Continue(cost, solution, options);
   if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
   if (!ReachesRest(cost, data, solution.parameters)) return solution;
-  return TryNeighbours(cost, solution, options);
+  return DescendBasins(cost, solution, options);
 }
 
 }  // namespace pendulum

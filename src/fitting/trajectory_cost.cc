@@ -12,6 +12,10 @@
 namespace pendulum {
 namespace {
 
+/// A trial whose time scale asks for more steps than this is not near any recording of so many samples.
+constexpr int kStepsPerSample = 20;
+constexpr int kMostSteps = 10'000;
+
 /// Samples are evaluated side by side in lanes: their Horner chains do not wait for each other and fill vector
 /// registers.
 constexpr int kLanes = 8;
@@ -214,6 +218,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     TraceOptions options;
     options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
     options.tolerance = tolerance_;
+    options.max_steps = kStepsPerSample * static_cast<int>(used_samples_) + kMostSteps;
     return options;
   }
 

@@ -86,6 +86,15 @@ TEST(FindExtrema, NoiseInventsNoTurningPointAndMovesNoneFar) {
   }
 }
 
+TEST(FindExtrema, NoiseAtRestInventsNoTurningPoint) {
+  // Turns every 0.63 s; below a standard deviation of the noise from 7.7 s on, and 50 s more.
+  const auto to_rest = [](double t) { return std::exp(-0.6 * t) * std::sin(kOmega * t); };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Extremum> found = Must(FindExtrema(WithNoise(Sample(to_rest, 60, 100), 0.01, seed)));
+    EXPECT_LT(found.back().time, 8) << "seed " << seed;
+  }
+}
+
 TEST(FindExtrema, FlickeringByACountIsNoTurningPoint) {
   const double count = 0.02;
   Recording recording = Sample([&](double t) { return count * std::round(DampedSine(t) / count); }, 20, 100);

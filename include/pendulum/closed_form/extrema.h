@@ -20,10 +20,10 @@ double SuccessiveDifferenceNoise(const Recording& recording);
 
 /// Turning points in time order, maxima and minima in turn.
 ///
-/// A turning point counts once the reading has moved back from it by more than six standard deviations of the noise,
-/// two resolutions and 3 % of the range; it is located by a parabola through the samples within 0.15 of the typical
-/// spacing of turning points, to O(h³), not to a sample. A hold, or a start in the middle of a swing, is not a turning
-/// point. kFailedPrecondition: fewer than three; the message says how many there were.
+/// A turning point counts once the reading has moved back from it by more than noise does (2 sqrt(2 ln N) + 1 standard
+/// deviations), two resolutions and 3 % of the range; it is located by a parabola through the samples within 0.15 of
+/// the typical spacing of turning points, to O(h³), not to a sample. A hold, or a start in the middle of a swing, is
+/// not a turning point. kFailedPrecondition: fewer than three; the message says how many there were.
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording);
 
 }  // namespace pendulum

@@ -50,8 +50,9 @@ Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions
 ///
 /// A start that explains the data goes straight to Solve. One that does not is refined over the first three cycles,
 /// then over twice as many, and so on. Recordings that reach rest have one minimum per number of half swings before the
-/// stop, so they are fitted over 30, 60 and 85 % of the motion first and restarted from tau_c shifted by ±0.4, 0.8
-/// and 1.2 % with the others following along the profile; the lowest cost wins.
+/// stop, so they are fitted over 30, 60 and 85 % of the motion first; then dry friction is shifted to either side, the
+/// other parameters following along its profile, until the number of reversals changes, and the fit goes on from there
+/// as long as the cost is lower.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options);
 
