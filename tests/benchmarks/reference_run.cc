@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/recording/window.h"
 #include "pendulum/trajectory/synthetic.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/fit_problem.h"
 
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +14,10 @@
 namespace pendulum {
 namespace {
 
+using testing::AllOf;
 using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::vector<std::string> Names(const std::vector<ParameterInfo>& infos) {
@@ -18,54 +26,143 @@ std::vector<std::string> Names(const std::vector<ParameterInfo>& infos) {
   return names;
 }
 
-TEST(FitParameters, StandInTheOrderOfTheResult) {
-  const MotionModel coulomb = Must(FindMotionModel("coulomb"));
-  EXPECT_THAT(Names(FitParameters(coulomb, StartKind::kRelease, Quantity::kAngle)),
-              testing::ElementsAre("inertia", "viscous", "coulomb", "release_angle", "release_time", "zero_angle"));
-  EXPECT_THAT(Names(FitParameters(coulomb, StartKind::kMoving, Quantity::kRate)),
-              testing::ElementsAre("inertia", "viscous", "coulomb", "initial_angle", "initial_rate", "rate_bias"));
+FitProblem ProblemOf(const SyntheticOptions& run, const FitOptions& options) {
+  return Must(MakeFitProblem(Must(SimulateRecording(run)), options));
 }
 
-TEST(MakeFitProblem, CountsTimesFromTheFirstSampleAndKeepsItsClock) {
-  SyntheticOptions options = TextbookRun("viscous");
-  options.start_time = 1.6e9;
-  options.release_time = 1.6e9 + 1.9;
-  const FitProblem problem = Must(MakeFitProblem(Must(SimulateRecording(options)), ModelOptions("viscous")));
+Status RefusalOf(const SyntheticOptions& run, const FitOptions& options) {
+  const auto problem = MakeFitProblem(Must(SimulateRecording(run)), options);
+  return problem ? Status{StatusCode::kInternal, "it was accepted"} : problem.error();
+}
+
+FitOptions Fixing(std::string_view model, const std::map<std::string, double>& fixed) {
+  FitOptions options = ModelOptions(model);
+  options.fixed = fixed;
+  return options;
+}
+
+Rig RigOf(double gravity_torque) {
+  return Must(ParseRig("{\"gravity_torque\": " + std::to_string(gravity_torque) + "}", "rig.json"));
+}
+
+// ---- Parameters ----------------------------------------------------------------------------------------------------
+
+TEST(FitParameters, StandInTheOrderOfTheContract) {
+  const MotionModel drag = Must(FindMotionModel("drag"));
+  EXPECT_THAT(Names(FitParameters(drag, StartKind::kRelease, Quantity::kAngle)),
+              ElementsAre("inertia", "viscous", "coulomb", "drag", "release_angle", "release_time", "zero_angle"));
+  EXPECT_THAT(Names(FitParameters(drag, StartKind::kMoving, Quantity::kRate)),
+              ElementsAre("inertia", "viscous", "coulomb", "drag", "initial_angle", "initial_rate", "rate_bias"));
+}
+
+TEST(MakeFitProblem, ListsTheModelsWhenThereIsNoSuchOne) {
+  const Status status = RefusalOf(TextbookRun("coulomb"), ModelOptions("columb"));
+  EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message, HasSubstr("columb"));
+  for (const MotionModel& model : MotionModels()) EXPECT_THAT(status.message, HasSubstr(std::string(model.name)));
+}
+
+TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheStartFree) {
+  const FitProblem problem = ProblemOf(TextbookRun("drag"), ModelOptions("drag"));
+  EXPECT_THAT(problem.solve.lower, ElementsAre(-kUnbounded, 0, 0, 0, -kUnbounded, -kUnbounded, -kUnbounded));
+  EXPECT_THAT(problem.solve.fixed, Each(false));
+}
+
+TEST(MakeFitProblem, KnowsTheParameterThatHoldsAtRest) {
+  const std::map<std::string_view, int> expected = {{"linear", -1}, {"viscous", -1}, {"coulomb", 2}, {"drag", 2}};
+  for (const auto& [model, holding] : expected) {
+    EXPECT_EQ(ProblemOf(TextbookRun(model), ModelOptions(model)).solve.holding_parameter, holding) << model;
+  }
+}
+
+// ---- Data and units ------------------------------------------------------------------------------------------------
+
+TEST(MakeFitProblem, CountsTimeFromTheFirstSampleAndReportsItOnTheFilesClock) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.start_time = 1000;
+  run.release_time = 1001.9;
+  const FitProblem problem = ProblemOf(run, ModelOptions("coulomb"));
   EXPECT_EQ(problem.data.time.front(), 0);
-  EXPECT_THAT(problem.first_guess[3], DoubleNear(1.9, 0.02));
-  EXPECT_EQ(problem.offset[3], 1.6e9);
-  EXPECT_EQ(problem.offset[2], 0);
+  EXPECT_THAT(problem.data.time.back(), DoubleNear(19.99, 1e-9));
+  EXPECT_THAT(problem.offset, ElementsAre(0, 0, 0, 0, 1000, 0));
+  EXPECT_THAT(problem.first_guess[4], DoubleNear(1.9, 0.02));
 }
 
-TEST(MakeFitProblem, TakesFixedValuesInSiAndHoldsThem) {
+TEST(MakeFitProblem, ScalesWithTheGravityTorqueWhatScalesWithIt) {
+  FitOptions options = ModelOptions("drag");
+  EXPECT_THAT(ProblemOf(TextbookRun("drag"), options).si_per_internal, Each(1.0));
+  options.rig = RigOf(2.5);
+  EXPECT_THAT(ProblemOf(TextbookRun("drag"), options).si_per_internal, ElementsAre(2.5, 2.5, 2.5, 2.5, 1, 1, 1));
+}
+
+TEST(MakeFitProblem, MeasuresResidualsInUnitsOfTheNoise) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.noise = 0.004;
+  const FitProblem noisy = ProblemOf(run, ModelOptions("coulomb"));
+  EXPECT_THAT(noisy.noise, DoubleNear(0.004, 4e-4));
+  EXPECT_EQ(noisy.data.scale, noisy.noise);
+  run.noise = 0;
+  EXPECT_GT(ProblemOf(run, ModelOptions("coulomb")).data.scale, 0);  // also where there is none
+}
+
+TEST(MakeFitProblem, HandsTheIterationLimitOn) {
   FitOptions options = ModelOptions("coulomb");
-  options.rig.emplace();
-  options.rig->gravity_torque = {2.0, 0};
-  options.fixed = {{"viscous", 0.004}, {"release_time", 1.9}};
-  const FitProblem problem = Must(MakeFitProblem(Must(SimulateRecording(TextbookRun("coulomb"))), options));
-  EXPECT_DOUBLE_EQ(problem.first_guess[1], 0.002);  // in units of G = 2 N m
-  EXPECT_DOUBLE_EQ(problem.first_guess[4], 1.9);    // a time has no G
-  EXPECT_THAT(problem.solve.fixed, testing::ElementsAre(false, true, false, false, true, false));
+  options.max_iterations = 7;
+  EXPECT_EQ(ProblemOf(TextbookRun("coulomb"), options).solve.max_iterations, 7);
 }
 
-TEST(MakeFitProblem, KnowsWhichParameterHoldsThePendulumAtRest) {
-  const Recording recording = Must(SimulateRecording(TextbookRun("viscous")));
-  EXPECT_EQ(Must(MakeFitProblem(recording, ModelOptions("viscous"))).solve.holding_parameter, -1);
-  EXPECT_EQ(Must(MakeFitProblem(recording, ModelOptions("coulomb"))).solve.holding_parameter, 2);
+// ---- Fixed parameters ----------------------------------------------------------------------------------------------
+
+TEST(MakeFitProblem, HoldsAFixedParameterAtItsValue) {
+  const FitProblem problem = ProblemOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", 0.0031}}));
+  EXPECT_THAT(problem.solve.fixed, ElementsAre(false, false, true, false, false, false));
+  EXPECT_EQ(problem.first_guess[2], 0.0031);
+  EXPECT_NE(problem.start.parameters[2], 0.0031);  // what the data say is kept beside it
 }
 
-TEST(MakeFitProblem, RefusesNamesAndValuesTheModelDoesNotHave) {
-  const Recording recording = Must(SimulateRecording(TextbookRun("viscous")));
-  FitOptions options = ModelOptions("viscous");
-  options.fixed = {{"coulomb", 0.0}};
-  const Status unknown = MakeFitProblem(recording, options).error();
-  EXPECT_EQ(unknown.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(unknown.message, HasSubstr("'coulomb'"));
-  EXPECT_THAT(unknown.message, HasSubstr("inertia, viscous, release_angle, release_time, zero_angle"));
-  options.fixed = {{"viscous", -1.0}};
-  EXPECT_THAT(MakeFitProblem(recording, options).error().message, HasSubstr("viscous cannot be fixed at -1"));
-  options.fixed = {{"inertia", 0.0}};
-  EXPECT_THAT(MakeFitProblem(recording, options).error().message, HasSubstr("it must be positive"));
+TEST(MakeFitProblem, TakesFixedValuesInTheUnitsOfTheReport) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.start_time = 1000;
+  run.release_time = 1001.9;
+  FitOptions options = Fixing("coulomb", {{"inertia", 0.079}, {"release_time", 1001.88}, {"zero_angle", 0.02}});
+  options.rig = RigOf(2.5);
+  const FitProblem problem = ProblemOf(run, options);
+  EXPECT_THAT(problem.first_guess[0], DoubleNear(0.079 / 2.5, 1e-15));
+  EXPECT_THAT(problem.first_guess[4], DoubleNear(1.88, 1e-9));
+  EXPECT_EQ(problem.first_guess[5], 0.02);
+}
+
+TEST(MakeFitProblem, RefusesToFixWhatTheModelDoesNotHaveAndListsWhatItHas) {
+  const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"coulomb", 0.001}}));
+  EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message, AllOf(HasSubstr("viscous has no parameter 'coulomb'"),
+                                    HasSubstr("inertia, viscous, release_angle, release_time, zero_angle")));
+}
+
+TEST(MakeFitProblem, RefusesToFixAParameterOfTheOtherStart) {
+  const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"initial_angle", 0.4}}));
+  EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message, HasSubstr("'initial_angle'"));
+}
+
+TEST(MakeFitProblem, RefusesToFixAValueOutsideItsBounds) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<std::string, double> refused[] = {{"viscous", -1e-6}, {"coulomb", -1.0},   {"inertia", 0.0},
+                                                    {"inertia", -0.1},  {"zero_angle", nan}, {"viscous", infinity}};
+  for (const auto& [name, value] : refused) {
+    const Status status = RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{name, value}}));
+    EXPECT_EQ(status.code, StatusCode::kInvalidArgument) << name << " " << value;
+    EXPECT_THAT(status.message, HasSubstr(name + " cannot be fixed at")) << value;
+  }
+  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"inertia", 0.0}})).message, HasSubstr("positive"));
+  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", -1.0}})).message,
+              HasSubstr("at least 0"));
+}
+
+TEST(MakeFitProblem, AcceptsFrictionFixedAtItsBound) {
+  const FitProblem problem = ProblemOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", 0.0}}));
+  EXPECT_EQ(problem.first_guess[2], 0);
 }
 
 }  // namespace

@@ -67,6 +67,15 @@ TEST(EstimateStartValues, CorrectsTheFrequencyForLargeSwings) {
   }
 }
 
+TEST(EstimateStartValues, FindTheFrequencyOfASwingThatLiesAtRestForHalfTheRecording) {
+  SyntheticOptions options = TextbookRun("coulomb");
+  options.parameters[2] *= 2;  // at rest after some 27 s
+  options.duration = 60;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    EXPECT_THAT(StartOf(Noisy(options, seed)).natural_frequency / kFrequency, DoubleNear(1, 0.002)) << "seed " << seed;
+  }
+}
+
 TEST(EstimateStartValues, GiveInertiaFrictionAndZeroInUnitsOfGravityTorque) {
   SyntheticOptions options = TextbookRun("drag");
   options.release_angle = 1.5;

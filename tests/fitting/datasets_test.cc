@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is in datasets/, fitted as a user would, against the truth that lies beside each recording.
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pendulum/recording/read_recording.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum {
+namespace {
+
+struct Dataset {
+  std::string name;
+  std::string model;
+};
+
+void PrintTo(const Dataset& dataset, std::ostream* out) { *out << dataset.name << '_' << dataset.model; }
+
+class Datasets : public testing::TestWithParam<Dataset> {};
+
+TEST_P(Datasets, TruthIsRecoveredWithinFourStandardErrors) {
+  FitOptions options = ModelOptions(GetParam().model);
+  options.rig = Must(ReadRig("datasets/textbook_rig.json"));
+  const FitReport report = Fit(Must(ReadRecording("datasets/" + GetParam().name + ".csv")), options);
+  ASSERT_EQ(report.termination, Termination::kConverged) << report.reason;
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream("datasets/" + GetParam().name + "_truth.json"));
+  for (const ParameterEstimate& parameter : report.parameters) {
+    const double expected = truth.value(std::string(parameter.info.name), 0.0);
+    const double tolerance =
+        parameter.at_bound ? parameter.upper95.value() - parameter.estimate : 4 * parameter.std_error.value();
+    EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, tolerance)) << parameter.info.name;
+  }
+  EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));  // + q²/12
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Datasets,
+                         testing::Values(Dataset{"textbook_rig", "viscous"}, Dataset{"textbook_rig", "coulomb"},
+                                         Dataset{"coulomb", "coulomb"}, Dataset{"to_rest", "coulomb"}),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace pendulum
