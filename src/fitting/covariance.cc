@@ -9,6 +9,8 @@ namespace pendulum {
 
 Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
   Inverse inverse;
+  inverse.identifiable = free.empty();
+  if (free.empty()) return inverse;
   const Eigen::VectorXd norms = information.diagonal()(free).cwiseSqrt();
   for (Eigen::Index i = 0; i < norms.size(); ++i) {
     if (!(norms[i] > 0)) inverse.direction.push_back(free[static_cast<std::size_t>(i)]);
@@ -20,7 +22,7 @@ Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<
   const Eigen::VectorXd& values = eigen.eigenvalues();  // in increasing order
   constexpr double kSmallest = 1e-12;
   constexpr double kTakesPart = 0.1;
-  if (values.size() > 0 && values[0] < kSmallest * values[values.size() - 1]) {
+  if (values[0] < kSmallest * values[values.size() - 1]) {
     for (Eigen::Index i = 0; i < norms.size(); ++i) {
       if (std::abs(eigen.eigenvectors()(i, 0)) > kTakesPart)
         inverse.direction.push_back(free[static_cast<std::size_t>(i)]);

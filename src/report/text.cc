@@ -194,7 +194,7 @@ std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
     ValueAndError text{GeneralText(quantity.estimate, kDigits), ""};
-    if (quantity.std_error) text = PdgText(quantity.estimate, *quantity.std_error);
+    if (quantity.std_error.value_or(0) > 0) text = PdgText(quantity.estimate, *quantity.std_error);
     rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit});
   }
   if (rows.empty()) return "";

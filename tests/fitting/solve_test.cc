@@ -162,8 +162,8 @@ TEST(Continue, GoesOnFromWhereASolutionEndedAndAddsTheWork) {
 // ---- Search --------------------------------------------------------------------------------------------------------
 
 TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
-  // Two percent of frequency over 25 cycles is half a cycle; there is a false minimum for every cycle.
-  for (const double factor : {0.96, 1.04}) {
+  // Five percent of frequency over 25 cycles is more than a cycle; there is a false minimum for every cycle.
+  for (const double factor : {0.85, 0.9}) {
     SyntheticOptions run = NoisyRun("coulomb");
     run.duration = 35;
     Case c(run, "coulomb");
@@ -174,7 +174,7 @@ TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
     const Solution expected = Solve(*c.cost, c.truth, c.problem.solve);
     const Solution found = Search(*c.cost, c.problem.data, start, c.problem.solve);
     ExpectNear(found.parameters, expected.parameters, 1e-4);
-    EXPECT_GT(Solve(*c.cost, start, c.problem.solve).sum, 10 * expected.sum);  // which is why one Solve is not enough
+    EXPECT_GT(Solve(*c.cost, start, c.problem.solve).sum, 100 * expected.sum);  // which is why one Solve is not enough
   }
 }
 
@@ -183,7 +183,7 @@ TEST(Search, LeavesAllSamplesInUse) {
   run.duration = 35;
   Case c(run, "coulomb");
   std::vector<double> start = c.problem.first_guess;
-  start[0] *= 0.96;
+  start[0] *= 0.9;
   Search(*c.cost, c.problem.data, start, c.problem.solve);
   Eigen::VectorXd readings;
   ASSERT_TRUE(c.cost->Readings(c.truth, &readings, nullptr));

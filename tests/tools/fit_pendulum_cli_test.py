@@ -224,6 +224,13 @@ class GoodRun(CliTest):
         self.assertEqual((zero["estimate"], zero["std_error"], zero["fixed"]), (0.01, None, True))
         self.assertIn("initial_angle", result["fits"][0]["parameters"])
 
+    def test_everything_fixed(self):
+        truth = ",".join(f"{name}={value}" for name, value in swing.TRUTH.items())
+        _, result = self.fit("--rig", "rig.json", "--fix", truth)
+        fit = result["fits"][0]
+        self.assertEqual(fit["covariance"], {"names": [], "matrix": []})
+        self.assertAlmostEqual(fit["noise"]["sigma_rad"], 0.003, delta=3e-4)
+
     def test_residuals_are_measured_minus_fitted(self):
         self.fit("--residuals", "res.csv")
         with open(self.folder / "res.csv", encoding="utf-8", newline="") as file:

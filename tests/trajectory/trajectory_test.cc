@@ -117,6 +117,19 @@ TEST(Trajectory, MarginIsTheSmallestOverAllReversals) {
   EXPECT_THAT(trajectory.summary().last_reversal_margin, DoubleNear(0.28, 1e-12));
 }
 
+// The last half swings of a staircase from 1e-6 rad at a tolerance of 1e-8 rad: accuracy would allow any step.
+TEST(Trajectory, TakesNoStepBeyondAQuarterPeriodAndSoMissesNoReversal) {
+  const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.04, {0, 3e-8}};
+  const Trace trace = TraceOf(pendulum, {StartKind::kRelease, 0, 1e-6, 0}, Until(20, 1e-8));
+  for (const Segment<double>& segment : trace.segments) {
+    const double step = segment.order == 0 ? 0 : segment.end - segment.start;
+    EXPECT_THAT(step, Le(0.5 * kHalfSwing * (1 + 1e-12)));
+  }
+  EXPECT_EQ(trace.summary.reversals, 17);
+  EXPECT_THAT(trace.summary.stop_time, DoubleNear(17 * kHalfSwing, 1e-6));
+  EXPECT_THAT(trace.segments.back().angle[0], DoubleNear(2e-8, 1e-12));  // -(1e-6 - 34 · 3e-8)
+}
+
 TEST(Rest, HoldsAtAnAngleWhereGravityDoesNotExceedDryFriction) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kSine, 0.04, {0, 0.25}};
   const double limit = std::asin(0.25);
