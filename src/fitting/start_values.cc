@@ -96,6 +96,9 @@ std::optional<Hold> FindHold(const Centred& data) {
   const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
   const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
   if (spread > band) return std::nullopt;
+  // A pendulum at rest that is pushed was not released: the hold must be as far out as the first swing goes, or nearly.
+  if (recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before)
+    return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
   while (moving > held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
   return Hold{recording.quantity == Quantity::kAngle ? mean : fall->amplitude, release, recording.time[moving]};
