@@ -14,17 +14,22 @@
 namespace pendulum {
 namespace {
 
+/// Potential energy in units of G.
+double Potential(Gravity gravity, double angle) {
+  return gravity == Gravity::kSine ? 1 - std::cos(angle) : 0.5 * angle * angle;
+}
+
 /// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0; θ = A sin φ smooths its
 /// ends.
 template <FrictionModel F>
-Eigen::RowVectorXd LossPerParameter(double amplitude, double natural_frequency) {
+Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency) {
   Eigen::RowVectorXd loss(kFrictionParameters<F>);
   for (int k = 0; k < kFrictionParameters<F>; ++k) {
     std::array<double, kFrictionParameters<F>> unit{};
     unit[k] = 1;
     const auto integrand = [&](double phi) {
       const double angle = amplitude * std::sin(phi);
-      const double kinetic = std::max(2 * (std::cos(angle) - std::cos(amplitude)), 0.0);
+      const double kinetic = std::max(2 * (Potential(gravity, amplitude) - Potential(gravity, angle)), 0.0);
       return F::Torque(natural_frequency * std::sqrt(kinetic), 1.0, unit.data()) * amplitude * std::cos(phi);
     };
     loss[k] = boost::math::quadrature::gauss<double, 15>::integrate(integrand, -kPi / 2, kPi / 2);
@@ -100,10 +105,11 @@ std::vector<double> FrictionFromEnergyBalance(const MotionModel& model, const Ha
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     LossEquations equations(kFrictionParameters<F>);
     for (const HalfSwing& half : table.half_swings) {
-      const double before = AngleAmplitude(table.quantity, half.before, natural_frequency);
-      const double after = AngleAmplitude(table.quantity, half.after, natural_frequency);
-      if (!half.continues) equations.StartRun(1 - std::cos(before));
-      equations.Add(LossPerParameter<F>(0.5 * (before + after), natural_frequency), 1 - std::cos(after));
+      const double before = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
+      const double after = AngleAmplitude(table.quantity, half.after, natural_frequency, table.gravity);
+      if (!half.continues) equations.StartRun(Potential(table.gravity, before));
+      equations.Add(LossPerParameter<F>(table.gravity, 0.5 * (before + after), natural_frequency),
+                    Potential(table.gravity, after));
     }
     equations.FinishRun();
     const Eigen::VectorXd x = NonNegativeLeastSquares(equations.normal, equations.right);

@@ -101,9 +101,10 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   if (range == 0) {
     return Error(StatusCode::kFailedPrecondition, "the reading is constant: there is no swing in it");
   }
-  return Error(StatusCode::kFailedPrecondition,
-               "the reading turns " + std::to_string(extrema.size()) +
-                   " times; three turning points beyond the noise are needed to tell a swing");
+  return Error(
+      StatusCode::kFailedPrecondition,
+      "turning points that stand out of the noise between neighbouring samples: " + std::to_string(extrema.size()) +
+          "; at least three turning points, with five samples or more between them, are needed to tell a swing");
 }
 
 }  // namespace pendulum

@@ -72,7 +72,9 @@ double CrossingTime(const Recording& recording, double zero, const Extremum& fro
 Result<HalfSwingTable> TabulateHalfSwings(const Recording& recording) {
   const Result<std::vector<Extremum>> extrema = FindExtrema(recording);
   if (!extrema) return tl::unexpected(extrema.error());
-  HalfSwingTable table{recording.quantity, ZeroOf(*extrema), extrema->front().value, extrema->front().time, {}};
+  HalfSwingTable table;
+  table.quantity = recording.quantity;
+  table.zero = ZeroOf(*extrema);
   const double longest_gap = 0.6 * TypicalHalfSwing(*extrema);
   bool continues = false;
   for (std::size_t i = 1; i < extrema->size(); ++i) {

@@ -31,8 +31,9 @@ std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const 
       centre_run(phase), centre_run(time);
       run_start = phase.size();
     }
-    const double amplitude = AngleAmplitude(table.quantity, half.before, natural_frequency);
-    phase.push_back(half.continues ? phase.back() + kPi * PeriodRatio(amplitude) : 0.0);
+    const double amplitude = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
+    const double ratio = table.gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0;
+    phase.push_back(half.continues ? phase.back() + kPi * ratio : 0.0);
     time.push_back(half.crossing);
   }
   centre_run(phase), centre_run(time);
@@ -63,14 +64,16 @@ double PeriodRatio(double amplitude) {
   return 1 / a;
 }
 
-double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency) {
+double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency, Gravity gravity) {
+  if (gravity == Gravity::kLinear) return quantity == Quantity::kAngle ? amplitude : amplitude / natural_frequency;
   constexpr double kLargest = 3.1;
   if (quantity == Quantity::kAngle) return std::min(amplitude, kLargest);
   return std::min(2 * std::asin(std::min(amplitude / (2 * natural_frequency), 1.0)), kLargest);
 }
 
 double NaturalFrequency(const HalfSwingTable& table) {
-  if (table.quantity == Quantity::kAngle) return FrequencyAtAmplitudesOf(table, kUnbounded);
+  if (table.quantity == Quantity::kAngle || table.gravity == Gravity::kLinear)
+    return FrequencyAtAmplitudesOf(table, kUnbounded);
   // A rate's amplitudes depend on ω0 too: the larger ω0, the smaller they are and the smaller the ω0 they give, so that
   // the two agree once. At the smallest ω0 the largest peak can belong to, the pendulum would swing to the top.
   double peak = 0;
@@ -79,6 +82,7 @@ double NaturalFrequency(const HalfSwingTable& table) {
   const double largest = std::max(FrequencyAtAmplitudesOf(table, smallest), 1.01 * smallest);
   const auto excess = [&](double frequency) { return FrequencyAtAmplitudesOf(table, frequency) - frequency; };
   if (!(excess(smallest) > 0)) return smallest;
+  if (!(excess(largest) < 0)) return largest;
   std::uintmax_t most_evaluations = 100;
   const boost::math::tools::eps_tolerance<double> precise(40);
   const auto [low, high] = boost::math::tools::toms748_solve(excess, smallest, largest, precise, most_evaluations);

@@ -30,8 +30,9 @@ Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<
     return inverse;
   }
   inverse.identifiable = true;
-  inverse.matrix = scale.asDiagonal() * eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
-                   eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const Eigen::MatrixXd root =
+      scale.asDiagonal() * eigen.eigenvectors() * values.cwiseInverse().cwiseSqrt().asDiagonal();
+  inverse.matrix = root * root.transpose();
   return inverse;
 }
 

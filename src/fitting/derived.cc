@@ -62,7 +62,9 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
   for (const PowerProduct& product : products) {
     derived.push_back({product.name, product.unit, Estimate(product, parameters), std::nullopt});
     const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
-    if (covariance != nullptr && !bounded) derived.back().std_error = StdError(product, parameters, *covariance);
+    if (covariance == nullptr || bounded) continue;
+    const double error = StdError(product, parameters, *covariance);
+    if (error > 0) derived.back().std_error = error;
   }
   return derived;
 }

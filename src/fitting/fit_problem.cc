@@ -37,12 +37,15 @@ Result<void> FixParameters(const FitOptions& options, FitProblem& problem) {
                                                      name + "' to fix with this start; it has " + names);
     }
     const bool is_inertia = info->name == kInertia.name;
-    if (!std::isfinite(value) || value < info->lower || value > info->upper || (is_inertia && value == 0)) {
+    const auto i = static_cast<std::size_t>(info - problem.infos.begin());
+    const double internal = (value - problem.offset[i]) / problem.si_per_internal[i];
+    // An inertia must leave ω0 = 1/sqrt(I) a number of a size that can be traced.
+    const bool too_small = is_inertia && !(internal > 1e-30);
+    if (!std::isfinite(internal) || value < info->lower || value > info->upper || too_small) {
       return Error(StatusCode::kInvalidArgument, name + " cannot be fixed at " + NumberText(value) + "; it must be " +
                                                      (is_inertia ? "positive" : "at least " + NumberText(info->lower)));
     }
-    const auto i = static_cast<std::size_t>(info - problem.infos.begin());
-    problem.first_guess[i] = (value - problem.offset[i]) / problem.si_per_internal[i];
+    problem.first_guess[i] = internal;
     problem.solve.fixed[i] = true;
   }
   return {};
@@ -55,6 +58,7 @@ TrajectoryData MakeData(const Recording& recording, const StartValues& start, do
   std::transform(recording.time.begin(), recording.time.end(), data.time.begin(),
                  [&](double time) { return time - recording.time[0]; });
   data.value.assign(recording.value.begin(), recording.value.end());
+  data.natural_frequency = start.natural_frequency;
   data.latest_release = start.latest_release;
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   data.scale = std::max({noise, 0.3 * recording.resolution, 1e-6 * range});

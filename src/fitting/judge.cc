@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/fitting/covariance.h"
 
@@ -60,18 +61,26 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
   return names;
 }
 
-/// Upper end of the 95 % interval of a parameter at its lower bound: where the quadratic through the bound's cost and
-/// slope has risen by 3.84 variances (the profile of the linearized problem).
-double UpperEndAtBound(const Optimum& optimum, int parameter) {
+/// Length of the 95 % interval of a parameter at its lower bound: up to where the quadratic through the bound's cost
+/// and slope has risen by 3.84 variances (the profile of the linearized problem).
+double IntervalAtBound(const Optimum& optimum, int parameter) {
   std::vector<int> freed = optimum.free;
   freed.push_back(parameter);
   const Inverse inverse = InvertInformation(optimum.information, freed);
   if (!inverse.identifiable) return kUnbounded;
   const Index last = inverse.matrix.rows() - 1;
   const Eigen::VectorXd gradient = optimum.gradient(freed);
-  const double unbounded_minimum = -inverse.matrix.row(last).dot(gradient);
-  const double variance = optimum.variance * inverse.matrix(last, last);
-  return unbounded_minimum + std::sqrt(unbounded_minimum * unbounded_minimum + 3.841 * variance);
+  const double below = inverse.matrix.row(last).dot(gradient);  // how far below the bound the minimum lies, >= 0
+  const double rise = 3.841 * optimum.variance * inverse.matrix(last, last);
+  return rise / (std::sqrt(below * below + rise) + below);
+}
+
+double MedianInterval(const std::vector<double>& time) {
+  std::vector<double> intervals(time.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
 }
 
 /// Share of the readings' variance that the trajectory leaves.
@@ -85,11 +94,11 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
                                : "the recording tells only a combination of " + names + "; fix one of them";
 }
 
-void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum,
-                    const Solution& solution, FitReport& report) {
+void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
+                    FitReport& report) {
   // Noise may be as large as a small swing, but it does not follow itself.
-  const double most_unexplained = report.noise.lag1_correlation > 0.5 ? 0.2 : 0.8;
-  constexpr double kLargestShift = 0.03;
+  const double most_unexplained = correlated ? 0.12 : 0.8;
+  constexpr double kLargestShift = 0.1;
   if (!optimum.inverse.identifiable) {
     report.termination = Termination::kNotIdentifiable;
     report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
@@ -100,11 +109,11 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   report.termination = Termination::kNotConverged;
   if (unexplained > most_unexplained) {
     report.reason = "this is not a free pendulum's swing, or not one of this model: the best trajectory leaves " +
-                    NumberText(100 * unexplained, 2) +
+                    std::to_string(std::lround(std::min(100 * unexplained, 1e6))) +
                     " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
   } else if (!(shift <= kLargestShift)) {
-    report.reason =
-        "a step of " + NumberText(shift, 2) + " standard errors is left to make; the solver said: " + solution.message;
+    report.reason = "a step of " + NumberText(shift, 2) +
+                    " standard errors is left to make; a shorter window or another model may converge";
   } else {
     report.termination = Termination::kConverged;
     report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
@@ -136,13 +145,13 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, int i, double 
   if (parameter.at_bound) {
     parameter.reason = "at its bound";
     parameter.lower95 = parameter.estimate;
-    const double upper = scale * UpperEndAtBound(optimum, i);
-    if (std::isfinite(upper)) parameter.upper95 = upper;
+    const double length = scale * IntervalAtBound(optimum, i);
+    if (std::isfinite(length)) parameter.upper95 = parameter.estimate + length;
     return;
   }
   const Index row = std::find(optimum.free.begin(), optimum.free.end(), i) - optimum.free.begin();
   parameter.std_error = scale * std::sqrt(optimum.variance * optimum.inverse.matrix(row, row));
-  parameter.lower95 = parameter.estimate - t95 * *parameter.std_error;
+  parameter.lower95 = std::max(parameter.estimate - t95 * *parameter.std_error, parameter.info.lower);
   parameter.upper95 = parameter.estimate + t95 * *parameter.std_error;
 }
 
@@ -186,22 +195,35 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Solutio
   report.derived = DerivedQuantities(problem.infos, solution.parameters, &covariance, optimum.at_bound);
 }
 
-/// Residuals that are larger than the noise between neighbours and go the same way for long are not noise.
-void WarnOfLackOfFit(const Recording& recording, FitReport& report) {
+/// Residuals that follow each other are not independent, and where they are also larger than the noise between
+/// neighbours the model does not describe the recording.
+void WarnOfLackOfFit(const Recording& recording, bool correlated, FitReport& report) {
   constexpr double kRatio = 1.3;
-  constexpr double kCorrelation = 0.3;
   constexpr double kLargestSaid = 100;
+  if (!correlated) return;
   Recording residuals = recording;
   residuals.value = report.residual;
   const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
-  if (!(ratio > kRatio) || report.noise.lag1_correlation < kCorrelation) return;
+  const std::string consequence = "the error bars, which take the residuals as independent, are too small";
+  if (!(ratio > kRatio)) {
+    report.warnings.push_back({"correlated_residuals", "the residuals follow each other: " + consequence});
+    return;
+  }
   const std::string times = ratio > kLargestSaid ? "more than 100" : NumberText(ratio, 2);
+  report.warnings.push_back({"lack_of_fit", "the residuals are " + times +
+                                                " times the noise between neighbouring samples and follow each other: "
+                                                "the model does not describe everything in this recording, and " +
+                                                consequence});
+}
+
+/// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
+void WarnOfBound(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
+  if (optimum.at_bound.empty() || report.termination != Termination::kConverged) return;
+  const std::string names = JoinNames(problem, optimum.at_bound);
   report.warnings.push_back(
-      {"lack_of_fit", "the residuals are " + times +
-                          " times the noise between neighbouring samples and follow each other (correlation " +
-                          NumberText(report.noise.lag1_correlation, 2) +
-                          "): the model does not describe everything in this recording, and the error bars, which take "
-                          "the residuals as independent, are too small"});
+      {"at_bound", names + (optimum.at_bound.size() == 1 ? " is at its bound" : " are at their bounds") +
+                       ": the error bars of the other parameters take it as exactly 0 and are too small if it is not; "
+                       "compare with the fit of a simpler model, or record for longer"});
 }
 
 /// Another number of half swings before the stop that explains the data nearly as well (9 in -2 log L).
@@ -246,7 +268,9 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.solver = {solution.iterations, solution.evaluations, solution.message};
   if (!solution.usable) {
     report.termination = Termination::kFailed;
-    report.reason = "no trajectory can be traced from the start values: " + solution.message;
+    report.reason =
+        "no trajectory can be traced from the start values: friction would hold the pendulum, its release would lie "
+        "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
     SetParameters(options, problem, Optimum{}, solution, report);
     return report;
   }
@@ -256,11 +280,14 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   const Optimum optimum = Linearize(problem, cost, solution);
   report.noise = {problem.data.scale * std::sqrt(optimum.variance), Lag1Correlation(report.residual)};
   report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum.free.size()), recording.resolution);
-  SetTermination(recording, problem, optimum, solution, report);
+  const auto lags = static_cast<int>(2 * kPi / problem.start.natural_frequency / MedianInterval(problem.data.time));
+  const bool correlated = FollowEachOther(report.residual, lags);
+  SetTermination(recording, problem, optimum, correlated, report);
   SetParameters(options, problem, optimum, solution, report);
   SetDerived(problem, optimum, solution, report);
   if (report.termination == Termination::kConverged) SetCovariance(problem, optimum, report);
-  WarnOfLackOfFit(recording, report);
+  WarnOfLackOfFit(recording, correlated, report);
+  WarnOfBound(problem, optimum, report);
   WarnOfRivals(problem, solution, report);
   WarnOfKink(problem, cost, solution, report);
   return report;

@@ -15,6 +15,24 @@ double Lag1Correlation(const Eigen::VectorXd& residual) {
   return sum > 0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / sum : 0.0;
 }
 
+bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag) {
+  constexpr int kMostLags = 50;
+  constexpr double kDeviations = 6;
+  const Eigen::Index n = residual.size();
+  const double sum = residual.squaredNorm();
+  const Eigen::Index longest = std::clamp<Eigen::Index>(longest_lag, 1, n / 4);
+  const auto count = std::min<Eigen::Index>(longest, kMostLags);
+  if (!(sum > 0)) return false;
+  double portmanteau = 0;
+  for (Eigen::Index i = 1; i <= count; ++i) {
+    const Eigen::Index lag = i * longest / count;
+    const double correlation = residual.tail(n - lag).dot(residual.head(n - lag)) / sum;
+    portmanteau += static_cast<double>(n) * correlation * correlation;
+  }
+  const auto mean = static_cast<double>(count);
+  return portmanteau > mean + kDeviations * std::sqrt(2 * mean);
+}
+
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, int free_parameters, double resolution) {
   const Eigen::Index samples = residual.size();
   const auto n = static_cast<double>(samples);

@@ -16,6 +16,9 @@ namespace pendulum {
 
 namespace {
 
+/// Trajectories after which a search ends where it is: good recordings need tens, hopeless ones would take for ever.
+constexpr int kMostEvaluations = 1000;
+
 /// Indices of the parameters that are not held and stand at their lower bound.
 std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const SolveOptions& options,
                                  const std::vector<bool>& held) {
@@ -33,7 +36,8 @@ class StopAtBound final : public ceres::IterationCallback {
       : parameters_(parameters), options_(options), held_(held) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    const bool landed = summary.iteration > 0 && !AtBound(parameters_, options_, held_).empty();
+    const bool landed =
+        summary.iteration > 0 && summary.step_is_successful && !AtBound(parameters_, options_, held_).empty();
     return landed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
@@ -81,8 +85,9 @@ void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bo
   solution.usable = summary.IsSolutionUsable();
   solution.converged = summary.termination_type == ceres::CONVERGENCE;
   solution.sum = 2 * summary.final_cost;
-  solution.iterations += static_cast<int>(summary.iterations.size()) - 1;
-  solution.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+  // Ceres leaves -1 in what it did not come to count.
+  solution.iterations += std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
+  solution.evaluations += std::max(summary.num_residual_evaluations, 0) + std::max(summary.num_jacobian_evaluations, 0);
   solution.message = summary.message;
 }
 
@@ -92,7 +97,7 @@ int PulledInwards(const TrajectoryCost& cost, const SolveOptions& options, const
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return -1;
   int pulled = -1;
-  double strongest = 0;
+  double strongest = -1e-6 * std::sqrt(solution.sum);  // less is rounding
   for (int i = 0; i < static_cast<int>(held.size()); ++i) {
     if (!held[i] || options.fixed[i] || !(sums(i, i) > 0)) continue;
     const double slope = sums(i, sums.cols() - 1) / std::sqrt(sums(i, i));
@@ -112,7 +117,7 @@ Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const Sol
   const std::size_t most_runs = 4 * start.size();
   for (std::size_t run = 0; run < most_runs; ++run) {
     Run(cost, options, held, solution);
-    if (!solution.usable) break;
+    if (!solution.usable || solution.evaluations > kMostEvaluations) break;
     const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
     for (const std::size_t i : landed) held[i] = true;
     if (!landed.empty()) continue;
@@ -153,7 +158,7 @@ Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution
   constexpr std::size_t kFewest = 16;
   for (const double time : times) {
     const std::size_t count = SamplesBefore(data, time);
-    if (count < kFewest || count >= data.time.size()) continue;
+    if (count < kFewest || count >= data.time.size() || solution.evaluations > kMostEvaluations) continue;
     cost.set_used_samples(count);
     solution = Continue(cost, solution, options);
   }
@@ -168,6 +173,7 @@ double MotionStart(const TrajectoryData& data, const std::vector<double>& parame
 
 std::vector<double> GrowingTimes(double begin, double end, double cycle) {
   std::vector<double> times;
+  if (!(cycle > 0)) return times;
   for (double length = 3 * cycle; begin + length < end; length *= 2) times.push_back(begin + length);
   return times;
 }
@@ -219,7 +225,7 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
 Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
-    for (bool better = true; better;) {
+    for (bool better = true; better && best.evaluations < kMostEvaluations;) {
       Solution trial = best;
       trial.parameters = NextBasin(cost, best.parameters, side, options);
       if (trial.parameters.empty()) break;

@@ -7,6 +7,7 @@
 
 #include <Eigen/QR>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/energy_balance.h"
 #include "pendulum/closed_form/extrema.h"
@@ -33,7 +34,9 @@ struct Centred {
   double noise;
 
   double Reading(Index i) const { return recording.value[i] - table.zero; }
-  double Period(double amplitude) const { return 2 * kPi / natural_frequency * PeriodRatio(amplitude); }
+  double Period(double amplitude) const {
+    return 2 * kPi / natural_frequency * (table.gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
+  }
   /// The first sample from `from` on whose reading is on the other side of zero than `sign`; N if there is none.
   Index FirstOnOtherSide(Index from, double sign) const {
     while (from < recording.size() && Reading(from) * sign >= 0) ++from;
@@ -78,7 +81,7 @@ std::optional<Fall> FirstFall(const Centred& data) {
   const double step = recording.time[after] - recording.time[after - 1];
   const double time = recording.time[after - 1] + step * y0 / (y0 - y1);
   const double level = is_rate ? data.table.half_swings.front().before : std::abs(data.Reading(0));
-  const double amplitude = AngleAmplitude(recording.quantity, level, data.natural_frequency);
+  const double amplitude = AngleAmplitude(recording.quantity, level, data.natural_frequency, data.table.gravity);
   return Fall{time, is_rate ? 0.5 : 0.25, is_rate ? -sign * amplitude : sign * amplitude};
 }
 
@@ -122,25 +125,32 @@ std::pair<double, double> InitialReading(const Centred& data) {
 std::pair<double, double> InitialState(const Centred& data) {
   const auto [reading, slope] = InitialReading(data);
   if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
-  const double sine = -slope / (data.natural_frequency * data.natural_frequency);  // θ'' = -ω0² sin θ
-  return {std::asin(std::clamp(sine, -1.0, 1.0)), reading};
+  const double torque = -slope / (data.natural_frequency * data.natural_frequency);  // θ'' = -ω0² g(θ)
+  const bool is_sine = data.table.gravity == Gravity::kSine;
+  return {is_sine ? std::asin(std::clamp(torque, -1.0, 1.0)) : torque, reading};
 }
 
 double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
   double largest = 0;
   for (const HalfSwing& half : table.half_swings) largest = std::max({largest, half.before, half.after});
-  return AngleAmplitude(table.quantity, largest, natural_frequency);
+  return AngleAmplitude(table.quantity, largest, natural_frequency, table.gravity);
 }
 
 }  // namespace
 
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model, StartChoice choice) {
-  const Result<HalfSwingTable> table = TabulateHalfSwings(recording);
+  Result<HalfSwingTable> table = TabulateHalfSwings(recording);
   if (!table) return tl::unexpected(table.error());
+  table->gravity = model.gravity;
   StartValues values;
   values.natural_frequency = NaturalFrequency(*table);
+  const double inertia = 1 / (values.natural_frequency * values.natural_frequency);
+  if (!(inertia > 1e-30 && inertia < 1e30)) {
+    return Error(StatusCode::kFailedPrecondition, "the period is " + NumberText(2 * kPi / values.natural_frequency, 3) +
+                                                      " s, which no pendulum has; check the unit of time");
+  }
   values.amplitude = LargestAmplitude(*table, values.natural_frequency);
-  values.parameters = {1 / (values.natural_frequency * values.natural_frequency)};
+  values.parameters = {inertia};
   const std::vector<double> friction = FrictionFromEnergyBalance(model, *table, values.natural_frequency);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 

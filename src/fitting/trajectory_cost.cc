@@ -12,9 +12,10 @@
 namespace pendulum {
 namespace {
 
-/// A trial whose time scale asks for more steps than this is not near any recording of so many samples.
-constexpr int kStepsPerSample = 20;
-constexpr int kMostSteps = 10'000;
+/// A trial that asks for more steps than this has a time scale far from that of the start values: a period takes
+/// some 12.
+constexpr double kStepsPerRadian = 20;
+constexpr double kMostSteps = 10'000;
 
 /// Samples are evaluated side by side in lanes: their Horner chains do not wait for each other and fill vector
 /// registers.
@@ -218,7 +219,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     TraceOptions options;
     options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
     options.tolerance = tolerance_;
-    options.max_steps = kStepsPerSample * static_cast<int>(used_samples_) + kMostSteps;
+    options.max_steps =
+        static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMostSteps, 1e9));
     return options;
   }
 

@@ -17,7 +17,7 @@ using testing::DoubleNear;
 // ---- Amplitude and period ----------------------------------------------------------------------------------------
 
 TEST(PeriodRatio, IsThatOfThePublishedTable) {
-  // T/T0 at amplitude [deg]: shared/users.md, table d-1, "Exact period ratio".
+  // T/T0 at amplitude [deg]: computed by the arithmetic-geometric mean elsewhere.
   constexpr std::pair<double, double> kTable[] = {{10, 1.001907188143}, {30, 1.017408797596},  {60, 1.073182007149},
                                                   {90, 1.180340599016}, {120, 1.372880500618}, {150, 1.762203729504},
                                                   {170, 2.439362719674}};

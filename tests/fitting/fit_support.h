@@ -21,7 +21,7 @@
 namespace pendulum {
 
 // Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink) and its sensor, as
-// design.md section 2 gives them: G = (M + m/2) g l, and the slope of the straight line through the calibration table.
+// published: G = (M + m/2) g l, and the slope of the straight line through the calibration table.
 inline constexpr double kTextbookTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
 inline constexpr double kCount = 0.1985 * kPi / 180;                          // rad
 

@@ -106,6 +106,23 @@ TEST(FitRecording, EstimatesOfNoisyDataAreWithinFourStandardErrors) {
   }
 }
 
+TEST(FitRecording, ConvergesWhereARateIsReleasedAtTheInstantOfASample) {
+  // A rate's first moving sample makes a kink in the cost where the release passes it, and the minimum may lie there.
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.quantity = Quantity::kRate;
+  run.parameters[2] *= 3;
+  run.release_angle = 1;
+  run.release_time = 0.7;
+  run.duration = 8;
+  run.sample_rate = 50;
+  run.noise = 0.02;
+  for (const std::uint64_t seed : {1, 2, 3, 78, 120, 131, 139, 203}) {
+    run.seed = seed;
+    const FitReport report = FitOwnModel(run);
+    EXPECT_EQ(report.termination, Termination::kConverged) << "seed " << seed << ": " << report.reason;
+  }
+}
+
 TEST(FitRecording, TakesASwingInADeepGapOfTheData) {
   const SyntheticOptions run = NoisyRun();
   Recording recording = Must(SimulateRecording(run));

@@ -25,7 +25,7 @@ inline constexpr Quantity kQuantities[] = {Quantity::kAngle, Quantity::kRate};
 inline std::vector<double> TypicalParameters(const MotionModel& model, StartKind start) {
   std::vector<double> p = {kReferenceInertia};
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    const auto friction = TypicalFriction<F>(0.004);
+    const auto friction = TypicalFriction<F>(0.003);
     p.insert(p.end(), friction.begin(), friction.end());
   });
   const bool released = start == StartKind::kRelease;

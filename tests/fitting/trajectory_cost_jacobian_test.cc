@@ -81,15 +81,18 @@ void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const 
 
 TEST(Readings, HaveTheJacobianOfCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
-    const TrajectoryData data = Samples(quantity, 4500);
+    const TrajectoryData data = Samples(quantity, 5000);
     const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model, start, data);
     cost->set_tolerance(1e-14);
     const std::vector<double> p = TypicalParameters(model, start);
+    FrictionModels::Visit(model.friction, [&]<typename F>() {
+      EXPECT_EQ(cost->Trace(p).stop_time < data.time.back(), HasDryFriction<F>());
+    });
     Eigen::VectorXd readings;
     Eigen::MatrixXd jacobian;
     ASSERT_TRUE(cost->Readings(p, &readings, &jacobian));
-    ASSERT_EQ(readings.size(), 4500);
-    ASSERT_EQ(jacobian.rows(), 4500);
+    ASSERT_EQ(readings.size(), 5000);
+    ASSERT_EQ(jacobian.rows(), 5000);
     ASSERT_EQ(jacobian.cols(), static_cast<Eigen::Index>(p.size()));
     EXPECT_THAT((readings - ReadingsOf(*cost, p)).lpNorm<Eigen::Infinity>(), Le(1e-12));
     for (int i = 0; i < static_cast<int>(p.size()); ++i) {

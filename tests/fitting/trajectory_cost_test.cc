@@ -135,20 +135,30 @@ TEST(Evaluate, AskedForResidualsAloneGivesTheirNorm) {
   EXPECT_THAT(whole.residuals.norm() / std::sqrt(sum), DoubleNear(1, 1e-12));
 }
 
-// Held throughout: only release angle and zero are seen, and only their sum.
-TEST(Evaluate, GivesADirectionThatTheDataDoNotSeeARowOfZeros) {
+/// Coulomb data held for 50 samples of 0.01 s and, unless `moving` is 0, one sample so long [s] after the release.
+void ExpectRank(double moving, Eigen::Index rank) {
   const MotionModel model = FindMotionModel("coulomb").value();
-  std::vector<double> p = TypicalParameters(model, StartKind::kRelease);
+  const std::vector<double> p = TypicalParameters(model, StartKind::kRelease);
   TrajectoryData data = Simulated(model, StartKind::kRelease, Quantity::kAngle, 50, p, 0.003);
+  if (moving > 0) {
+    data.time.push_back(p[p.size() - 2] + moving);
+    data.value.push_back(data.value[0] - 0.003);
+  }
   const auto cost = MakeTrajectoryCost(model, StartKind::kRelease, data);
   const Evaluation result = Evaluate(*cost, p, std::vector<bool>(p.size(), true));
   ASSERT_TRUE(result.valid);
   ASSERT_TRUE(result.jacobian.allFinite() && result.residuals.allFinite());
-  EXPECT_EQ((result.jacobian.rowwise().norm().array() > 0).count(), 1);
+  EXPECT_EQ((result.jacobian.rowwise().norm().array() > 0).count(), rank) << moving;
   const Eigen::MatrixXd expected = ExpectedSums(*cost, data, p);
   Eigen::MatrixXd all(result.jacobian.rows(), result.jacobian.cols() + 1);
   all << result.jacobian, result.residuals;
-  EXPECT_THAT((all.transpose() * all - expected).lpNorm<Eigen::Infinity>(), Le(1e-12 * expected.norm()));
+  EXPECT_THAT((all.transpose() * all - expected).lpNorm<Eigen::Infinity>(), Le(1e-12 * expected.norm())) << moving;
+}
+
+// Held throughout, only the sum of release angle and zero is seen; one sample more, and all else acts on that sample.
+TEST(Evaluate, GivesADirectionThatTheDataDoNotSeeARowOfZeros) {
+  ExpectRank(0, 1);
+  for (int i = 1; i <= 30; ++i) ExpectRank(0.003 * i, 2);
 }
 
 // ---- What is refused ---------------------------------------------------------------------------------------------
@@ -225,6 +235,7 @@ TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
     Eigen::MatrixXd expected;
     ASSERT_TRUE(cost->Sums(example.trial, &expected));
     EXPECT_EQ(part, expected) << count;
+    EXPECT_EQ(example.cost->Trace(example.trial).steps, cost->Trace(example.trial).steps) << count;
     EXPECT_EQ(ReadingsOf(*example.cost, example.trial).size(), static_cast<Eigen::Index>(count));
   }
   example.cost->set_used_samples(example.data.time.size());

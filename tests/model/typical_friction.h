@@ -3,23 +3,28 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "pendulum/model/friction/friction_model.h"
 
 namespace pendulum {
 
-/// Parameters for any friction law, also one that was added yesterday: alone, each parameter gives the torque `torque`
-/// (in units of G) at 1 rad/s; one that alone gives none, such as a reference rate, is 1.
+/// Parameters for any friction law, also one that was added yesterday. A torque's coefficient is such that it alone
+/// gives about `torque` (in units of G) at rest or at 1 rad/s, each a quarter more than the last, so that no two of
+/// them cancel; what is no torque, such as a reference rate, is 1.
 template <FrictionModel F>
 std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
-  std::array<double, kFrictionParameters<F>> typical;
+  const auto clamp = [](double value, const ParameterInfo& info) { return std::clamp(value, info.lower, info.upper); };
+  std::array<double, kFrictionParameters<F>> none{};
   for (int i = 0; i < kFrictionParameters<F>; ++i) {
-    std::array<double, kFrictionParameters<F>> alone{};
+    if (!F::kParameters[i].scales_with_gravity()) none[i] = clamp(1.0, F::kParameters[i]);
+  }
+  std::array<double, kFrictionParameters<F>> typical = none;
+  for (int i = 0; i < kFrictionParameters<F>; ++i) {
+    if (!F::kParameters[i].scales_with_gravity()) continue;
+    std::array<double, kFrictionParameters<F>> alone = none;
     alone[i] = 1;
-    const double unit_torque = F::Torque(1.0, 1.0, alone.data());
-    const double value = unit_torque > 0 && std::isfinite(unit_torque) ? torque / unit_torque : 1.0;
-    typical[i] = std::clamp(value, F::kParameters[i].lower, F::kParameters[i].upper);
+    const double unit = std::max(F::Torque(0.0, 1.0, alone.data()), F::Torque(1.0, 1.0, alone.data()));
+    typical[i] = clamp(torque * (1 + 0.25 * i) / unit, F::kParameters[i]);
   }
   return typical;
 }

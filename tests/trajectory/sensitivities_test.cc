@@ -86,7 +86,7 @@ struct Experiment {
   std::array<double, kParameters> p{};
 
   Experiment(Gravity gravity_law, StartKind start) : gravity(gravity_law), kind(start) {
-    const auto friction = TypicalFriction<F>(0.004);
+    const auto friction = TypicalFriction<F>(0.003);
     p[0] = kReferenceInertia;
     std::copy(friction.begin(), friction.end(), p.begin() + 1);
     p[kFriction + 1] = kind == StartKind::kRelease ? 1.1 : 0.7;

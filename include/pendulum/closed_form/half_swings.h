@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
@@ -18,10 +19,9 @@ struct HalfSwing {
 /// The half swings of a recording about its zero.
 struct HalfSwingTable {
   Quantity quantity = Quantity::kAngle;
-  double zero = 0;        ///< rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry
-                          ///< friction adds nothing
-  double first_turn = 0;  ///< rad or rad/s, reading at the first turning point
-  double first_turn_time = 0;  ///< s
+  Gravity gravity = Gravity::kSine;  ///< The law the closed forms take for it; the caller's choice.
+  double zero = 0;  ///< rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry
+                    ///< friction adds nothing
   std::vector<HalfSwing> half_swings;
 };
 

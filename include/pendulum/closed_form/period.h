@@ -10,8 +10,8 @@ namespace pendulum {
 double PeriodRatio(double amplitude);
 
 /// The angle amplitude [rad] that goes with the amplitude of a reading: itself for an angle, 2 asin(ω_peak / 2 ω0) for
-/// the peak of a rate (MODEL.md eq. (21)), at most 3.1 rad.
-double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency);
+/// the peak of a rate (MODEL.md eq. (21)), at most 3.1 rad. With linear gravity ω_peak / ω0, and no limit.
+double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency, Gravity gravity = Gravity::kSine);
 
 /// Small-angle natural frequency ω0 [rad/s] from the crossings: their spacing is (π/ω0) PeriodRatio(amplitude between
 /// them); one slope over all of them, an intercept for each run without gaps. Friction enters to second order, ω_d = ω0

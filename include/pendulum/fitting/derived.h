@@ -25,7 +25,8 @@ struct DerivedQuantity {
 ///
 /// infos: the model's parameters, inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero
 /// rows for what is held; nullptr when there is none, and then no standard errors. at_bound: indices of parameters at a
-/// bound; what depends on one has no standard error. quality_factor is left out when b = 0.
+/// bound; what depends on one, or on held parameters alone, has no standard error. quality_factor is left out when b =
+/// 0.
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);

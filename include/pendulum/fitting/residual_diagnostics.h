@@ -19,6 +19,11 @@ struct FitStatistics {
 /// Correlation of each residual with the next, Σ r_i r_{i-1} / Σ r_i²; 0 for residuals that are all 0.
 double Lag1Correlation(const Eigen::VectorXd& residual);
 
+/// Whether residuals follow each other, against independence: Box and Pierce's portmanteau N Σ ρ_k² over at most 50
+/// lags, spread evenly over 1..longest_lag, is six standard deviations above its mean (Box & Pierce, JASA 65:1509,
+/// 1970). A misfit that swings with the pendulum shows at some lag within one period.
+bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
+
 /// Statistics of N residuals [rad or rad/s] of a fit with that many free parameters. resolution: same unit, 0 for none.
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, int free_parameters, double resolution);
 

@@ -18,9 +18,10 @@ namespace pendulum {
 /// digits.
 struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
-  std::vector<double> time;   ///< N, s, increasing, time[0] = 0.
-  std::vector<double> value;  ///< N, rad or rad/s.
-  double latest_release = 0;  ///< s; a trial released outside [0, latest_release] is refused.
+  std::vector<double> time;      ///< N, s, increasing, time[0] = 0.
+  std::vector<double> value;     ///< N, rad or rad/s.
+  double natural_frequency = 0;  ///< rad/s, roughly; a trial of a very different time scale is refused.
+  double latest_release = 0;     ///< s; a trial released outside [0, latest_release] is refused.
   double scale =
       1;  ///< rad or rad/s; residuals are divided by it, so that Ceres' tolerances are those of numbers near 1.
 };
