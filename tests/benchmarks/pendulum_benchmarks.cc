@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a trajectory and a fit take, beside what a user of Ceres would write by hand: scripts/run_benchmarks makes
+// How long a trajectory and a fit take, beside what a user of Ceres would write by hand. README has the
 // the table from it.
 #include "pendulum_benchmarks.h"
 
