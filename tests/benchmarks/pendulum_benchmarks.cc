@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long a trajectory and a fit take, beside what a user of Ceres would write by hand. README has the
-// the table from it.
+// table from it.
 #include "pendulum_benchmarks.h"
 
 #include <benchmark/benchmark.h>

@@ -83,16 +83,11 @@ TEST(NotASwing, ASawtooth) {
 }
 
 TEST(NotASwing, ASquareWave) {
-  ExpectNeverConverged(
-      [](std::uint64_t seed) {
-        const double phase = 0.37 * static_cast<double>(seed);
-        return Made(
-            [&](double t, const Noise& noise) {
-              return (std::fmod(0.8 * t + phase, 1.0) < 0.5 ? 0.3 : -0.3) + 0.01 * noise();
-            },
-            seed);
-      },
-      false);
+  ExpectNeverConverged([](std::uint64_t seed) {
+    const double phase = 0.37 * static_cast<double>(seed);
+    const auto side = [=](double t) { return std::fmod(0.8 * t + phase, 1.0) < 0.5 ? 0.3 : -0.3; };
+    return Made([&](double t, const Noise& noise) { return side(t) + 0.01 * noise(); }, seed);
+  });
 }
 
 TEST(NotASwing, ASweepOfFrequency) {
