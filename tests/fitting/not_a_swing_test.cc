@@ -29,44 +29,34 @@ Recording Made(const std::function<double(double, const Noise&)>& y, std::uint64
   return Must(MakeRecording(std::move(recording)));
 }
 
-/// Fits every model to a few seeds and judges each fit; data refused for want of a swing are as good as judged.
-void ForEveryFit(const std::function<Recording(std::uint64_t)>& make,
-                 const std::function<void(const FitReport&)>& judge) {
+/// Every model, a few seeds: refused for want of a swing, or exit code 1 with a reason.
+///
+/// The small-angle model is left out on request: of a true swing of 40 deg it leaves 14 % of the variance unexplained,
+/// as much as of some of these.
+void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make, bool with_linear = true) {
   for (const MotionModel& model : MotionModels()) {
+    if (model.gravity == Gravity::kLinear && !with_linear) continue;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(std::string(model.name) + ", seed " + std::to_string(seed));
       const Result<FitReport> report = FitRecording(make(seed), ModelOptions(model.name));
-      if (report) {
-        judge(*report);
-      } else {
+      if (!report) {
         EXPECT_EQ(report.error().code, StatusCode::kFailedPrecondition);
+        continue;
       }
+      EXPECT_EQ(ExitCode(report->termination), 1) << report->statistics.rms_residual;
+      EXPECT_FALSE(report->reason.empty());
+      EXPECT_EQ(report->covariance.size(), 0);
     }
   }
 }
 
-void ExpectNotConverged(const FitReport& report) {
-  EXPECT_EQ(ExitCode(report.termination), 1) << report.statistics.rms_residual;
-  EXPECT_FALSE(report.reason.empty());
-  EXPECT_EQ(report.covariance.size(), 0);
-}
-
-void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make) {
-  ForEveryFit(make, ExpectNotConverged);
-}
-
-// One random walk in ten looks so much like a few damped swings that a trajectory explains 82 % to 96 % of its
-// variance, which the small-angle model does not of a true swing of 40 deg. Such a fit may converge; not without a
-// warning.
 TEST(NotASwing, ARandomWalk) {
-  const auto random_walk = [](std::uint64_t seed) {
-    double position = 0;
-    return Made([&](double, const Noise& noise) { return position += 0.05 * noise(); }, seed);
-  };
-  ForEveryFit(random_walk, [](const FitReport& report) {
-    if (ExitCode(report.termination) == 1) return;
-    EXPECT_THAT(report.warnings, testing::Contains(testing::Field(&Warning::code, "lack_of_fit")));
-  });
+  ExpectNeverConverged(
+      [](std::uint64_t seed) {
+        double position = 0;
+        return Made([&](double, const Noise& noise) { return position += 0.05 * noise(); }, seed);
+      },
+      false);
 }
 
 TEST(NotASwing, WhiteNoise) {
@@ -83,11 +73,16 @@ TEST(NotASwing, ASawtooth) {
 }
 
 TEST(NotASwing, ASquareWave) {
-  ExpectNeverConverged([](std::uint64_t seed) {
-    const double phase = 0.37 * static_cast<double>(seed);
-    const auto side = [=](double t) { return std::fmod(0.8 * t + phase, 1.0) < 0.5 ? 0.3 : -0.3; };
-    return Made([&](double t, const Noise& noise) { return side(t) + 0.01 * noise(); }, seed);
-  });
+  ExpectNeverConverged(
+      [](std::uint64_t seed) {
+        const double phase = 0.37 * static_cast<double>(seed);
+        return Made(
+            [&](double t, const Noise& noise) {
+              return (std::fmod(0.8 * t + phase, 1.0) < 0.5 ? 0.3 : -0.3) + 0.01 * noise();
+            },
+            seed);
+      },
+      false);
 }
 
 TEST(NotASwing, ASweepOfFrequency) {
