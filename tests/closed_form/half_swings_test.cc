@@ -120,7 +120,7 @@ TEST(TabulateHalfSwings, RefusesWhatHasTooFewTurningPoints) {
   const auto table = TabulateHalfSwings(Sample(Cosine, 1, 100));
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(table.error().message, HasSubstr("three are needed to tell a swing"));
+  EXPECT_THAT(table.error().message, HasSubstr("are needed to tell a swing"));
 }
 
 TEST(TabulateHalfSwings, KeepsTheQuantity) {

@@ -202,7 +202,7 @@ TEST(EstimateStartValues, RefuseARecordingWithoutASwing) {
   const auto start = EstimateStartValues(Must(SimulateRecording(options)), options.model, StartChoice::kAuto);
   ASSERT_FALSE(start);
   EXPECT_EQ(start.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(start.error().message, HasSubstr("three are needed to tell a swing"));
+  EXPECT_THAT(start.error().message, HasSubstr("are needed to tell a swing"));
 }
 
 }  // namespace
