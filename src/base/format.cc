@@ -8,8 +8,9 @@ namespace pendulum {
 
 std::string NumberText(double value, int significant_digits) {
   std::array<char, 64> text{};
-  const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::general, significant_digits).ptr;
-  return {text.begin(), end};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, significant_digits);
+  return {text.data(), end};
 }
 
 std::string NumberText(double value) {

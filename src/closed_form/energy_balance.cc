@@ -69,13 +69,13 @@ class LossEquations {
     energies_.assign(1, energy);
   }
   void Add(const Eigen::RowVectorXd& loss, double energy) {
-    rows_.push_back(rows_.back() + loss);
+    rows_.emplace_back(rows_.back() + loss);
     energies_.push_back(energy);
   }
   void FinishRun() {
     Eigen::RowVectorXd mean_row = Eigen::RowVectorXd::Zero(right.size());
     double mean_energy = 0;
-    const double count = static_cast<double>(rows_.size());
+    const auto count = static_cast<double>(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       mean_row += rows_[i] / count;
       mean_energy += energies_[i] / count;

@@ -21,7 +21,7 @@ std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const 
   std::vector<double> phase, time;
   std::size_t run_start = 0;
   const auto centre_run = [&run_start](std::vector<double>& values) {
-    const double count = static_cast<double>(values.size() - run_start);
+    const auto count = static_cast<double>(values.size() - run_start);
     double mean = 0;
     for (std::size_t i = run_start; i < values.size(); ++i) mean += values[i] / count;
     for (std::size_t i = run_start; i < values.size(); ++i) values[i] -= mean;

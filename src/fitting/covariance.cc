@@ -7,8 +7,8 @@
 
 namespace pendulum {
 
-Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
-  Inverse inverse;
+InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
+  InformationInverse inverse;
   inverse.identifiable = free.empty();
   if (free.empty()) return inverse;
   const Eigen::VectorXd norms = information.diagonal()(free).cwiseSqrt();

@@ -6,6 +6,7 @@
 
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
+#include "pendulum/fitting/search.h"
 #include "pendulum/trajectory/tolerance.h"
 
 namespace pendulum {
@@ -27,7 +28,7 @@ bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution)
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
   constexpr double kSmallestError = 1e-12;  // rad; rounding over a long recording comes near it
   constexpr int kMostRefinements = 3;
-  const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.noise), kSmallestError);
+  const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.data.scale), kSmallestError);
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
   Solution solution = Search(cost, problem.data, problem.first_guess, problem.solve);

@@ -25,33 +25,56 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
-/// Puts the fixed values in, in the units of the problem; refuses names and values the model does not have.
-Result<void> FixParameters(const FitOptions& options, FitProblem& problem) {
-  for (const auto& [name, value] : options.fixed) {
+/// What a parameter may be, for a sentence, in the units of the report.
+std::string Range(const FitProblem& problem, std::size_t i) {
+  if (problem.infos[i].name == kInertia.name) return "positive";
+  const auto reported = [&](double internal) {
+    return NumberText(problem.si_per_internal[i] * internal + problem.offset[i]);
+  };
+  const std::string from = "at least " + reported(problem.solve.lower[i]);
+  return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
+}
+
+/// Puts a fixed value in, in the units of the problem; refuses one that the parameter cannot have.
+Result<void> FixParameter(double value, std::size_t i, FitProblem& problem) {
+  const double internal = (value - problem.offset[i]) / problem.si_per_internal[i];
+  // An inertia must leave ω0 = 1/sqrt(I) a number of a size that can be traced.
+  const bool too_small = problem.infos[i].name == kInertia.name && !(internal > 1e-30);
+  const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
+  if (!std::isfinite(internal) || outside || too_small) {
+    return Error(StatusCode::kInvalidArgument, std::string(problem.infos[i].name) + " cannot be fixed at " +
+                                                   NumberText(value) + "; it must be " + Range(problem, i));
+  }
+  problem.first_guess[i] = internal;
+  problem.solve.fixed[i] = true;
+  return {};
+}
+
+Result<void> FixParameters(const ParameterValues& fixed, FitProblem& problem) {
+  for (const auto& entry : fixed) {
     const auto info =
-        std::find_if(problem.infos.begin(), problem.infos.end(), [&](const auto& i) { return i.name == name; });
+        std::find_if(problem.infos.begin(), problem.infos.end(), [&](const auto& i) { return i.name == entry.first; });
     if (info == problem.infos.end()) {
-      std::string names;
-      for (const ParameterInfo& known : problem.infos) names += (names.empty() ? "" : ", ") + std::string(known.name);
       return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" +
-                                                     name + "' to fix with this start; it has " + names);
+                                                     entry.first + "' to fix with this start; it has " +
+                                                     NameList(problem.infos));
     }
-    const bool is_inertia = info->name == kInertia.name;
     const auto i = static_cast<std::size_t>(info - problem.infos.begin());
-    const double internal = (value - problem.offset[i]) / problem.si_per_internal[i];
-    // An inertia must leave ω0 = 1/sqrt(I) a number of a size that can be traced.
-    const bool too_small = is_inertia && !(internal > 1e-30);
-    if (!std::isfinite(internal) || value < info->lower || value > info->upper || too_small) {
-      return Error(StatusCode::kInvalidArgument, name + " cannot be fixed at " + NumberText(value) + "; it must be " +
-                                                     (is_inertia ? "positive" : "at least " + NumberText(info->lower)));
-    }
-    problem.first_guess[i] = internal;
-    problem.solve.fixed[i] = true;
+    if (Result<void> done = FixParameter(entry.second, i, problem); !done) return done;
   }
   return {};
 }
 
-TrajectoryData MakeData(const Recording& recording, const StartValues& start, double noise) {
+/// Bounds in the units of the problem: those of the parameters, and the hold for the release.
+void SetBounds(FitProblem& problem) {
+  for (const ParameterInfo& info : problem.infos) {
+    const bool is_release = info.name == kReleaseTime.name;
+    problem.solve.lower.push_back(is_release ? 0.0 : info.name == kInertia.name ? -kUnbounded : info.lower);
+    problem.solve.upper.push_back(is_release ? problem.start.latest_release : info.upper);
+  }
+}
+
+TrajectoryData MakeData(const Recording& recording, const StartValues& start) {
   TrajectoryData data;
   data.quantity = recording.quantity;
   data.time.resize(static_cast<std::size_t>(recording.size()));
@@ -61,7 +84,7 @@ TrajectoryData MakeData(const Recording& recording, const StartValues& start, do
   data.natural_frequency = start.natural_frequency;
   data.latest_release = start.latest_release;
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
-  data.scale = std::max({noise, 0.3 * recording.resolution, 1e-6 * range});
+  data.scale = std::max({SuccessiveDifferenceNoise(recording), 0.3 * recording.resolution, 1e-6 * range});
   return data;
 }
 
@@ -89,18 +112,17 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.start = *start;
   problem.infos = FitParameters(*model, start->start, recording.quantity);
   problem.first_guess = start->parameters;
-  problem.noise = SuccessiveDifferenceNoise(recording);
-  problem.data = MakeData(recording, *start, problem.noise);
+  problem.data = MakeData(recording, *start);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   for (const ParameterInfo& info : problem.infos) {
     problem.si_per_internal.push_back(info.scales_with_gravity() ? gravity_torque : 1.0);
     problem.offset.push_back(info.name == kReleaseTime.name ? recording.time[0] : 0.0);
-    problem.solve.lower.push_back(info.name == kInertia.name ? -kUnbounded : info.lower);
   }
+  SetBounds(problem);
   problem.solve.fixed.assign(problem.infos.size(), false);
   problem.solve.holding_parameter = HoldingParameter(*model);
   problem.solve.max_iterations = options.max_iterations;
-  if (const Result<void> fixed = FixParameters(options, problem); !fixed) return tl::unexpected(fixed.error());
+  if (const Result<void> fixed = FixParameters(options.fixed, problem); !fixed) return tl::unexpected(fixed.error());
   return problem;
 }
 

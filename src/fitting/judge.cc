@@ -22,8 +22,8 @@ struct Optimum {
   Eigen::VectorXd gradient;     // P, J'r
   std::vector<int> free;        // neither fixed nor at a bound
   std::vector<int> at_bound;
-  Inverse inverse;      // over free
-  double variance = 0;  // of one residual
+  InformationInverse inverse;  // over free
+  double variance = 0;         // of one residual
 };
 
 Optimum Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
@@ -35,11 +35,12 @@ Optimum Linearize(const FitProblem& problem, const TrajectoryCost& cost, const S
   optimum.gradient = sums.col(size).head(size);
   for (int i = 0; i < static_cast<int>(size); ++i) {
     if (problem.solve.fixed[i]) continue;
-    const bool pushes_out = solution.parameters[i] <= problem.solve.lower[i] && optimum.gradient[i] >= 0;
+    const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
+    const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
     (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
   }
   optimum.inverse = InvertInformation(optimum.information, optimum.free);
-  const double samples = static_cast<double>(problem.data.time.size());
+  const auto samples = static_cast<double>(problem.data.time.size());
   optimum.variance = solution.sum / std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
   return optimum;
 }
@@ -61,18 +62,18 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
   return names;
 }
 
-/// Length of the 95 % interval of a parameter at its lower bound: up to where the quadratic through the bound's cost
+/// Length of the 95 % interval of a parameter at its bound: up to where the quadratic through the bound's cost
 /// and slope has risen by 3.84 variances (the profile of the linearized problem).
 double IntervalAtBound(const Optimum& optimum, int parameter) {
   std::vector<int> freed = optimum.free;
   freed.push_back(parameter);
-  const Inverse inverse = InvertInformation(optimum.information, freed);
+  const InformationInverse inverse = InvertInformation(optimum.information, freed);
   if (!inverse.identifiable) return kUnbounded;
   const Index last = inverse.matrix.rows() - 1;
   const Eigen::VectorXd gradient = optimum.gradient(freed);
-  const double below = inverse.matrix.row(last).dot(gradient);  // how far below the bound the minimum lies, >= 0
+  const double beyond = std::abs(inverse.matrix.row(last).dot(gradient));  // how far past the bound the minimum lies
   const double rise = 3.841 * optimum.variance * inverse.matrix(last, last);
-  return rise / (std::sqrt(below * below + rise) + below);
+  return rise / (std::sqrt(beyond * beyond + rise) + beyond);
 }
 
 double MedianInterval(const std::vector<double>& time) {
@@ -88,6 +89,17 @@ double UnexplainedShare(const Recording& recording, const Eigen::VectorXd& resid
   return residual.squaredNorm() / (recording.value.array() - recording.value.mean()).matrix().squaredNorm();
 }
 
+/// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
+/// reversal: a little less friction and it would swing on.
+bool OnKink(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+  constexpr double kNear = 1e-4;
+  const int holding = problem.solve.holding_parameter;
+  if (holding < 0) return false;
+  const TraceSummary trace = cost.Trace(solution.parameters);
+  return trace.stop_time < problem.data.time.back() &&
+         trace.smallest_reversal_margin < kNear * solution.parameters[holding];
+}
+
 std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<int>& direction) {
   const std::string names = JoinNames(problem, direction);
   return direction.size() == 1 ? "the recording does not depend on " + names + "; fix it"
@@ -95,7 +107,7 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
 }
 
 void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
-                    FitReport& report) {
+                    bool on_kink, FitReport& report) {
   // Noise may be as large as a small swing, but it does not follow itself.
   const double most_unexplained = correlated ? 0.12 : 0.8;
   constexpr double kLargestShift = 0.1;
@@ -112,8 +124,13 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
                     std::to_string(std::lround(std::min(100 * unexplained, 1e6))) +
                     " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
   } else if (!(shift <= kLargestShift)) {
-    report.reason = "a step of " + NumberText(shift, 2) +
-                    " standard errors is left to make; a shorter window or another model may converge";
+    report.reason = on_kink ? "the best trajectory stops just where one half swing more would begin, and there the sum "
+                              "of squares has a kink; end the window before the stop (--to) or choose another model"
+                            : "a step of " + NumberText(shift, 2) +
+                                  " standard errors is left to make; a shorter window or another model may converge";
+  } else if (optimum.free.empty() && optimum.at_bound.empty()) {
+    report.termination = Termination::kConverged;
+    report.reason = "every parameter is fixed: nothing was fitted";
   } else {
     report.termination = Termination::kConverged;
     report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
@@ -144,9 +161,11 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, int i, double 
   const double scale = problem.si_per_internal[i];
   if (parameter.at_bound) {
     parameter.reason = "at its bound";
-    parameter.lower95 = parameter.estimate;
+    const bool at_lower = optimum.gradient[i] >= 0;
     const double length = scale * IntervalAtBound(optimum, i);
-    if (std::isfinite(length)) parameter.upper95 = parameter.estimate + length;
+    (at_lower ? parameter.lower95 : parameter.upper95) = parameter.estimate;
+    if (!std::isfinite(length)) return;
+    (at_lower ? parameter.upper95 : parameter.lower95) = parameter.estimate + (at_lower ? length : -length);
     return;
   }
   const Index row = std::find(optimum.free.begin(), optimum.free.end(), i) - optimum.free.begin();
@@ -221,23 +240,24 @@ void WarnOfBound(const FitProblem& problem, const Optimum& optimum, FitReport& r
   if (optimum.at_bound.empty() || report.termination != Termination::kConverged) return;
   const std::string names = JoinNames(problem, optimum.at_bound);
   report.warnings.push_back(
-      {"at_bound", names + (optimum.at_bound.size() == 1 ? " is at its bound" : " are at their bounds") +
-                       ": the error bars of the other parameters take it as exactly 0 and are too small if it is not; "
-                       "compare with the fit of a simpler model, or record for longer"});
+      {"at_bound",
+       names + (optimum.at_bound.size() == 1 ? " is at its bound" : " are at their bounds") +
+           ": the error bars of the other parameters take it as exactly known and are too small if it is not; "
+           "compare with the fit of a simpler model, or record for longer"});
 }
 
 /// Another number of half swings before the stop that explains the data nearly as well (9 in -2 log L).
-void WarnOfRivals(const FitProblem& problem, const Solution& solution, FitReport& report) {
+void WarnOfOtherMinima(const FitProblem& problem, const Solution& solution, FitReport& report) {
   const int holding = problem.solve.holding_parameter;
   if (holding < 0 || !report.parameters[holding].std_error) return;
   const double error = *report.parameters[holding].std_error / problem.si_per_internal[holding];
-  const double samples = static_cast<double>(problem.data.time.size());
-  for (const Rival& rival : solution.rivals) {
-    const double distance = rival.parameters[holding] - solution.parameters[holding];
-    if (samples * std::log(rival.sum / solution.sum) > 9 || std::abs(distance) < error) continue;
+  const auto samples = static_cast<double>(problem.data.time.size());
+  for (const Minimum& other : solution.other_minima) {
+    const double distance = other.parameters[holding] - solution.parameters[holding];
+    if (samples * std::log(other.sum / solution.sum) > 9 || std::abs(distance) < error) continue;
     report.warnings.push_back(
         {"another_minimum", "a second minimum at " + std::string(problem.infos[holding].name) + " " +
-                                NumberText(problem.si_per_internal[holding] * rival.parameters[holding], 6) +
+                                NumberText(problem.si_per_internal[holding] * other.parameters[holding], 6) +
                                 " explains the recording nearly as well"});
     return;
   }
@@ -249,7 +269,7 @@ void WarnOfKink(const FitProblem& problem, const TrajectoryCost& cost, const Sol
   if (holding < 0 || !report.parameters[holding].std_error) return;
   const double error = *report.parameters[holding].std_error / problem.si_per_internal[holding];
   const TraceSummary trace = cost.Trace(solution.parameters);
-  if (!(trace.stop_time < problem.data.time.back() && trace.last_reversal_margin < 3 * error)) return;
+  if (!(trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error)) return;
   report.warnings.push_back(
       {"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " +
                              std::string(problem.infos[holding].name) +
@@ -264,7 +284,6 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.model = problem.model;
   report.start = problem.start.start;
   report.quantity = recording.quantity;
-  report.has_rig = options.rig.has_value();
   report.solver = {solution.iterations, solution.evaluations, solution.message};
   if (!solution.usable) {
     report.termination = Termination::kFailed;
@@ -282,13 +301,13 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum.free.size()), recording.resolution);
   const auto lags = static_cast<int>(2 * kPi / problem.start.natural_frequency / MedianInterval(problem.data.time));
   const bool correlated = FollowEachOther(report.residual, lags);
-  SetTermination(recording, problem, optimum, correlated, report);
+  SetTermination(recording, problem, optimum, correlated, OnKink(problem, cost, solution), report);
   SetParameters(options, problem, optimum, solution, report);
   SetDerived(problem, optimum, solution, report);
   if (report.termination == Termination::kConverged) SetCovariance(problem, optimum, report);
   WarnOfLackOfFit(recording, correlated, report);
   WarnOfBound(problem, optimum, report);
-  WarnOfRivals(problem, solution, report);
+  WarnOfOtherMinima(problem, solution, report);
   WarnOfKink(problem, cost, solution, report);
   return report;
 }

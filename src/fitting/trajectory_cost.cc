@@ -74,13 +74,14 @@ class Products {
 /// R, R^-T J'r and the rest of |r| from the sums (MODEL.md eq. (19)), by a pivoted Cholesky factor of J'J scaled to
 /// unit diagonal: a direction that the data do not see gets a row of zeros, which Levenberg-Marquardt leaves alone.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
+  constexpr double kRounding = 1e-15;  // of a diagonal of ones
   const Eigen::Index size = sums.rows() - 1;
   const Eigen::VectorXd norms = sums.diagonal().head(size).cwiseSqrt();
   const Eigen::VectorXd inverse = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
   Eigen::MatrixXd correlation = inverse.asDiagonal() * sums.topLeftCorner(size, size) * inverse.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(correlation);
   const Eigen::VectorXd d = ldlt.vectorD();
-  const Eigen::VectorXd root = d.unaryExpr([](double x) { return x > 1e-15 ? std::sqrt(x) : 0.0; });
+  const Eigen::VectorXd root = d.unaryExpr([](double x) { return x > kRounding ? std::sqrt(x) : 0.0; });
   Eigen::VectorXd gradient = ldlt.transpositionsP() * (inverse.asDiagonal() * sums.col(size).head(size)).eval();
   ldlt.matrixL().solveInPlace(gradient);
   const Eigen::MatrixXd scaled = ldlt.transpositionsP() * Eigen::MatrixXd(norms.asDiagonal());

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
@@ -13,14 +14,7 @@ std::vector<MotionModel> MotionModels() {
   return models;
 }
 
-std::string MotionModelNames() {
-  std::string names;
-  for (const MotionModel& model : MotionModels()) {
-    if (!names.empty()) names += ", ";
-    names += model.name;
-  }
-  return names;
-}
+std::string MotionModelNames() { return NameList(MotionModels()); }
 
 Result<MotionModel> FindMotionModel(std::string_view name) {
   for (const MotionModel& model : MotionModels()) {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/report/layout.h"
 
 namespace pendulum {
@@ -121,6 +122,48 @@ Result<double> ParseNumber(std::string_view flag, std::string_view value, std::s
                  std::string(flag) + " is '" + std::string(value) + "'; it must be " + std::string(meaning));
   }
   return number;
+}
+
+namespace {
+
+tl::unexpected<Status> BadSetting(std::string_view flag, const std::string& sentence) {
+  return Error(StatusCode::kInvalidArgument, std::string(flag) + ": " + sentence);
+}
+
+Result<void> CheckSetting(std::string_view flag, std::string_view model, std::span<const ParameterInfo> parameters,
+                          const std::string& name, double value) {
+  const auto info = std::ranges::find(parameters, name, &ParameterInfo::name);
+  if (info == parameters.end()) {
+    return BadSetting(flag, "model " + std::string(model) + " has no parameter '" + name + "'; its parameters are " +
+                                NameList(parameters));
+  }
+  if (value >= info->lower && value <= info->upper) return {};
+  const bool low = value < info->lower;
+  return BadSetting(flag, name + " is " + NumberText(value) + "; it must be at " + (low ? "least " : "most ") +
+                              NumberText(low ? info->lower : info->upper));
+}
+
+}  // namespace
+
+Result<ParameterValues> ParseSettings(std::string_view flag, std::string_view text, std::string_view model,
+                                      std::span<const ParameterInfo> parameters) {
+  ParameterValues settings;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string entry(text.substr(begin, end - begin));
+    const std::size_t equals = entry.find('=');
+    if (equals == 0 || equals == std::string::npos) return BadSetting(flag, "'" + entry + "' must be name=value");
+    const std::string name = entry.substr(0, equals);
+    const auto value = ParseNumber(std::string(flag) + " " + name, entry.substr(equals + 1), "a number in SI units");
+    if (!value) return tl::unexpected(value.error());
+    if (const auto checked = CheckSetting(flag, model, parameters, name, *value); !checked) {
+      return tl::unexpected(checked.error());
+    }
+    if (!settings.emplace(name, *value).second) return BadSetting(flag, name + " is given twice");
+    begin = end + 1;
+    if (begin == text.size()) return BadSetting(flag, "'" + std::string(text) + "' ends with a comma");
+  }
+  return settings;
 }
 
 }  // namespace pendulum

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/model/parameter.h"
 
 namespace pendulum {
 
@@ -31,5 +32,12 @@ std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);
 
 /// The value of a flag that is a finite number. kInvalidArgument names flag, value and what it should be.
 Result<double> ParseNumber(std::string_view flag, std::string_view value, std::string_view meaning);
+
+/// The value of a flag that sets parameters, "name=value,name=value", in SI units; empty text sets none.
+///
+/// kInvalidArgument: a name that is none of `parameters` (those of `model`), twice the same one, a value that is no
+/// number or outside the parameter's bounds.
+Result<ParameterValues> ParseSettings(std::string_view flag, std::string_view text, std::string_view model,
+                                      std::span<const ParameterInfo> parameters);
 
 }  // namespace pendulum

@@ -26,12 +26,13 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
   return {};
 }
 
-Result<std::string> ParseModel(const std::string& model) {
+Result<MotionModel> ParseModel(const std::string& model) {
   if (model.find(',') != std::string::npos || model == "all") {
     return Wrong("--model '" + model + "' asks for several models; it takes one of " + MotionModelNames());
   }
-  if (const auto found = FindMotionModel(model); !found) return Wrong("--model: " + found.error().message);
-  return model;
+  auto found = FindMotionModel(model);
+  if (!found) return Wrong("--model: " + found.error().message);
+  return found;
 }
 
 Result<StartChoice> ParseStart(const std::string& start) {
@@ -41,41 +42,11 @@ Result<StartChoice> ParseStart(const std::string& start) {
   return Wrong("--start is '" + start + "'; it must be auto, release or moving");
 }
 
-/// Every name that --fix may give for a model, whatever the start and the sensor turn out to be.
-std::vector<std::string_view> FixableNames(const MotionModel& model) {
-  std::vector<std::string_view> names;
-  for (const ParameterInfo& parameter : PhysicalParameters(model)) names.push_back(parameter.name);
-  for (const ParameterInfo& parameter :
-       {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias}) {
-    names.push_back(parameter.name);
-  }
-  return names;
-}
-
-Result<void> CheckFixable(const std::string& name, const std::string& model) {
-  const std::vector<std::string_view> names = FixableNames(*FindMotionModel(model));
-  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
-  std::string list;
-  for (const std::string_view valid : names) list.append(list.empty() ? "" : ", ").append(valid);
-  return Wrong("--fix: the model '" + model + "' has no parameter '" + name + "'; its parameters are " + list);
-}
-
-Result<std::map<std::string, double>> ParseFix(const std::string& fix, const std::string& model) {
-  std::map<std::string, double> fixed;
-  for (std::size_t begin = 0; begin < fix.size();) {
-    const std::size_t end = std::min(fix.find(',', begin), fix.size());
-    const std::string entry = fix.substr(begin, end - begin);
-    const std::size_t equals = entry.find('=');
-    if (equals == std::string::npos) return Wrong("--fix: '" + entry + "' must be name=value");
-    const std::string name = entry.substr(0, equals);
-    if (const auto fixable = CheckFixable(name, model); !fixable) return tl::unexpected(fixable.error());
-    const auto value = ParseNumber("--fix " + name, entry.substr(equals + 1), "a number in SI units");
-    if (!value) return tl::unexpected(value.error());
-    if (!fixed.emplace(name, *value).second) return Wrong("--fix: '" + name + "' stands there twice");
-    begin = end + 1;
-    if (begin == fix.size()) return Wrong("--fix: '" + fix + "' ends with a comma");
-  }
-  return fixed;
+/// Every parameter that --fix may hold, whatever the start and the sensor turn out to be.
+std::vector<ParameterInfo> FixableParameters(const MotionModel& model) {
+  std::vector<ParameterInfo> infos = PhysicalParameters(model);
+  infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias});
+  return infos;
 }
 
 /// Reads a time unless the flag was left out.
@@ -101,9 +72,9 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
   if (!model) return tl::unexpected(model.error());
   const auto start = ParseStart(flags.start);
   if (!start) return tl::unexpected(start.error());
-  auto fixed = ParseFix(flags.fix, *model);
+  auto fixed = ParseSettings("--fix", flags.fix, model->name, FixableParameters(*model));
   if (!fixed) return tl::unexpected(fixed.error());
-  options.model = *model;
+  options.model = model->name;
   options.start = *start;
   options.fixed = *std::move(fixed);
   return {};

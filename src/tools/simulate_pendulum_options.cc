@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
@@ -21,8 +20,6 @@ constexpr std::array kUnits = {
     OutputUnit{"deg_s", "gyro_deg_s", Quantity::kRate, kRadFromDeg},
     OutputUnit{"rad_s", "gyro_rad_s", Quantity::kRate, 1.0},
 };
-
-using Settings = std::map<std::string, double, std::less<>>;
 
 tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
 
@@ -56,46 +53,7 @@ std::vector<ParameterInfo> SettableParameters(const MotionModel& model, Quantity
   return infos;
 }
 
-Result<void> CheckSetting(const std::vector<ParameterInfo>& infos, const std::string& name, double value) {
-  const auto info = std::ranges::find(infos, name, &ParameterInfo::name);
-  if (info == infos.end()) {
-    std::string names;
-    for (const ParameterInfo& known : infos) names += (names.empty() ? "" : ", ") + std::string(known.name);
-    return BadFlag("--set: there is no " + name + " here; the names are " + names);
-  }
-  if (value < info->lower || value > info->upper) {
-    return BadFlag("--set: " + name + " is " + NumberText(value) + "; it must lie between " + NumberText(info->lower) +
-                   " and " + NumberText(info->upper));
-  }
-  return {};
-}
-
-/// Reads one name=value into `settings`.
-Result<void> ParseSetting(const std::string& part, const std::vector<ParameterInfo>& infos, Settings& settings) {
-  const std::size_t equals = part.find('=');
-  if (equals == 0 || equals == std::string::npos) return BadFlag("--set: '" + part + "' must be name=value");
-  const std::string name = part.substr(0, equals);
-  const Result<double> value = ParseNumber("--set " + name, part.substr(equals + 1), "a number in SI units");
-  if (!value) return tl::unexpected(value.error());
-  if (Result<void> checked = CheckSetting(infos, name, *value); !checked) return checked;
-  if (!settings.emplace(name, *value).second) return BadFlag("--set: " + name + " is given twice");
-  return {};
-}
-
-Result<Settings> ParseSet(const std::string& text, const std::vector<ParameterInfo>& infos) {
-  Settings settings;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (Result<void> parsed = ParseSetting(text.substr(begin, end - begin), infos, settings); !parsed) {
-      return tl::unexpected(parsed.error());
-    }
-    begin = end + 1;
-    if (begin == text.size()) return BadFlag("--set: '" + text + "' ends with a comma");
-  }
-  return settings;
-}
-
-Result<StartKind> ChooseStart(const Settings& values) {
+Result<StartKind> ChooseStart(const ParameterValues& values) {
   const auto given = [&](const ParameterInfo& info) { return values.contains(info.name); };
   const bool release = given(kReleaseAngle) || given(kReleaseTime);
   const bool moving = given(kInitialAngle) || given(kInitialRate);
@@ -109,7 +67,7 @@ Result<StartKind> ChooseStart(const Settings& values) {
 
 /// Fills in what --set may leave out: inertia from the rig, no friction, no offset.
 Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::optional<Rig>& rig, StartKind start,
-                      Settings& values) {
+                      ParameterValues& values) {
   const std::string inertia(kInertia.name);
   if (rig && rig->inertia) values.try_emplace(inertia, rig->inertia->value);
   if (!values.contains(inertia)) return BadFlag("--set lacks inertia, and no rig gives one");
@@ -125,12 +83,12 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
   return {};
 }
 
-double ValueOr0(const Settings& values, const ParameterInfo& info) {
+double ValueOr0(const ParameterValues& values, const ParameterInfo& info) {
   const auto found = values.find(info.name);
   return found == values.end() ? 0.0 : found->second;
 }
 
-void SetMotion(const Settings& values, double gravity_torque, SyntheticOptions& synthetic) {
+void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOptions& synthetic) {
   for (const ParameterInfo& info : PhysicalParameters(synthetic.model)) {
     const double unit = info.scales_with_gravity() ? gravity_torque : 1.0;
     synthetic.parameters.push_back(ValueOr0(values, info) / unit);
@@ -146,7 +104,7 @@ void SetMotion(const Settings& values, double gravity_torque, SyntheticOptions& 
 Result<void> ChooseMotion(const std::string& set, const std::optional<Rig>& rig, SimulateOptions& options) {
   SyntheticOptions& synthetic = options.synthetic;
   const std::vector<ParameterInfo> infos = SettableParameters(synthetic.model, synthetic.quantity);
-  Result<Settings> values = ParseSet(set, infos);
+  Result<ParameterValues> values = ParseSettings("--set", set, synthetic.model.name, infos);
   if (!values) return tl::unexpected(values.error());
   const Result<StartKind> start = ChooseStart(*values);
   if (!start) return tl::unexpected(start.error());

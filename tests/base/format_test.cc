@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +23,16 @@ TEST(NumberText, IsTheShortestTextThatReadsBack) {
   for (const double value : {1.0 / 3, 5e-324, std::numeric_limits<double>::max(), -2.2250738585072014e-308}) {
     EXPECT_EQ(std::strtod(NumberText(value).c_str(), nullptr), value);
   }
+}
+
+struct Named {
+  std::string name;
+};
+
+TEST(NameList, JoinsNamesForASentence) {
+  EXPECT_EQ(NameList(std::vector<Named>{}), "");
+  EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}}), "inertia");
+  EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}, {"viscous"}, {"zero_angle"}}), "inertia, viscous, zero_angle");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Eigen::MatrixXd Jacobian(int parameters) {
   return jacobian;
 }
 
-Inverse InvertAll(const Eigen::MatrixXd& jacobian) {
+InformationInverse InvertAll(const Eigen::MatrixXd& jacobian) {
   std::vector<int> all(static_cast<std::size_t>(jacobian.cols()));
   std::iota(all.begin(), all.end(), 0);
   return InvertInformation(jacobian.transpose() * jacobian, all);
@@ -31,7 +31,7 @@ Inverse InvertAll(const Eigen::MatrixXd& jacobian) {
 
 TEST(InvertInformation, IsTheInverse) {
   const Eigen::MatrixXd jacobian = Jacobian(5);
-  const Inverse inverse = InvertAll(jacobian);
+  const InformationInverse inverse = InvertAll(jacobian);
   ASSERT_TRUE(inverse.identifiable);
   const Eigen::MatrixXd product = inverse.matrix * (jacobian.transpose() * jacobian);
   const Eigen::VectorXd size = jacobian.colwise().norm();
@@ -45,7 +45,7 @@ TEST(InvertInformation, IsTheInverse) {
 
 TEST(InvertInformation, OfSomeParametersHoldsTheOthersFixed) {
   const Eigen::MatrixXd jacobian = Jacobian(5);
-  const Inverse inverse = InvertInformation(jacobian.transpose() * jacobian, {1, 3});
+  const InformationInverse inverse = InvertInformation(jacobian.transpose() * jacobian, {1, 3});
   Eigen::MatrixXd two(50, 2);
   two << jacobian.col(1), jacobian.col(3);
   const Eigen::Matrix2d expected = (two.transpose() * two).inverse();
@@ -56,7 +56,7 @@ TEST(InvertInformation, OfSomeParametersHoldsTheOthersFixed) {
 }
 
 TEST(InvertInformation, OfNothingIsEmpty) {
-  const Inverse inverse = InvertInformation(Eigen::MatrixXd::Identity(3, 3), {});
+  const InformationInverse inverse = InvertInformation(Eigen::MatrixXd::Identity(3, 3), {});
   EXPECT_TRUE(inverse.identifiable);
   EXPECT_EQ(inverse.matrix.size(), 0);
 }
@@ -64,7 +64,7 @@ TEST(InvertInformation, OfNothingIsEmpty) {
 TEST(InvertInformation, NamesTheParametersOfACombinationTheDataDoNotSee) {
   Eigen::MatrixXd jacobian = Jacobian(5);
   jacobian.col(3) = 1e6 * jacobian.col(1) - 2e3 * jacobian.col(2);
-  const Inverse inverse = InvertAll(jacobian);
+  const InformationInverse inverse = InvertAll(jacobian);
   EXPECT_FALSE(inverse.identifiable);
   EXPECT_EQ(inverse.matrix.size(), 0);
   EXPECT_THAT(inverse.direction, ElementsAre(1, 2, 3));

@@ -18,7 +18,9 @@ using testing::AllOf;
 using testing::DoubleNear;
 using testing::Each;
 using testing::ElementsAre;
+using testing::Gt;
 using testing::HasSubstr;
+using testing::Lt;
 
 std::vector<std::string> Names(const std::vector<ParameterInfo>& infos) {
   std::vector<std::string> names;
@@ -35,7 +37,7 @@ Status RefusalOf(const SyntheticOptions& run, const FitOptions& options) {
   return problem ? Status{StatusCode::kInternal, "it was accepted"} : problem.error();
 }
 
-FitOptions Fixing(std::string_view model, const std::map<std::string, double>& fixed) {
+FitOptions Fixing(std::string_view model, const ParameterValues& fixed) {
   FitOptions options = ModelOptions(model);
   options.fixed = fixed;
   return options;
@@ -62,9 +64,12 @@ TEST(MakeFitProblem, ListsTheModelsWhenThereIsNoSuchOne) {
   for (const MotionModel& model : MotionModels()) EXPECT_THAT(status.message, HasSubstr(std::string(model.name)));
 }
 
-TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheStartFree) {
+TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheReleaseWithinTheHold) {
   const FitProblem problem = ProblemOf(TextbookRun("drag"), ModelOptions("drag"));
-  EXPECT_THAT(problem.solve.lower, ElementsAre(-kUnbounded, 0, 0, 0, -kUnbounded, -kUnbounded, -kUnbounded));
+  EXPECT_THAT(problem.solve.lower, ElementsAre(-kUnbounded, 0, 0, 0, -kUnbounded, 0, -kUnbounded));
+  const std::vector<double>& upper = problem.solve.upper;
+  EXPECT_THAT(upper[5], AllOf(Gt(1.9), Lt(2.1)));  // released at 1.9 s, seen to move soon after
+  EXPECT_THAT((std::vector{upper[0], upper[1], upper[2], upper[3], upper[4], upper[6]}), Each(kUnbounded));
   EXPECT_THAT(problem.solve.fixed, Each(false));
 }
 
@@ -99,8 +104,7 @@ TEST(MakeFitProblem, MeasuresResidualsInUnitsOfTheNoise) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 0.004;
   const FitProblem noisy = ProblemOf(run, ModelOptions("coulomb"));
-  EXPECT_THAT(noisy.noise, DoubleNear(0.004, 4e-4));
-  EXPECT_EQ(noisy.data.scale, noisy.noise);
+  EXPECT_THAT(noisy.data.scale, DoubleNear(0.004, 4e-4));
   run.noise = 0;
   EXPECT_GT(ProblemOf(run, ModelOptions("coulomb")).data.scale, 0);  // also where there is none
 }
@@ -158,6 +162,15 @@ TEST(MakeFitProblem, RefusesToFixAValueOutsideItsBounds) {
   EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"inertia", 0.0}})).message, HasSubstr("positive"));
   EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", -1.0}})).message,
               HasSubstr("at least 0"));
+}
+
+TEST(MakeFitProblem, RefusesToFixTheReleaseOutsideTheHold) {
+  for (const double time : {-0.1, 5.0}) {
+    const Status status = RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"release_time", time}}));
+    EXPECT_EQ(status.code, StatusCode::kInvalidArgument) << time;
+    EXPECT_THAT(status.message, HasSubstr("release_time cannot be fixed at")) << time;
+    EXPECT_THAT(status.message, HasSubstr("it must be at least 0 and at most ")) << time;
+  }
 }
 
 TEST(MakeFitProblem, AcceptsFrictionFixedAtItsBound) {

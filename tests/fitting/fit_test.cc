@@ -163,8 +163,6 @@ TEST(FitRecording, ARigScalesWhatIsATorqueAndNothingElse) {
   const FitReport relative = Fit(recording, options);
   options.rig = Must(ParseRig(R"({"gravity_torque": {"value": 2.5, "std_dev": 0.02}})", "rig.json"));
   const FitReport si = Fit(recording, options);
-  EXPECT_FALSE(relative.has_rig);
-  EXPECT_TRUE(si.has_rig);
   for (std::size_t i = 0; i < si.parameters.size(); ++i) {
     const ParameterEstimate& with = si.parameters[i];
     const ParameterEstimate& without = relative.parameters[i];

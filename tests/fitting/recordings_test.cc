@@ -35,12 +35,14 @@ class Recordings : public testing::TestWithParam<ReferenceFit> {
     if (std::getenv("PENDULUM_RECORDINGS") == nullptr) GTEST_SKIP() << "PENDULUM_RECORDINGS is not set";
   }
 
-  static FitReport Fit(const ReferenceFit& reference) {
+  static FitReport Fit(const ReferenceFit& reference) { return Fit(reference, reference.model); }
+
+  static FitReport Fit(const ReferenceFit& reference, const std::string& model) {
     const std::filesystem::path folder = std::getenv("PENDULUM_RECORDINGS");
     const Result<Recording> recording = ReadRecording(folder / (reference.recording + ".csv"));
     const Result<Recording> window = SelectWindow(recording.value(), reference.from, reference.to);
     FitOptions options;
-    options.model = reference.model;
+    options.model = model;
     return FitRecording(window.value(), options).value();
   }
 };
@@ -51,6 +53,15 @@ TEST_P(Recordings, AreFittedAsWellAsByAnIndependentProgram) {
   const double gravity_over_inertia = 1 / report.Find("inertia")->estimate;
   EXPECT_THAT(gravity_over_inertia / GetParam().gravity_over_inertia, testing::DoubleNear(1, 0.005));
   EXPECT_LE(report.statistics.rms_residual, 1.05 * GetParam().rms);
+}
+
+TEST_P(Recordings, AreFittedNoWorseByALawThatHasMore) {
+  double simpler = kUnbounded;
+  for (const std::string model : {"viscous", "coulomb", "drag"}) {
+    const double rms = Fit(GetParam(), model).statistics.rms_residual;
+    EXPECT_LE(rms, simpler * (1 + 1e-6)) << model;
+    simpler = rms;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(ReferenceFits, Recordings,

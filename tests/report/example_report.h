@@ -31,7 +31,6 @@ inline FitReport ExampleFit() {
   fit.termination = Termination::kConverged;
   fit.reason = "the last step changed no parameter by more than 0.001 standard errors";
   fit.start = StartKind::kRelease;
-  fit.has_rig = true;
   fit.parameters = {ExampleParameter(kInertia, "kg m^2", 0.079, 0.00025),
                     ExampleParameter(kViscous, "N m s/rad", 0.003, 0.0005), ExampleParameter(kCoulomb, "N m", 0, 0),
                     ExampleParameter(kReleaseAngle, "rad", 0.423, 0.0002)};
@@ -80,7 +79,6 @@ inline RunReport ExampleRateReport() {
   report.data.quantity = Quantity::kRate;
   report.data.resolution = 0;
   FitReport& fit = report.fits.front();
-  fit.has_rig = false;
   fit.quantity = Quantity::kRate;
   fit.termination = Termination::kNotConverged;
   fit.reason = "100 iterations were not enough";

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command_line.h"
 
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "pendulum/model/friction/viscous.h"
 
 namespace pendulum {
 namespace {
@@ -72,6 +77,33 @@ TEST(ParseNumber, NamesFlagValueAndMeaning) {
     const auto number = ParseNumber("--from", wrong, "a time in seconds");
     ASSERT_FALSE(number) << wrong;
     EXPECT_EQ(number.error().message, "--from is '" + std::string(wrong) + "'; it must be a time in seconds");
+  }
+}
+
+constexpr ParameterInfo kSettable[] = {kInertia, kViscous, kZeroAngle};
+
+TEST(ParseSettings, ReadsNamesAndValues) {
+  EXPECT_TRUE(ParseSettings("--fix", "", "viscous", kSettable)->empty());
+  const ParameterValues expected = {{"inertia", 0.08}, {"zero_angle", -1e-3}};
+  EXPECT_EQ(ParseSettings("--fix", "zero_angle=-1e-3,inertia=0.08", "viscous", kSettable), expected);
+}
+
+TEST(ParseSettings, NamesTheFlagAndWhatIsWrong) {
+  const std::pair<const char*, const char*> refusals[] = {
+      {"coulomb=1", "--set: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, zero_angle"},
+      {"viscous", "--set: 'viscous' must be name=value"},
+      {"=1", "--set: '=1' must be name=value"},
+      {"viscous=1,,inertia=2", "--set: '' must be name=value"},
+      {"viscous=1,", "--set: 'viscous=1,' ends with a comma"},
+      {"viscous=1kg", "--set viscous is '1kg'; it must be a number in SI units"},
+      {"viscous=-1", "--set: viscous is -1; it must be at least 0"},
+      {"viscous=1,viscous=2", "--set: viscous is given twice"},
+  };
+  for (const auto& [text, message] : refusals) {
+    const auto settings = ParseSettings("--set", text, "viscous", kSettable);
+    ASSERT_FALSE(settings) << text;
+    EXPECT_EQ(settings.error().code, StatusCode::kInvalidArgument) << text;
+    EXPECT_EQ(settings.error().message, message);
   }
 }
 

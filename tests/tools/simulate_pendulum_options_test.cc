@@ -109,7 +109,7 @@ TEST(MakeSimulateOptions, GivesAGyroARateBiasInsteadOfAZeroAngle) {
   flags.set = "inertia=0.04,zero_angle=0.02," + std::string(kRelease);
   const Result<SimulateOptions> wrong = MakeSimulateOptions(flags, {});
   ASSERT_FALSE(wrong);
-  EXPECT_THAT(wrong.error().message, HasSubstr("no zero_angle here"));
+  EXPECT_THAT(wrong.error().message, HasSubstr("no parameter 'zero_angle'"));
 }
 
 TEST(MakeSimulateOptions, ChoosesGravityIndependentlyOfFriction) {
@@ -137,7 +137,8 @@ TEST(MakeSimulateOptions, ListsTheNamesThatTheModelHasWhenOneIsUnknown) {
   ASSERT_FALSE(options);
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(options.error().message,
-            "--set: there is no coulomb here; the names are inertia, viscous, release_angle, release_time, "
+            "--set: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, release_angle, "
+            "release_time, "
             "initial_angle, initial_rate, zero_angle");
 }
 
@@ -157,7 +158,7 @@ TEST(MakeSimulateOptions, RefusesWrongFlagsAndNamesThem) {
       {"--set viscous is '1kg'; it must be a number in SI units", [](SimulateFlags& f) { f.set += ",viscous=1kg"; }},
       {"--set viscous is 'nan'", [](SimulateFlags& f) { f.set += ",viscous=nan"; }},
       {"--set: inertia is given twice", [](SimulateFlags& f) { f.set += ",inertia=1"; }},
-      {"viscous is -1; it must lie between 0 and inf", [](SimulateFlags& f) { f.set += ",viscous=-1"; }},
+      {"viscous is -1; it must be at least 0", [](SimulateFlags& f) { f.set += ",viscous=-1"; }},
       {"inertia is 0; it must be positive", [](SimulateFlags& f) { f.set.replace(0, 12, "inertia=0"); }},
       {"--set lacks inertia", [](SimulateFlags& f) { f.set = "release_angle=0.4,release_time=1.5"; }},
       {"--set lacks the start", [](SimulateFlags& f) { f.set = "inertia=0.04"; }},

@@ -95,7 +95,7 @@ TEST(Trajectory, ComesToRestWhereTheStaircaseEnds) {
   EXPECT_EQ(summary.outcome, Outcome::kComplete);
   EXPECT_EQ(summary.reversals, 7);
   EXPECT_THAT(summary.stop_time, DoubleNear(7 * kHalfSwing, 1e-12));
-  EXPECT_THAT(summary.last_reversal_margin, DoubleNear(0.02, 1e-12));  // | |-0.01| - 0.03 |; the others leave more
+  EXPECT_THAT(summary.smallest_reversal_margin, DoubleNear(0.02, 1e-12));  // | |-0.01| - 0.03 |; the others leave more
   for (const double time : {7 * kHalfSwing + 1e-9, 5.0, 9.9, 10.0}) {
     EXPECT_THAT(trajectory.Angle(time), DoubleNear(-0.01, 1e-12)) << time;
     EXPECT_EQ(trajectory.Rate(time), 0) << time;
@@ -114,7 +114,7 @@ TEST(Trajectory, MarginIsTheSmallestOverAllReversals) {
   // Turns at 0.31 (margin 0.28), then the trace ends on the way to -0.37 + 0.06.
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, -0.37, 0}, Until(1.5 * kHalfSwing));
   EXPECT_EQ(trajectory.summary().reversals, 1);
-  EXPECT_THAT(trajectory.summary().last_reversal_margin, DoubleNear(0.28, 1e-12));
+  EXPECT_THAT(trajectory.summary().smallest_reversal_margin, DoubleNear(0.28, 1e-12));
 }
 
 // The last half swings of a staircase from 1e-6 rad at a tolerance of 1e-8 rad: accuracy would allow any step.

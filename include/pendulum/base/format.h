@@ -11,4 +11,12 @@ std::string NumberText(double value, int significant_digits);
 /// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.
 std::string NumberText(double value);
 
+/// The names of items for a sentence: "inertia, viscous, zero_angle". Each item has a member `name`.
+template <typename Range>
+std::string NameList(const Range& items) {
+  std::string list;
+  for (const auto& item : items) list.append(list.empty() ? "" : ", ").append(item.name);
+  return list;
+}
+
 }  // namespace pendulum

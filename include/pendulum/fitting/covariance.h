@@ -8,7 +8,7 @@
 namespace pendulum {
 
 /// The inverse of an information matrix over the parameters that are free.
-struct Inverse {
+struct InformationInverse {
   bool identifiable = false;  ///< False when some combination of the free parameters leaves no trace in the data.
   Eigen::MatrixXd matrix;     ///< M x M, M free parameters; empty when not identifiable.
   std::vector<int>
@@ -19,6 +19,6 @@ struct Inverse {
 /// very different size do not look dependent. Not identifiable: an eigenvalue of the scaled matrix below 1e-12 times
 /// the largest (correlations within 1e-12 of 1, where the sums over samples have no digits left), or a zero on the
 /// diagonal.
-Inverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free);
+InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free);
 
 }  // namespace pendulum

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,10 +24,10 @@ namespace pendulum {
 struct FitOptions {
   std::string model = "coulomb";
   StartChoice start = StartChoice::kAuto;
-  std::optional<Rig> rig;               ///< Turns ratios into SI; without it torques are in units of G.
-  std::map<std::string, double> fixed;  ///< Parameters held at a value.
-  double max_trace_error = 1e-8;        ///< Global error of the trajectory [rad]; also kept below sigma / 1000.
-  int max_iterations = 100;             ///< Of Ceres, for each solve.
+  std::optional<Rig> rig;         ///< Turns ratios into SI; without it torques are in units of G.
+  ParameterValues fixed;          ///< Parameters held at a value.
+  double max_trace_error = 1e-8;  ///< Global error of the trajectory [rad]; also kept below sigma / 1000.
+  int max_iterations = 100;       ///< Of Ceres, for each solve.
 };
 
 /// How a fit ended, and what of its report means something:
@@ -80,7 +79,6 @@ struct FitReport {
   std::string reason;  ///< A sentence, whatever the termination.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
-  bool has_rig = false;
   std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.

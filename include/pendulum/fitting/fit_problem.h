@@ -20,7 +20,6 @@ struct FitProblem {
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
   SolveOptions solve;
-  double noise = 0;  ///< rad or rad/s, SuccessiveDifferenceNoise of the recording.
 };
 
 /// Start values from the data, bounds and fixed values from the options.

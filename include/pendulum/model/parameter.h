@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <map>
+#include <string>
 #include <string_view>
 
 namespace pendulum {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// Values by parameter name.
+using ParameterValues = std::map<std::string, double, std::less<>>;
 
 /// Everything that is said of a parameter, said once: flags, bounds, tables, JSON and the documentation follow from it.
 ///

@@ -43,8 +43,9 @@ struct TraceSummary {
   Outcome outcome = Outcome::kComplete;
   int steps = 0;
   int reversals = 0;
-  double stop_time = std::numeric_limits<double>::infinity();             ///< s; when it came to rest for good.
-  double last_reversal_margin = std::numeric_limits<double>::infinity();  ///< min over reversals of ||g(θ)| - T(0)| / G
+  double stop_time = std::numeric_limits<double>::infinity();  ///< s; when it came to rest for good.
+  double smallest_reversal_margin =
+      std::numeric_limits<double>::infinity();  ///< min over reversals of ||g(θ)| - T(0)| / G
 };
 
 /// Traces a pendulum from its start to options.end and calls visit(const Segment<T>&) for each stretch in time order:
@@ -149,8 +150,8 @@ class Tracer {
   void NoteReversal(double angle, double direction) {
     ++summary_.reversals;
     const double holding = direction * F::Torque(0.0, direction, values_.friction.data());
-    summary_.last_reversal_margin =
-        std::min(summary_.last_reversal_margin, std::abs(std::abs(GravityTorque(values_.gravity, angle)) - holding));
+    summary_.smallest_reversal_margin = std::min(summary_.smallest_reversal_margin,
+                                                 std::abs(std::abs(GravityTorque(values_.gravity, angle)) - holding));
   }
 
   /// Rest after a stop: the reading stays, whatever the instant of the stop, for the rate there is 0.

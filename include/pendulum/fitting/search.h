@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/fitting/solve.h"
+
+namespace pendulum {
+
+/// The lowest minimum over a whole recording, from start values that may be rough, where there are several minima.
+///
+/// A start that explains the data goes straight to Solve. One that does not is refined over the first three cycles,
+/// then over twice as many, and so on. Recordings that reach rest have one minimum per number of half swings before the
+/// stop, so they are fitted over 30, 60 and 85 % of the motion first; then dry friction is shifted to either side, the
+/// other parameters following along its profile, until the number of reversals changes, and the fit goes on from there
+/// as long as the cost is lower. Where the result explains less than nine tenths of the variance, the law's last
+/// friction parameter is first held at its bound, so that a law ends no higher than the simpler laws within it.
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+                const SolveOptions& options);
+
+}  // namespace pendulum

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+/// A start explains the data when it leaves less than this share of their variance.
+constexpr double kExplained = 0.1;
+
+double Variance(const TrajectoryData& data) {
+  const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
+  return (value.array() - value.mean()).square().sum() / (data.scale * data.scale);
+}
+
+std::size_t SamplesBefore(const TrajectoryData& data, double time) {
+  return static_cast<std::size_t>(std::upper_bound(data.time.begin(), data.time.end(), time) - data.time.begin());
+}
+
+/// Solves over the samples before each of the times in turn, each from the last; leaves the cost with all samples.
+Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, const SolveOptions& options,
+                      const std::vector<double>& times) {
+  constexpr std::size_t kFewest = 16;
+  for (const double time : times) {
+    const std::size_t count = SamplesBefore(data, time);
+    if (count < kFewest || count >= data.time.size() || solution.evaluations > kMostEvaluations) continue;
+    cost.set_used_samples(count);
+    solution = Continue(cost, solution, options);
+  }
+  cost.set_used_samples(data.time.size());
+  return solution;
+}
+
+/// When the motion begins: the hold belongs to no share of it.
+double MotionStart(const TrajectoryData& data, const std::vector<double>& parameters) {
+  return data.latest_release > 0 ? parameters[parameters.size() - 2] : 0.0;
+}
+
+std::vector<double> GrowingTimes(double begin, double end, double cycle) {
+  std::vector<double> times;
+  if (!(cycle > 0)) return times;
+  for (double length = 3 * cycle; begin + length < end; length *= 2) times.push_back(begin + length);
+  return times;
+}
+
+/// How all parameters move when parameter k does and the others follow to keep the cost low: a column of the inverse of
+/// J'J over the free parameters, with a 1 at k; empty where the data do not determine it.
+Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<double>& at, int k,
+                                 const SolveOptions& options) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(at, &sums)) return {};
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(at.size()); ++i) {
+    if (!options.fixed[i] && (i == k || at[i] > options.lower[i])) free.push_back(i);
+  }
+  const Eigen::Index position = std::find(free.begin(), free.end(), k) - free.begin();
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(static_cast<Eigen::Index>(free.size()), position);
+  const Eigen::VectorXd column = sums(free, free).ldlt().solve(unit);
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.size()));
+  direction(free) = column / column[position];
+  return direction.allFinite() ? direction : Eigen::VectorXd();
+}
+
+/// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
+/// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
+std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<double>& from, double side,
+                              const SolveOptions& options) {
+  constexpr double kFirstShift = 1e-3;
+  constexpr double kLargestShift = 0.2;
+  constexpr double kGrowth = 1.15;
+  const int k = options.holding_parameter;
+  const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
+  if (direction.size() == 0) return {};
+  const auto shifted = [&](double shift) {
+    std::vector<double> start = from;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const double change = shift * from[k] * direction[static_cast<Eigen::Index>(i)];
+      start[i] = std::max(start[i] + change, options.lower[i]);
+    }
+    return start;
+  };
+  const int reversals = cost.Trace(from).reversals;
+  for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
+    if (cost.Trace(shifted(side * shift)).reversals != reversals) return shifted(side * shift * kGrowth);
+  }
+  return {};
+}
+
+/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
+Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
+  Solution best = found;
+  for (const double side : {-1.0, 1.0}) {
+    for (bool better = true; better && best.evaluations < kMostEvaluations;) {
+      Solution trial = best;
+      trial.parameters = NextBasin(cost, best.parameters, side, options);
+      if (trial.parameters.empty()) break;
+      trial = Continue(cost, trial, options);
+      better = trial.usable && trial.sum < best.sum;
+      const Solution& other = better ? best : trial;
+      std::vector<Minimum> other_minima = best.other_minima;
+      if (other.usable) other_minima.push_back({other.parameters, other.sum});
+      best.iterations = trial.iterations;
+      best.evaluations = trial.evaluations;
+      if (better) best = trial;
+      best.other_minima = other_minima;
+    }
+  }
+  return best;
+}
+
+bool ReachesRest(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& parameters) {
+  return cost.Trace(parameters).stop_time < data.time.back();
+}
+
+/// Solves over all samples, and goes on to the neighbouring minima where the pendulum comes to rest.
+Solution Refine(TrajectoryCost& cost, const TrajectoryData& data, const Solution& from, const SolveOptions& options) {
+  const Solution solution = Continue(cost, from, options);
+  const int holding = options.holding_parameter;
+  if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
+  if (!ReachesRest(cost, data, solution.parameters)) return solution;
+  return DescendBasins(cost, solution, options);
+}
+
+/// Solves from `start`, over growing parts of the recording where they are needed to find the way.
+Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+                    const SolveOptions& options) {
+  Solution solution;
+  solution.parameters = start;
+  const double begin = MotionStart(data, start);
+  double sum = 0;
+  const bool traced = cost.SumOfSquares(start, &sum);
+  const int holding = options.holding_parameter;
+  const bool may_rest = traced && holding >= 0 && start[holding] > 0;
+  const double stop = may_rest ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
+  if (!traced || sum > kExplained * Variance(data)) {
+    const double cycle = 2 * kPi * std::sqrt(start[0]);
+    solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
+  } else if (stop < data.time.back()) {
+    const double motion = stop - begin;
+    solution = SolveGrowing(cost, data, solution, options,
+                            {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
+  }
+  return Refine(cost, data, solution, options);
+}
+
+/// The last friction parameter that may be held at its bound to leave a simpler law; -1: none. The first always stays.
+int LastFreeFriction(const SolveOptions& options) {
+  constexpr int kInertiaAndFirst = 2;
+  constexpr int kStart = 3;  // behind friction
+  for (int k = static_cast<int>(options.fixed.size()) - kStart - 1; k >= kInertiaAndFirst; --k) {
+    if (!options.fixed[k] && std::isfinite(options.lower[k])) return k;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+                const SolveOptions& options) {
+  const Solution found = SearchFrom(cost, data, start, options);
+  const int last = LastFreeFriction(options);
+  if (last < 0 || (found.usable && found.sum <= kExplained * Variance(data))) return found;
+  SolveOptions simpler = options;
+  simpler.fixed[last] = true;
+  std::vector<double> simpler_start = start;
+  simpler_start[last] = options.lower[last];
+  const Solution nested = Search(cost, data, simpler_start, simpler);
+  Solution freed;
+  freed.parameters = nested.parameters;
+  freed = Refine(cost, data, freed, options);
+  const bool better = freed.usable && (!found.usable || freed.sum < found.sum);
+  Solution best = better ? freed : found;
+  best.iterations = found.iterations + nested.iterations + freed.iterations;
+  best.evaluations = found.evaluations + nested.evaluations + freed.evaluations;
+  return best;
+}
+
+}  // namespace pendulum

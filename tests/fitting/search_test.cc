@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/search.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/fitting/solve_case.h"
+
+namespace pendulum {
+namespace {
+
+using testing::Ge;
+using testing::Gt;
+
+TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
+  // Five percent of frequency over 40 cycles is two cycles.
+  for (const double factor : {0.6, 0.9}) {
+    SyntheticOptions run = NoisyRun("coulomb");
+    run.duration = 60;
+    SolveCase c(run, "coulomb");
+    std::vector<double> start = c.problem.first_guess;
+    start[0] *= factor;
+    start[1] *= 1.2;
+    start[2] *= 0.8;
+    const Solution expected = Solve(*c.cost, c.truth, c.problem.solve);
+    const Solution found = Search(*c.cost, c.problem.data, start, c.problem.solve);
+    ExpectNear(found.parameters, expected.parameters, 1e-4);
+    EXPECT_GT(Solve(*c.cost, start, c.problem.solve).sum, 2 * expected.sum);  // which is why one Solve is not enough
+  }
+}
+
+TEST(Search, LeavesAllSamplesInUse) {
+  SyntheticOptions run = NoisyRun("coulomb");
+  run.duration = 35;
+  SolveCase c(run, "coulomb");
+  std::vector<double> start = c.problem.first_guess;
+  start[0] *= 0.9;
+  Search(*c.cost, c.problem.data, start, c.problem.solve);
+  Eigen::VectorXd readings;
+  ASSERT_TRUE(c.cost->Readings(c.truth, &readings, nullptr));
+  EXPECT_EQ(readings.size(), 3500);
+}
+
+TEST(Search, TriesTheNeighbouringNumbersOfHalfSwingsOfARecordingThatReachesRest) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.parameters[2] *= 3;
+  run.duration = 30;
+  run.noise = 0.002;
+  SolveCase c(run, "coulomb");
+  const Solution solution = Search(*c.cost, c.problem.data, c.problem.first_guess, c.problem.solve);
+  ASSERT_LT(c.cost->Trace(solution.parameters).stop_time, 30);
+  EXPECT_THAT(solution.other_minima.size(), Gt(0));
+  for (const Minimum& other : solution.other_minima) EXPECT_THAT(other.sum, Ge(solution.sum));
+  EXPECT_LE(solution.sum, Solve(*c.cost, c.truth, c.problem.solve).sum * (1 + 1e-8));
+}
+
+TEST(Search, FindsOneMinimumWhereNothingComesToRest) {
+  SolveCase c(NoisyRun("coulomb"), "coulomb");
+  EXPECT_TRUE(Search(*c.cost, c.problem.data, c.problem.first_guess, c.problem.solve).other_minima.empty());
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests of the solver and of the search share: a recording made ready, and its cost.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/fit_problem.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum {
+
+/// A simulated recording, ready to be solved, with the cost of the model it is solved for.
+struct SolveCase {
+  SolveCase(const SyntheticOptions& run, std::string_view model)
+      : truth(Truth(run)),
+        problem(Must(MakeFitProblem(Must(SimulateRecording(run)), ModelOptions(model)))),
+        cost(MakeTrajectoryCost(problem.model, problem.start.start, problem.data)) {
+    cost->set_tolerance(1e-13);
+  }
+
+  double SumAt(const std::vector<double>& parameters) const {
+    double sum = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(cost->SumOfSquares(parameters, &sum));
+    return sum;
+  }
+
+  std::vector<double> truth;
+  FitProblem problem;
+  std::unique_ptr<TrajectoryCost> cost;
+};
+
+inline void ExpectNear(const std::vector<double>& found, const std::vector<double>& expected, double relative) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR(found[i], expected[i], relative * std::abs(expected[i])) << "parameter " << i;
+  }
+}
+
+/// 10 s of the textbook rig with noise, released at 1.9 s.
+inline SyntheticOptions NoisyRun(std::string_view model) {
+  SyntheticOptions run = TextbookRun(model);
+  run.duration = 10;
+  run.noise = 0.002;
+  return run;
+}
+
+}  // namespace pendulum
