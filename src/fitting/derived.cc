@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/model/friction/viscous.h"
 
 namespace pendulum {
 namespace {
@@ -54,7 +55,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
   for (int i = 1; i < static_cast<int>(infos.size()); ++i) {
     if (!infos[i].scales_with_gravity()) continue;
     products.push_back({std::string(infos[i].name) + "_over_inertia", UnitOverInertia(infos[i]), 1, -1, i, 1});
-    if (infos[i].name != "viscous") continue;
+    if (infos[i].name != kViscous.name) continue;
     products.push_back({"damping_ratio", "1", 0.5, -0.5, i, 1});
     if (parameters[i] > 0) products.push_back({"quality_factor", "1", 1, 0.5, i, -1});
   }

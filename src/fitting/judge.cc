@@ -235,6 +235,16 @@ void WarnOfLackOfFit(const Recording& recording, bool correlated, FitReport& rep
                                                 consequence});
 }
 
+/// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
+void WarnOfQuietSensor(const Recording& recording, FitReport& report) {
+  constexpr double kQuiet = 0.5;
+  if (!(report.statistics.rms_residual < kQuiet * recording.resolution)) return;
+  report.warnings.push_back(
+      {"quiet_sensor", "the residuals are " + NumberText(report.statistics.rms_residual / recording.resolution, 2) +
+                           " resolutions: the noise is too small for rounding to average out, and the error bars may "
+                           "be several times too small"});
+}
+
 /// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
 void WarnOfBound(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
   if (optimum.at_bound.empty() || report.termination != Termination::kConverged) return;
@@ -306,6 +316,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   SetDerived(problem, optimum, solution, report);
   if (report.termination == Termination::kConverged) SetCovariance(problem, optimum, report);
   WarnOfLackOfFit(recording, correlated, report);
+  WarnOfQuietSensor(recording, report);
   WarnOfBound(problem, optimum, report);
   WarnOfOtherMinima(problem, solution, report);
   WarnOfKink(problem, cost, solution, report);

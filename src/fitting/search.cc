@@ -120,7 +120,7 @@ bool ReachesRest(const TrajectoryCost& cost, const TrajectoryData& data, const s
 
 /// Solves over all samples, and goes on to the neighbouring minima where the pendulum comes to rest.
 Solution Refine(TrajectoryCost& cost, const TrajectoryData& data, const Solution& from, const SolveOptions& options) {
-  const Solution solution = Continue(cost, from, options);
+  Solution solution = Continue(cost, from, options);
   const int holding = options.holding_parameter;
   if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
   if (!ReachesRest(cost, data, solution.parameters)) return solution;
@@ -163,7 +163,7 @@ int LastFreeFriction(const SolveOptions& options) {
 
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options) {
-  const Solution found = SearchFrom(cost, data, start, options);
+  Solution found = SearchFrom(cost, data, start, options);
   const int last = LastFreeFriction(options);
   if (last < 0 || (found.usable && found.sum <= kExplained * Variance(data))) return found;
   SolveOptions simpler = options;

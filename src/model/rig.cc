@@ -231,8 +231,11 @@ Result<RigValue> ReadValue(const Json& rig, std::string_view key, const std::str
   return value;
 }
 
+/// Products and squares of it stay numbers.
 bool IsUsable(const RigValue& value) {
-  return value.value > 0 && std::isfinite(value.value) && std::isfinite(value.std_dev);
+  constexpr double kSmallest = 1e-30;
+  constexpr double kLargest = 1e30;
+  return value.value > kSmallest && value.value < kLargest && std::isfinite(value.std_dev);
 }
 
 }  // namespace
@@ -256,7 +259,8 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
     rig.inertia = *inertia;
   }
   if (!IsUsable(rig.gravity_torque) || (rig.inertia && !IsUsable(*rig.inertia))) {
-    return Fault(name, "these values give a torque or inertia too large or too small for a number; correct them");
+    return Fault(
+        name, "these values give a torque or inertia beyond 1e-30 to 1e30 (SI), which no pendulum has; correct them");
   }
   rig.source = std::move(*source);
   return rig;

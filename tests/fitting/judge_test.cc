@@ -195,6 +195,20 @@ TEST(Judge, SaysInWordsWhatTheDataDoNotDependOn) {
   EXPECT_EQ(JudgedBlindly(Eigen::MatrixXd::Identity(6, 6)).termination, Termination::kConverged);
 }
 
+TEST(Judge, WarnsOfASensorWhoseNoiseDoesNotReachItsResolution) {
+  for (const double counts : {0.0, 0.1, 0.25, 0.5, 1.0}) {
+    SyntheticOptions run = TextbookRun("coulomb");
+    run.resolution = kCount;
+    run.noise = counts * kCount;
+    const std::vector<Warning> warnings = FitOwnModel(run).warnings;
+    const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const Warning& warning) {
+      return warning.code == "quiet_sensor" && warning.message.find("error bars") != std::string::npos;
+    });
+    // Rounding adds a twelfth to the variance: half a count of rms is 0.41 counts of noise.
+    EXPECT_EQ(warned, counts < 0.4) << counts;
+  }
+}
+
 // ---- Fixed parameters ----------------------------------------------------------------------------------------------
 
 TEST(Judge, AFixedParameterKeepsItsValueAndHasNoError) {
