@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/base/format.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
 namespace pendulum {
+namespace {
+
+/// True when `text` begins with a letter such as ° or θ: two bytes of valid UTF-8 that no terminal obeys.
+bool StartsWithLetterBeyondAscii(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  return text.size() > 1 && byte(0) >= 0xC2 && byte(0) <= 0xDF && (byte(1) & 0xC0) == 0x80 &&
+         (byte(0) > 0xC2 || byte(1) >= 0xA0);
+}
+
+}  // namespace
 
 std::string NumberText(double value, int significant_digits) {
   std::array<char, 64> text{};
@@ -18,6 +29,22 @@ std::string NumberText(double value) {
   std::array<char, kLongest> text;
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
+}
+
+std::string Quoted(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string shown = "\"";
+  for (std::size_t i = 0; i < std::min(text.size(), kShown); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (StartsWithLetterBeyondAscii(text.substr(i))) {
+      shown += text.substr(i++, 2);
+    } else if (byte >= 0x20 && byte < 0x7F) {
+      shown += text[i];
+    } else {
+      (shown += "\\x") += {HexDigit(byte >> 4), HexDigit(byte & 15)};
+    }
+  }
+  return shown + (text.size() > kShown ? "...\"" : "\"");
 }
 
 }  // namespace pendulum

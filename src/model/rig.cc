@@ -6,16 +6,16 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
@@ -92,13 +92,6 @@ constexpr std::size_t kMostBytes = 65536;
 
 tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
   return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
-/// As JSON shows it, clipped: control characters and bytes that are not UTF-8 become visible.
-std::string Quoted(std::string_view text) {
-  constexpr std::size_t kShown = 40;
-  const std::string shown = std::string(text.substr(0, kShown)) + (text.size() > kShown ? "..." : "");
-  return Json(shown).dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
 std::string Shown(const Json& value) {
@@ -267,21 +260,9 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
 }
 
 Result<Rig> ReadRig(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code unknown;
-  const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
-  if (type == std::filesystem::file_type::not_found) {
-    return Error(StatusCode::kNotFound, name + ": there is no such file; check the path");
-  }
-  if (type == std::filesystem::file_type::directory) {
-    return Fault(name, "this is a directory; name a rig file in it");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMostBytes + 1, '\0');  // One more than ParseRig takes.
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file.is_open() || file.bad()) return Fault(name, "the file cannot be read; check its permissions");
-  text.resize(file.gcount());
-  return ParseRig(text, name);
+  const Result<std::string> text = ReadFile(path, "rig", kMostBytes);
+  if (!text) return tl::unexpected(text.error());
+  return ParseRig(*text, path.string());
 }
 
 }  // namespace pendulum

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "pendulum/base/format.h"
+
 /// The grammar of CSV text, without a copy of a field: blanks, quotes, numbers, separators.
 namespace pendulum::csv {
 
@@ -24,32 +26,6 @@ inline std::string_view Trim(std::string_view text) {
 inline std::string_view Unquote(std::string_view text) {
   text = Trim(text);
   return text.size() < 2 || text.front() != '"' || text.back() != '"' ? text : Trim(text.substr(1, text.size() - 2));
-}
-
-/// True when `text` begins with a letter such as ° or θ: two bytes of valid UTF-8 that no terminal obeys.
-inline bool StartsWithLetterBeyondAscii(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  return text.size() > 1 && byte(0) >= 0xC2 && byte(0) <= 0xDF && (byte(1) & 0xC0) == 0x80 &&
-         (byte(0) > 0xC2 || byte(1) >= 0xA0);
-}
-
-constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
-
-/// A piece of the file as a message may show it: clipped, and whatever does not print as \xNN.
-inline std::string Quoted(std::string_view text) {
-  constexpr std::size_t kShown = 40;
-  std::string shown = "\"";
-  for (std::size_t i = 0; i < std::min(text.size(), kShown); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (StartsWithLetterBeyondAscii(text.substr(i))) {
-      shown += text.substr(i++, 2);
-    } else if (byte >= 0x20 && byte < 0x7F) {
-      shown += text[i];
-    } else {
-      (shown += "\\x") += {HexDigit(byte >> 4), HexDigit(byte & 15)};
-    }
-  }
-  return shown + (text.size() > kShown ? "...\"" : "\"");
 }
 
 /// std::from_chars, and a leading plus sign.

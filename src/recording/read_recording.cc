@@ -6,11 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <openssl/evp.h>
@@ -18,12 +16,13 @@
 #include "column.h"
 #include "csv.h"
 #include "metadata.h"
+#include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
 namespace {
 
-using csv::FieldCutter, csv::Kind, csv::MetadataKey, csv::ParseNumber, csv::Quoted, csv::Trim, csv::Unit, csv::Unquote;
+using csv::FieldCutter, csv::Kind, csv::MetadataKey, csv::ParseNumber, csv::Trim, csv::Unit, csv::Unquote;
 using Check = Result<void>;
 
 struct Column {
@@ -295,37 +294,8 @@ Result<std::string> Sha256(std::string_view bytes) {
     return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
   }
   std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += {csv::HexDigit(digest.at(i) >> 4), csv::HexDigit(digest.at(i) & 15)};
+  for (unsigned int i = 0; i < size; ++i) text += {HexDigit(digest.at(i) >> 4), HexDigit(digest.at(i) & 15)};
   return text;
-}
-
-/// Every byte of the file, which may be a pipe.
-Result<std::string> ReadBytes(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMost = std::uintmax_t{1} << 32;
-  constexpr std::uintmax_t kBlock = 65536;
-  const std::string name = path.string();
-  std::error_code unknown;
-  const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
-  if (type == std::filesystem::file_type::not_found) {
-    return Error(StatusCode::kNotFound, name + ": there is no such file; check the path");
-  }
-  if (type == std::filesystem::file_type::directory) {
-    return Error(StatusCode::kDataLoss, name + ": this is a directory; name a CSV file in it");
-  }
-  std::ifstream file(path, std::ios::binary);
-  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  std::string bytes(unknown ? kBlock : std::min(size, kMost) + 1, '\0');  // The extra byte finds the end.
-  std::size_t used = 0;
-  while (file.read(bytes.data() + used, static_cast<std::streamsize>(bytes.size() - used))) {
-    used = bytes.size();
-    if (used > kMost) return Error(StatusCode::kDataLoss, name + ": the file is larger than 4 GiB; split it");
-    bytes.resize(2 * used);
-  }
-  if (!file.is_open() || file.bad()) {
-    return Error(StatusCode::kDataLoss, name + ": the file cannot be read; check its permissions");
-  }
-  bytes.resize(used + file.gcount());
-  return bytes;
 }
 
 }  // namespace
@@ -340,7 +310,8 @@ Result<Recording> ParseRecording(std::string_view text, const std::string& name)
 }
 
 Result<Recording> ReadRecording(const std::filesystem::path& path) {
-  const Result<std::string> bytes = ReadBytes(path);
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
+  const Result<std::string> bytes = ReadFile(path, "CSV", kMostBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   return ParseRecording(*bytes, path.string());
 }

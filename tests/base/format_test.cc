@@ -25,6 +25,20 @@ TEST(NumberText, IsTheShortestTextThatReadsBack) {
   }
 }
 
+TEST(Quoted, ShowsWhatPrintsAndEscapesTheRest) {
+  EXPECT_EQ(Quoted(""), R"("")");
+  EXPECT_EQ(Quoted("angle_deg"), R"("angle_deg")");
+  EXPECT_EQ(Quoted("θ [°]"), R"("θ [°]")");
+  EXPECT_EQ(Quoted("a\x1b[31m\n"), R"("a\x1b[31m\x0a")");
+  EXPECT_EQ(Quoted("\xC2\x9B"), R"("\xc2\x9b")");  // a control sequence introducer, two bytes of valid UTF-8
+  EXPECT_EQ(Quoted("\xFF"), R"("\xff")");
+}
+
+TEST(Quoted, ClipsLongText) {
+  EXPECT_EQ(Quoted(std::string(40, 'x')), '"' + std::string(40, 'x') + '"');
+  EXPECT_EQ(Quoted(std::string(41, 'x')), '"' + std::string(40, 'x') + "...\"");
+}
+
 struct Named {
   std::string name;
 };

@@ -122,7 +122,7 @@ TEST(ParseRig, NamesAnUnknownKeyAndTheAllowedOnes) {
       R"({"gravity_torque"} or {"mass", "center_of_mass", "gravity"}, each with optional "inertia")");
   EXPECT_THAT(FaultOf(R"({"gravity_torque": {"value": 1, "sd": 2}})"),
               AllOf(HasSubstr(R"("sd" is not a key of "gravity_torque")"), HasSubstr(R"("std_dev")")));
-  EXPECT_THAT(FaultOf("{\"a\\u001b[31m\": 1}"), HasSubstr(R"("a\u001b[31m" is not a key)"));
+  EXPECT_THAT(FaultOf("{\"a\\u001b[31m\": 1}"), HasSubstr(R"("a\x1b[31m" is not a key)"));
 }
 
 TEST(ParseRig, NamesAMissingKey) {

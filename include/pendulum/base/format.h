@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace pendulum {
 
@@ -10,6 +11,13 @@ std::string NumberText(double value, int significant_digits);
 
 /// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.
 std::string NumberText(double value);
+
+/// A lower-case hexadecimal digit; `digit` below 16.
+constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
+
+/// A piece of a file in double quotes as a message may show it: 40 bytes at most, and what does not print, or what a
+/// terminal might obey, as \xNN.
+std::string Quoted(std::string_view text);
 
 /// The names of items for a sentence: "inertia, viscous, zero_angle". Each item has a member `name`.
 template <typename Range>
