@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/QR>
+
+#include "pendulum/base/median.h"
 
 namespace pendulum {
 namespace {
@@ -36,9 +39,7 @@ std::vector<Index> TurningPoints(const Eigen::VectorXd& value, double threshold)
 double TypicalSpacing(const Eigen::VectorXd& time, const std::vector<Index>& points) {
   std::vector<double> spacing;
   for (std::size_t i = 1; i < points.size(); ++i) spacing.push_back(time[points[i]] - time[points[i - 1]]);
-  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
-  std::nth_element(spacing.begin(), middle, spacing.end());
-  return *middle;
+  return Median(std::move(spacing));
 }
 
 /// Vertex of the least-squares parabola through the samples within `half_width` of sample `point`, at least one on each
@@ -99,12 +100,15 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   }
   if (extrema.size() >= 3) return extrema;
   if (range == 0) {
-    return Error(StatusCode::kFailedPrecondition, "the reading is constant: there is no swing in it");
+    return Error(StatusCode::kFailedPrecondition,
+                 "the reading is constant: there is no swing in it; check the sensor, or choose another column");
   }
   return Error(
       StatusCode::kFailedPrecondition,
       "turning points that stand out of the noise between neighbouring samples: " + std::to_string(extrema.size()) +
-          "; at least three turning points, with five samples or more between them, are needed to tell a swing");
+          "; at least three turning points, with five samples or more between them, are needed to tell a swing: choose "
+          "a "
+          "window of free swing, or record for longer");
 }
 
 }  // namespace pendulum

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendulum/base/median.h"
 #include "pendulum/closed_form/extrema.h"
 
 namespace pendulum {
 namespace {
 
 using Eigen::Index;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double ZeroOf(const std::vector<Extremum>& extrema) {
   std::vector<double> zeros;
@@ -92,7 +87,7 @@ Result<HalfSwingTable> TabulateHalfSwings(const Recording& recording) {
   if (std::none_of(table.half_swings.begin(), table.half_swings.end(),
                    [](const HalfSwing& h) { return h.continues; })) {
     return Error(StatusCode::kFailedPrecondition,
-                 "no two half swings follow each other without a gap; a longer recording or window is needed");
+                 "no two half swings follow each other without a gap; record for longer or choose another window");
   }
   return table;
 }

@@ -25,12 +25,15 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
+/// s², in units of G; ω0 = 1/sqrt(I) must be of a size that can be traced.
+constexpr double kSmallestInertia = 1e-30;
+
 /// What a parameter may be, for a sentence, in the units of the report.
 std::string Range(const FitProblem& problem, std::size_t i) {
-  if (problem.infos[i].name == kInertia.name) return "positive";
   const auto reported = [&](double internal) {
     return NumberText(problem.si_per_internal[i] * internal + problem.offset[i]);
   };
+  if (problem.infos[i].name == kInertia.name) return "greater than " + reported(kSmallestInertia);
   const std::string from = "at least " + reported(problem.solve.lower[i]);
   return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
 }
@@ -38,8 +41,7 @@ std::string Range(const FitProblem& problem, std::size_t i) {
 /// Puts a fixed value in, in the units of the problem; refuses one that the parameter cannot have.
 Result<void> FixParameter(double value, std::size_t i, FitProblem& problem) {
   const double internal = (value - problem.offset[i]) / problem.si_per_internal[i];
-  // An inertia must leave ω0 = 1/sqrt(I) a number of a size that can be traced.
-  const bool too_small = problem.infos[i].name == kInertia.name && !(internal > 1e-30);
+  const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
   const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
   if (!std::isfinite(internal) || outside || too_small) {
     return Error(StatusCode::kInvalidArgument, std::string(problem.infos[i].name) + " cannot be fixed at " +
@@ -105,7 +107,9 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   const Result<MotionModel> model = FindMotionModel(options.model);
   if (!model) return tl::unexpected(model.error());
   const Result<StartValues> start = EstimateStartValues(recording, *model, options.start);
-  if (!start) return tl::unexpected(start.error());
+  if (!start)
+    return Error(start.error().code,
+                 recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
 
   FitProblem problem;
   problem.model = *model;
@@ -121,6 +125,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   SetBounds(problem);
   problem.solve.fixed.assign(problem.infos.size(), false);
   problem.solve.holding_parameter = HoldingParameter(*model);
+  problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
+  if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.solve.max_iterations = options.max_iterations;
   if (const Result<void> fixed = FixParameters(options.fixed, problem); !fixed) return tl::unexpected(fixed.error());
   return problem;

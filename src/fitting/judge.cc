@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <boost/math/distributions/students_t.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/extrema.h"
 #include "pendulum/fitting/covariance.h"
+#include "pendulum/fitting/fit_warnings.h"
 
 namespace pendulum {
 namespace {
@@ -22,26 +25,32 @@ struct Optimum {
   Eigen::VectorXd gradient;     // P, J'r
   std::vector<int> free;        // neither fixed nor at a bound
   std::vector<int> at_bound;
+  std::vector<int> side;       // P: -1 at the lower bound, 1 at the upper one, 0 when free or fixed
   InformationInverse inverse;  // over free
+  double freedom = 1;          // N - free parameters
   double variance = 0;         // of one residual
 };
 
-Optimum Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+/// Nothing when the trajectory cannot be traced.
+std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
   Optimum optimum;
   Eigen::MatrixXd sums;
-  cost.Sums(solution.parameters, &sums);
+  if (!solution.usable || !cost.Sums(solution.parameters, &sums)) return std::nullopt;
   const Index size = sums.rows() - 1;
   optimum.information = sums.topLeftCorner(size, size);
   optimum.gradient = sums.col(size).head(size);
+  optimum.side.assign(static_cast<std::size_t>(size), 0);
   for (int i = 0; i < static_cast<int>(size); ++i) {
     if (problem.solve.fixed[i]) continue;
     const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
     const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
+    if (pushes_out) optimum.side[i] = side;
     (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
   }
   optimum.inverse = InvertInformation(optimum.information, optimum.free);
   const auto samples = static_cast<double>(problem.data.time.size());
-  optimum.variance = solution.sum / std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
+  optimum.freedom = std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
+  optimum.variance = solution.sum / optimum.freedom;
   return optimum;
 }
 
@@ -76,14 +85,6 @@ double IntervalAtBound(const Optimum& optimum, int parameter) {
   return rise / (std::sqrt(beyond * beyond + rise) + beyond);
 }
 
-double MedianInterval(const std::vector<double>& time) {
-  std::vector<double> intervals(time.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
-}
-
 /// Share of the readings' variance that the trajectory leaves.
 double UnexplainedShare(const Recording& recording, const Eigen::VectorXd& residual) {
   return residual.squaredNorm() / (recording.value.array() - recording.value.mean()).matrix().squaredNorm();
@@ -91,14 +92,26 @@ double UnexplainedShare(const Recording& recording, const Eigen::VectorXd& resid
 
 /// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
 /// reversal: a little less friction and it would swing on.
-bool OnKink(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+bool OnKink(const FitProblem& problem, const TraceSummary& trace, const Solution& solution) {
   constexpr double kNear = 1e-4;
   const int holding = problem.solve.holding_parameter;
-  if (holding < 0) return false;
-  const TraceSummary trace = cost.Trace(solution.parameters);
-  return trace.stop_time < problem.data.time.back() &&
+  return holding >= 0 && trace.stop_time < problem.data.time.back() &&
          trace.smallest_reversal_margin < kNear * solution.parameters[holding];
 }
+
+/// Samples in a period, as a number of lags.
+int PeriodLags(const FitProblem& problem) {
+  const std::vector<double>& time = problem.data.time;
+  std::vector<double> intervals(time.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
+  const double lags = 2 * kPi / problem.start.natural_frequency / Median(std::move(intervals));
+  return static_cast<int>(std::min(lags, static_cast<double>(time.size())));
+}
+
+/// A swing that the model describes leaves less of the variance than this, unless it drowns in noise, which does not
+/// follow itself: chosen between the real recordings' worst fits (0.1) and what is no free swing (0.2 and more).
+constexpr double kMostUnexplained = 0.12;
+constexpr double kMostNoise = 0.8;
 
 std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<int>& direction) {
   const std::string names = JoinNames(problem, direction);
@@ -108,8 +121,7 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
 
 void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
                     bool on_kink, FitReport& report) {
-  // Noise may be as large as a small swing, but it does not follow itself.
-  const double most_unexplained = correlated ? 0.12 : 0.8;
+  const double most_unexplained = correlated ? kMostUnexplained : kMostNoise;
   constexpr double kLargestShift = 0.1;
   if (!optimum.inverse.identifiable) {
     report.termination = Termination::kNotIdentifiable;
@@ -124,10 +136,12 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
                     std::to_string(std::lround(std::min(100 * unexplained, 1e6))) +
                     " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
   } else if (!(shift <= kLargestShift)) {
-    report.reason = on_kink ? "the best trajectory stops just where one half swing more would begin, and there the sum "
-                              "of squares has a kink; end the window before the stop (--to) or choose another model"
-                            : "a step of " + NumberText(shift, 2) +
-                                  " standard errors is left to make; a shorter window or another model may converge";
+    report.reason = on_kink
+                        ? "the best trajectory stops just where one half swing more would begin, and there the sum "
+                          "of squares has a kink; end the window before the stop (--to) or choose another model"
+                        : "a step of " +
+                              (shift < 10 ? NumberText(shift, 2) : std::to_string(std::lround(std::min(shift, 1e6)))) +
+                              " standard errors is left to make; a shorter window or another model may converge";
   } else if (optimum.free.empty() && optimum.at_bound.empty()) {
     report.termination = Termination::kConverged;
     report.reason = "every parameter is fixed: nothing was fitted";
@@ -161,7 +175,7 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, int i, double 
   const double scale = problem.si_per_internal[i];
   if (parameter.at_bound) {
     parameter.reason = "at its bound";
-    const bool at_lower = optimum.gradient[i] >= 0;
+    const bool at_lower = optimum.side[i] < 0;
     const double length = scale * IntervalAtBound(optimum, i);
     (at_lower ? parameter.lower95 : parameter.upper95) = parameter.estimate;
     if (!std::isfinite(length)) return;
@@ -176,9 +190,7 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, int i, double 
 
 void SetParameters(const FitOptions& options, const FitProblem& problem, const Optimum& optimum,
                    const Solution& solution, FitReport& report) {
-  const auto samples = static_cast<double>(problem.data.time.size());
-  const double freedom = std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
-  const double t95 = boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  const double t95 = boost::math::quantile(boost::math::students_t(optimum.freedom), 0.975);
   for (int i = 0; i < static_cast<int>(problem.infos.size()); ++i) {
     ParameterEstimate parameter = MakeEstimate(options, problem, solution, static_cast<std::size_t>(i));
     parameter.at_bound = std::find(optimum.at_bound.begin(), optimum.at_bound.end(), i) != optimum.at_bound.end();
@@ -214,78 +226,6 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Solutio
   report.derived = DerivedQuantities(problem.infos, solution.parameters, &covariance, optimum.at_bound);
 }
 
-/// Residuals that follow each other are not independent, and where they are also larger than the noise between
-/// neighbours the model does not describe the recording.
-void WarnOfLackOfFit(const Recording& recording, bool correlated, FitReport& report) {
-  constexpr double kRatio = 1.3;
-  constexpr double kLargestSaid = 100;
-  if (!correlated) return;
-  Recording residuals = recording;
-  residuals.value = report.residual;
-  const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
-  const std::string consequence = "the error bars, which take the residuals as independent, are too small";
-  if (!(ratio > kRatio)) {
-    report.warnings.push_back({"correlated_residuals", "the residuals follow each other: " + consequence});
-    return;
-  }
-  const std::string times = ratio > kLargestSaid ? "more than 100" : NumberText(ratio, 2);
-  report.warnings.push_back({"lack_of_fit", "the residuals are " + times +
-                                                " times the noise between neighbouring samples and follow each other: "
-                                                "the model does not describe everything in this recording, and " +
-                                                consequence});
-}
-
-/// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
-void WarnOfQuietSensor(const Recording& recording, FitReport& report) {
-  constexpr double kQuiet = 0.5;
-  if (!(report.statistics.rms_residual < kQuiet * recording.resolution)) return;
-  report.warnings.push_back(
-      {"quiet_sensor", "the residuals are " + NumberText(report.statistics.rms_residual / recording.resolution, 2) +
-                           " resolutions: the noise is too small for rounding to average out, and the error bars may "
-                           "be several times too small"});
-}
-
-/// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
-void WarnOfBound(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
-  if (optimum.at_bound.empty() || report.termination != Termination::kConverged) return;
-  const std::string names = JoinNames(problem, optimum.at_bound);
-  report.warnings.push_back(
-      {"at_bound",
-       names + (optimum.at_bound.size() == 1 ? " is at its bound" : " are at their bounds") +
-           ": the error bars of the other parameters take it as exactly known and are too small if it is not; "
-           "compare with the fit of a simpler model, or record for longer"});
-}
-
-/// Another number of half swings before the stop that explains the data nearly as well (9 in -2 log L).
-void WarnOfOtherMinima(const FitProblem& problem, const Solution& solution, FitReport& report) {
-  const int holding = problem.solve.holding_parameter;
-  if (holding < 0 || !report.parameters[holding].std_error) return;
-  const double error = *report.parameters[holding].std_error / problem.si_per_internal[holding];
-  const auto samples = static_cast<double>(problem.data.time.size());
-  for (const Minimum& other : solution.other_minima) {
-    const double distance = other.parameters[holding] - solution.parameters[holding];
-    if (samples * std::log(other.sum / solution.sum) > 9 || std::abs(distance) < error) continue;
-    report.warnings.push_back(
-        {"another_minimum", "a second minimum at " + std::string(problem.infos[holding].name) + " " +
-                                NumberText(problem.si_per_internal[holding] * other.parameters[holding], 6) +
-                                " explains the recording nearly as well"});
-    return;
-  }
-}
-
-/// A stop that the data can hardly date: at the last reversals gravity is within three standard errors of dry friction.
-void WarnOfKink(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution, FitReport& report) {
-  const int holding = problem.solve.holding_parameter;
-  if (holding < 0 || !report.parameters[holding].std_error) return;
-  const double error = *report.parameters[holding].std_error / problem.si_per_internal[holding];
-  const TraceSummary trace = cost.Trace(solution.parameters);
-  if (!(trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error)) return;
-  report.warnings.push_back(
-      {"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " +
-                             std::string(problem.infos[holding].name) +
-                             ", where the number of half swings changes: the error bars there are rough"});
-}
-
 }  // namespace
 
 FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem,
@@ -294,11 +234,12 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.model = problem.model;
   report.start = problem.start.start;
   report.quantity = recording.quantity;
-  report.solver = {solution.iterations, solution.evaluations, solution.message};
-  if (!solution.usable) {
+  const std::optional<Optimum> optimum = Linearize(problem, cost, solution);
+  report.solver = {solution.iterations, cost.traces(), solution.message};
+  if (!optimum) {
     report.termination = Termination::kFailed;
     report.reason =
-        "no trajectory can be traced from the start values: friction would hold the pendulum, its release would lie "
+        "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
         "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
     SetParameters(options, problem, Optimum{}, solution, report);
     return report;
@@ -306,20 +247,16 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.fitted = solution.readings;
   report.residual = recording.value - report.fitted;
   report.trace_error = solution.trace_error;
-  const Optimum optimum = Linearize(problem, cost, solution);
-  report.noise = {problem.data.scale * std::sqrt(optimum.variance), Lag1Correlation(report.residual)};
-  report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum.free.size()), recording.resolution);
-  const auto lags = static_cast<int>(2 * kPi / problem.start.natural_frequency / MedianInterval(problem.data.time));
-  const bool correlated = FollowEachOther(report.residual, lags);
-  SetTermination(recording, problem, optimum, correlated, OnKink(problem, cost, solution), report);
-  SetParameters(options, problem, optimum, solution, report);
-  SetDerived(problem, optimum, solution, report);
-  if (report.termination == Termination::kConverged) SetCovariance(problem, optimum, report);
-  WarnOfLackOfFit(recording, correlated, report);
-  WarnOfQuietSensor(recording, report);
-  WarnOfBound(problem, optimum, report);
-  WarnOfOtherMinima(problem, solution, report);
-  WarnOfKink(problem, cost, solution, report);
+  report.noise = {problem.data.scale * std::sqrt(optimum->variance), Lag1Correlation(report.residual)};
+  report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum->free.size()), recording.resolution);
+  const TraceSummary trace = cost.Trace(solution.parameters);
+  const bool correlated = FollowEachOther(report.residual, PeriodLags(problem));
+  SetTermination(recording, problem, *optimum, correlated, OnKink(problem, trace, solution), report);
+  SetParameters(options, problem, *optimum, solution, report);
+  SetDerived(problem, *optimum, solution, report);
+  if (report.termination == Termination::kConverged) SetCovariance(problem, *optimum, report);
+  report.warnings = FitWarnings(recording, problem, solution, trace, correlated, report);
+  report.solver.evaluations = cost.traces();
   return report;
 }
 

@@ -24,8 +24,9 @@ bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag) {
   const auto count = std::min<Eigen::Index>(longest, kMostLags);
   if (!(sum > 0)) return false;
   double portmanteau = 0;
+  Eigen::Index lag = 0;
   for (Eigen::Index i = 1; i <= count; ++i) {
-    const Eigen::Index lag = i * longest / count;
+    lag = std::max(lag + 1, longest * i * i / (count * count));
     const double correlation = residual.tail(n - lag).dot(residual.head(n - lag)) / sum;
     portmanteau += static_cast<double>(n) * correlation * correlation;
   }

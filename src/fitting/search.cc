@@ -29,7 +29,7 @@ Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution
   constexpr std::size_t kFewest = 16;
   for (const double time : times) {
     const std::size_t count = SamplesBefore(data, time);
-    if (count < kFewest || count >= data.time.size() || solution.evaluations > kMostEvaluations) continue;
+    if (count < kFewest || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
     cost.set_used_samples(count);
     solution = Continue(cost, solution, options);
   }
@@ -38,8 +38,8 @@ Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution
 }
 
 /// When the motion begins: the hold belongs to no share of it.
-double MotionStart(const TrajectoryData& data, const std::vector<double>& parameters) {
-  return data.latest_release > 0 ? parameters[parameters.size() - 2] : 0.0;
+double MotionStart(const std::vector<double>& parameters, const SolveOptions& options) {
+  return options.release_time >= 0 ? parameters[options.release_time] : 0.0;
 }
 
 std::vector<double> GrowingTimes(double begin, double end, double cycle) {
@@ -57,7 +57,8 @@ Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<d
   if (!cost.Sums(at, &sums)) return {};
   std::vector<int> free;
   for (int i = 0; i < static_cast<int>(at.size()); ++i) {
-    if (!options.fixed[i] && (i == k || at[i] > options.lower[i])) free.push_back(i);
+    const bool at_bound = BoundSide(options, static_cast<std::size_t>(i), at[i]) != 0;
+    if (!options.fixed[i] && (i == k || !at_bound)) free.push_back(i);
   }
   const Eigen::Index position = std::find(free.begin(), free.end(), k) - free.begin();
   const Eigen::VectorXd unit = Eigen::VectorXd::Unit(static_cast<Eigen::Index>(free.size()), position);
@@ -81,7 +82,7 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
     std::vector<double> start = from;
     for (std::size_t i = 0; i < start.size(); ++i) {
       const double change = shift * from[k] * direction[static_cast<Eigen::Index>(i)];
-      start[i] = std::max(start[i] + change, options.lower[i]);
+      start[i] = std::clamp(start[i] + change, options.lower[i], options.upper[i]);
     }
     return start;
   };
@@ -96,7 +97,7 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
 Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
-    for (bool better = true; better && best.evaluations < kMostEvaluations;) {
+    for (bool better = true; better && cost.traces() < options.max_traces;) {
       Solution trial = best;
       trial.parameters = NextBasin(cost, best.parameters, side, options);
       if (trial.parameters.empty()) break;
@@ -106,7 +107,6 @@ Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveO
       std::vector<Minimum> other_minima = best.other_minima;
       if (other.usable) other_minima.push_back({other.parameters, other.sum});
       best.iterations = trial.iterations;
-      best.evaluations = trial.evaluations;
       if (better) best = trial;
       best.other_minima = other_minima;
     }
@@ -132,7 +132,7 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
                     const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;
-  const double begin = MotionStart(data, start);
+  const double begin = MotionStart(start, options);
   double sum = 0;
   const bool traced = cost.SumOfSquares(start, &sum);
   const int holding = options.holding_parameter;
@@ -149,35 +149,44 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   return Refine(cost, data, solution, options);
 }
 
+/// A stage of the search ends where it is after so many trajectories: good recordings need tens, hopeless ones would
+/// take for ever.
+SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
+  constexpr int kMostTraces = 1500;
+  options.max_traces = cost.traces() + kMostTraces;
+  return options;
+}
+
 /// The last friction parameter that may be held at its bound to leave a simpler law; -1: none. The first always stays.
 int LastFreeFriction(const SolveOptions& options) {
-  constexpr int kInertiaAndFirst = 2;
-  constexpr int kStart = 3;  // behind friction
-  for (int k = static_cast<int>(options.fixed.size()) - kStart - 1; k >= kInertiaAndFirst; --k) {
+  for (int k = options.last_friction; k > 1; --k) {
     if (!options.fixed[k] && std::isfinite(options.lower[k])) return k;
   }
   return -1;
+}
+
+/// Searches with the last friction parameter held at its bound, then lets it go.
+Solution SearchFromSimplerLaw(TrajectoryCost& cost, const TrajectoryData& data, std::vector<double> start, int last,
+                              const SolveOptions& options) {
+  SolveOptions simpler = options;
+  simpler.fixed[last] = true;
+  start[last] = options.lower[last];
+  Solution solution = Search(cost, data, start, simpler);
+  solution.other_minima.clear();
+  return Refine(cost, data, solution, WithBudget(cost, options));
 }
 
 }  // namespace
 
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options) {
-  Solution found = SearchFrom(cost, data, start, options);
+  Solution found = SearchFrom(cost, data, start, WithBudget(cost, options));
   const int last = LastFreeFriction(options);
   if (last < 0 || (found.usable && found.sum <= kExplained * Variance(data))) return found;
-  SolveOptions simpler = options;
-  simpler.fixed[last] = true;
-  std::vector<double> simpler_start = start;
-  simpler_start[last] = options.lower[last];
-  const Solution nested = Search(cost, data, simpler_start, simpler);
-  Solution freed;
-  freed.parameters = nested.parameters;
-  freed = Refine(cost, data, freed, options);
+  const Solution freed = SearchFromSimplerLaw(cost, data, start, last, options);
   const bool better = freed.usable && (!found.usable || freed.sum < found.sum);
   Solution best = better ? freed : found;
-  best.iterations = found.iterations + nested.iterations + freed.iterations;
-  best.evaluations = found.evaluations + nested.evaluations + freed.evaluations;
+  best.iterations = found.iterations + freed.iterations;
   return best;
 }
 

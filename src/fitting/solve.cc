@@ -77,9 +77,7 @@ void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bo
   ceres::Solve(solver, &problem, &summary);
   solution.usable = summary.IsSolutionUsable();
   solution.sum = 2 * summary.final_cost;
-  // Ceres leaves -1 in what it did not come to count.
   solution.iterations += std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
-  solution.evaluations += std::max(summary.num_residual_evaluations, 0) + std::max(summary.num_jacobian_evaluations, 0);
   solution.message = summary.message;
 }
 
@@ -112,10 +110,11 @@ Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const Sol
   Solution solution;
   solution.parameters = start;
   std::vector<bool> held = options.fixed;
+  // A parameter is held and let go once or twice; one that is so again and again lies on its bound to rounding.
   const std::size_t most_runs = 4 * start.size();
   for (std::size_t run = 0; run < most_runs; ++run) {
     Run(cost, options, held, solution);
-    if (!solution.usable || solution.evaluations > kMostEvaluations) break;
+    if (!solution.usable || cost.traces() >= options.max_traces) break;
     const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
     for (const std::size_t i : landed) held[i] = true;
     if (!landed.empty()) continue;
@@ -131,7 +130,6 @@ Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions
   Solution solution = Solve(cost, from.parameters, options);
   if (!solution.usable) solution.parameters = from.parameters;
   solution.iterations += from.iterations;
-  solution.evaluations += from.evaluations;
   solution.other_minima = from.other_minima;
   return solution;
 }

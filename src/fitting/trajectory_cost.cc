@@ -185,6 +185,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   TraceSummary Trace(std::span<const double> p) const override {
+    ++traces_;
     return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), [](const Segment<double>&) {});
   }
 
@@ -253,6 +254,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       }
       next = end;
     };
+    ++traces_;
     const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visit);
     return summary.outcome == TraceSummary::Outcome::kComplete && next == used_samples_;
   }

@@ -51,7 +51,6 @@ class Reader {
   Check ReadField(std::string_view field, const Column& column, double& number) const;
   Check Append(double time, double value, const char* at);
   Result<Recording> Finish();
-  void WarnOfSaturation();
 
   std::string ColumnNames() const;
   tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
@@ -69,7 +68,7 @@ class Reader {
   std::optional<Column> value_;
   std::array<bool, csv::kMetadataKeys.size()> seen_{};
   double file_resolution_ = 0;
-  csv::Range file_range_;
+  std::optional<csv::Range> file_range_;
   Eigen::Index rows_ = 0;
   double last_time_ = 0;  // In the file's unit.
   std::size_t last_row_line_ = 0;
@@ -132,7 +131,7 @@ Check Reader::ReadComment(std::string_view comment) {
   if (seen) return Fault(comment.data(), "the metadata " + key + " is given twice; keep one of them");
   seen = true;
   if (key == "resolution") ParseNumber(value, file_resolution_);
-  if (key == "range") csv::ParseRange(value, file_range_);
+  if (key == "range") csv::ParseRange(value, file_range_.emplace());
   if (entry->changes_numbers) {
     recording_.warnings.push_back({"metadata_not_applied", name_ + ":" + std::to_string(line_number_) +
                                                                ": the metadata " + key + " is not applied"});
@@ -255,18 +254,6 @@ Check Reader::Append(double time, double value, const char* time_at) {
   return {};
 }
 
-/// A reading at an end of the sensor's range only says that the angle is there or beyond.
-void Reader::WarnOfSaturation() {
-  const double low = value_->unit->ToSi(file_range_.low) + 0.5 * recording_.resolution;
-  const double high = value_->unit->ToSi(file_range_.high) - 0.5 * recording_.resolution;
-  const auto saturated = (recording_.value.array() <= low || recording_.value.array() >= high).count();
-  if (saturated == 0) return;
-  recording_.warnings.push_back(
-      {"saturated", std::to_string(saturated) + " readings stand at an end of the sensor's range, " +
-                        NumberText(file_range_.low) + " to " + NumberText(file_range_.high) +
-                        " in the file's unit; they are taken as measured, which draws the amplitude in"});
-}
-
 Result<Recording> Reader::Finish() {
   if (rows_ < kMinimumSamples) {
     const std::string least = "at least " + std::to_string(kMinimumSamples);
@@ -283,7 +270,9 @@ Result<Recording> Reader::Finish() {
   recording_.time.conservativeResize(rows_);
   recording_.value.conservativeResize(rows_);
   recording_.resolution = value_->unit->ToSi(file_resolution_);
-  WarnOfSaturation();
+  if (file_range_) {
+    recording_.range = SensorRange{value_->unit->ToSi(file_range_->low), value_->unit->ToSi(file_range_->high)};
+  }
   return MakeRecording(std::move(recording_));
 }
 

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "pendulum/base/format.h"
+
 namespace pendulum {
 namespace {
 
@@ -95,10 +97,10 @@ int SignificantDigits(double x, const Rounding& rounding) {
 }
 
 ValueAndError PdgText(double value, double error) {
-  if (!(error > 0)) return {GeneralText(value, kMostDigits), GeneralText(error, 2)};
+  if (!(error > 0)) return {NumberText(value, kMostDigits), NumberText(error, 2)};
   const RoundedError rounded = RoundError(error);
   const int first = FirstDigit(value, error);
-  if (first - rounded.last >= kMostDigits) return {GeneralText(value, kMostDigits), GeneralText(error, 2)};
+  if (first - rounded.last >= kMostDigits) return {NumberText(value, kMostDigits), NumberText(error, 2)};
   const Rounding rounding = RoundingTo(first, rounded.last);
   const std::string exponent = ExponentText(rounding.exponent);
   if (exponent.empty()) return {Mantissa(value, rounding), Mantissa(rounded.error, rounding)};
@@ -107,13 +109,6 @@ ValueAndError PdgText(double value, double error) {
 
 std::string RoundedText(double x, const Rounding& rounding) {
   return Mantissa(x, rounding) + ExponentText(rounding.exponent);
-}
-
-std::string GeneralText(double x, int digits) {
-  std::array<char, kBuffer> buffer{};
-  const auto [end, error] =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::general, digits);
-  return {buffer.data(), end};
 }
 
 std::string FixedText(double x, int decimals) {

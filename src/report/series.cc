@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/series.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
+
+#include "pendulum/base/format.h"
 
 namespace pendulum {
 namespace {
 
 void AppendNumber(double value, std::string& text) {
-  if (!std::isfinite(value)) return;
-  std::array<char, 32> buffer{};  // a double's shortest text has at most 24 characters
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  text.append(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+  if (std::isfinite(value)) text += NumberText(value);
 }
 
 }  // namespace

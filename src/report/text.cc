@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/layout.h"
@@ -48,7 +49,7 @@ std::string ReadingText(double value, Quantity quantity) {
   constexpr int kReadingDigits = 3;
   const std::string unit = quantity == Quantity::kAngle ? "rad" : "rad/s";
   const std::optional<Conversion> degrees = Degrees(unit);
-  return GeneralText(value, kReadingDigits) + " " + unit + " (" + GeneralText(value * degrees->factor, kReadingDigits) +
+  return NumberText(value, kReadingDigits) + " " + unit + " (" + NumberText(value * degrees->factor, kReadingDigits) +
          " " + std::string(degrees->unit) + ")";
 }
 
@@ -56,8 +57,8 @@ std::string DataText(const DataSummary& data) {
   std::vector<Row> rows;
   if (!data.path.empty()) rows.push_back({"file", data.path});
   rows.push_back({"samples", std::to_string(data.used_samples) + " used of " + std::to_string(data.samples)});
-  rows.push_back({"window", GeneralText(data.from, kDigits) + " s to " + GeneralText(data.to, kDigits) + " s, " +
-                                GeneralText(data.sample_rate(), kDigits) + " Hz on average"});
+  rows.push_back({"window", NumberText(data.from, kDigits) + " s to " + NumberText(data.to, kDigits) + " s, " +
+                                NumberText(data.sample_rate(), kDigits) + " Hz on average"});
   if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.quantity)});
   return Heading("Data") + Facts(rows);
 }
@@ -84,7 +85,7 @@ class ParameterNumbers {
   ParameterNumbers(const ParameterEstimate& parameter, double factor) : factor_(factor) {
     const double value = factor * parameter.estimate;
     const double error = factor * parameter.std_error.value_or(0);
-    text_ = {GeneralText(value, kDigits), ""};
+    text_ = {NumberText(value, kDigits), ""};
     if (!parameter.std_error) return;
     text_ = PdgText(value, error);
     if (error > 0) rounding_ = PdgRounding(value, error);
@@ -95,7 +96,7 @@ class ParameterNumbers {
 
   std::string Number(double x) const {
     constexpr int kDigitsWithoutError = 4;
-    return rounding_ ? RoundedText(factor_ * x, *rounding_) : GeneralText(factor_ * x, kDigitsWithoutError);
+    return rounding_ ? RoundedText(factor_ * x, *rounding_) : NumberText(factor_ * x, kDigitsWithoutError);
   }
 
   /// A second standard error, to its own decimal.
@@ -164,9 +165,8 @@ std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
   const double from_rig = rig->inertia->value;
   const double percent = 100 * (fitted->estimate / from_rig - 1);
   const ValueAndError text = PdgText(from_rig, rig->inertia->std_dev);
-  const std::string value =
-      rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : GeneralText(from_rig, kDigits);
-  return Prose("The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + GeneralText(std::abs(percent), 2) +
+  const std::string value = rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : NumberText(from_rig, kDigits);
+  return Prose("The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + NumberText(std::abs(percent), 2) +
                " % " + (percent < 0 ? "smaller" : "larger") + ".");
 }
 
@@ -181,19 +181,18 @@ std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig) 
     if (const auto degrees = Degrees(parameter.unit)) rows.push_back(ParameterRow(parameter, *degrees));
   }
   const bool failed = fit.termination == Termination::kFailed;
-  std::string text = Heading("Parameters") + (failed ? Prose("These are start values, not estimates.") : "");
+  std::string text = Heading("Parameters") + (failed ? Prose("These are no estimates: nothing was fitted.") : "");
   text += AlignedTable(ParameterColumns(), rows, kIndent) + MissingErrors(fit);
   if (!fit.covariance_names.empty()) text += Prose("Standard errors: " + std::string(kStdErrorMethod) + ".");
   return text + InertiaText(fit, rig);
 }
 
-// --- what follows from the parameters
-// ----------------------------------------------------------------------------------
+// --- what follows from the parameters -----------------------------------------------------------------------------
 
 std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
-    ValueAndError text{GeneralText(quantity.estimate, kDigits), ""};
+    ValueAndError text{NumberText(quantity.estimate, kDigits), ""};
     if (quantity.std_error.value_or(0) > 0) text = PdgText(quantity.estimate, *quantity.std_error);
     rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit});
   }
@@ -225,17 +224,17 @@ std::string StatisticsText(const FitReport& fit) {
   if (fit.termination == Termination::kFailed) return "";
   const FitStatistics& statistics = fit.statistics;
   return Heading("Noise and statistics") +
-         Facts({{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.quantity)},
-                {"rms residual", ReadingText(statistics.rms_residual, fit.quantity)},
-                {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
-                {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
-                {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
-                {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
-                                       FixedText(statistics.bic, 2)},
-                {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
-                               std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
-                               GeneralText(fit.trace_error, 1) +
-                               (fit.quantity == Quantity::kAngle ? " rad" : " rad/s")}});
+         Facts(
+             {{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.quantity)},
+              {"rms residual", ReadingText(statistics.rms_residual, fit.quantity)},
+              {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
+              {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+              {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
+              {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
+                                     FixedText(statistics.bic, 2)},
+              {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
+                             std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
+                             NumberText(fit.trace_error, 1) + (fit.quantity == Quantity::kAngle ? " rad" : " rad/s")}});
 }
 
 std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
@@ -245,8 +244,8 @@ std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig)
   return text +
          Prose(
              "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
-             "tells "
-             "only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
+             "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, "
+             "or "
              "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
-#include <exception>
-#include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gflags/gflags.h>
@@ -17,8 +16,8 @@
 #include "pendulum/report/series.h"
 #include "pendulum/report/text.h"
 #include "tools/fit_pendulum_options.h"
-#include "tools/flags.h"
 #include "tools/output.h"
+#include "tools/run_tool.h"
 
 const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() + "; default coulomb.";
 
@@ -35,6 +34,8 @@ DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; -
 namespace pendulum {
 namespace {
 
+constexpr std::string_view kName = "fit_pendulum";
+
 constexpr const char* kUsage =
     "Moment of inertia and friction of a pendulum, with error bars, from a recording of its free swing.\n"
     "\n"
@@ -43,13 +44,6 @@ constexpr const char* kUsage =
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
     "4 unreadable data or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
     "\n";
-
-void Say(const std::string& sentence) { std::cerr << "fit_pendulum: " << sentence << '\n'; }
-
-int Fail(const Status& status) {
-  Say(status.message);
-  return ExitCode(status.code);
-}
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return {FLAGS_data, FLAGS_rig, FLAGS_model, FLAGS_start,     FLAGS_from,
@@ -69,12 +63,13 @@ RunResult Render(const FitPendulumOptions& options, const RunReport& report, con
   if (!options.json.empty()) result.outputs.push_back({options.json, ToJsonText(report)});
   if (!options.residuals.empty()) result.outputs.push_back({options.residuals, ToResidualCsv(used, fit)});
   if (IsStandardOutput(options.json) || IsStandardOutput(options.residuals)) {
-    for (const Warning& warning : AllWarnings(report)) Say("warning: " + warning.message);
+    for (const Warning& warning : AllWarnings(report)) Say(kName, "warning: " + warning.message);
   } else {
     result.outputs.push_back({"-", ToText(report)});
   }
-  if (fit.termination != Termination::kConverged)
-    Say(std::string(TerminationName(fit.termination)) + ": " + fit.reason);
+  if (fit.termination != Termination::kConverged) {
+    Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
+  }
   return result;
 }
 
@@ -98,19 +93,15 @@ Result<RunResult> FitFile(FitPendulumOptions options) {
   return Render(options, report, *used);
 }
 
-int Run(int argc, char** argv) {
-  const auto parsed = ParseFlags(argc, argv, __FILE__, kUsage);
-  if (!parsed) return Fail(parsed.error());
-  if (!parsed->answer.empty()) {
-    const auto written = WriteOutputs(std::vector<Output>{{"-", parsed->answer}});
-    return written ? 0 : Fail(written.error());
+Result<int> Work(const std::vector<std::string>& positional) {
+  const auto options = MakeFitPendulumOptions(CurrentFlags(positional));
+  if (!options) return tl::unexpected(options.error());
+  if (const auto checked = CheckOutputs(options->Outputs(), options->Inputs()); !checked) {
+    return tl::unexpected(checked.error());
   }
-  const auto options = MakeFitPendulumOptions(CurrentFlags(parsed->positional));
-  if (!options) return Fail(options.error());
-  if (const auto checked = CheckOutputs(options->Outputs(), options->Inputs()); !checked) return Fail(checked.error());
   const auto result = FitFile(*options);
-  if (!result) return Fail(result.error());
-  if (const auto written = WriteOutputs(result->outputs); !written) return Fail(written.error());
+  if (!result) return tl::unexpected(result.error());
+  if (const auto written = WriteOutputs(result->outputs); !written) return tl::unexpected(written.error());
   return ExitCode(result->termination);
 }
 
@@ -121,10 +112,5 @@ int main(int argc, char** argv) {
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are not the user's affair
   google::InitGoogleLogging(argv[0]);
-  try {
-    return pendulum::Run(argc, argv);
-  } catch (const std::exception& error) {
-    pendulum::Say(std::string("internal error: ") + error.what());
-    return pendulum::ExitCode(pendulum::StatusCode::kInternal);
-  }
+  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
 }

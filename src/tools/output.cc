@@ -146,8 +146,11 @@ Result<void> WriteStream(const Output& output) {
   const bool standard = IsStandardOutput(output.path);
   const int descriptor = standard ? STDOUT_FILENO : ::open(output.path.c_str(), O_WRONLY | O_CLOEXEC);
   bool written = descriptor >= 0 && WriteAll(descriptor, output.text);
-  const int error = errno;
-  if (!standard && descriptor >= 0 && ::close(descriptor) != 0) written = false;
+  int error = errno;
+  if (!standard && descriptor >= 0 && ::close(descriptor) != 0 && written) {
+    written = false;
+    error = errno;
+  }
   if (!written) return CannotWrite(standard ? "standard output" : output.path, SystemWords(error));
   return {};
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulates recordings of a pendulum's free swing, with the truth: flags, files and exit codes.
 #include <cstdint>
-#include <exception>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +10,8 @@
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/trajectory/synthetic.h"
-#include "tools/flags.h"
 #include "tools/output.h"
+#include "tools/run_tool.h"
 #include "tools/simulate_pendulum_options.h"
 #include "tools/simulate_pendulum_text.h"
 
@@ -52,13 +50,6 @@ std::string Usage() {
          "Exit codes: 0 done, 2 wrong flags, 3 rig not found, 4 unreadable rig, 5 the pendulum never moves, 70 a bug,\n"
          "73 an output cannot be written.\n"
          "\n";
-}
-
-void Say(const std::string& sentence) { std::cerr << "simulate_pendulum: " << sentence << '\n'; }
-
-int Fail(const Status& status) {
-  Say(status.message);
-  return ExitCode(status.code);
 }
 
 SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
@@ -119,25 +110,13 @@ Result<void> Simulate(const SimulateFlags& flags) {
   return {};
 }
 
-int Run(int argc, char** argv) {
-  const auto parsed = ParseFlags(argc, argv, __FILE__, Usage());
-  if (!parsed) return Fail(parsed.error());
-  if (!parsed->answer.empty()) {
-    const auto written = WriteOutputs(std::vector<Output>{{"-", parsed->answer}});
-    return written ? 0 : Fail(written.error());
-  }
-  const auto simulated = Simulate(CurrentFlags(parsed->positional));
-  return simulated ? 0 : Fail(simulated.error());
+Result<int> Work(const std::vector<std::string>& positional) {
+  return Simulate(CurrentFlags(positional)).map([] { return 0; });
 }
 
 }  // namespace
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  try {
-    return pendulum::Run(argc, argv);
-  } catch (const std::exception& error) {
-    pendulum::Say(std::string("internal error: ") + error.what());
-    return pendulum::ExitCode(pendulum::StatusCode::kInternal);
-  }
+  return pendulum::RunTool({"simulate_pendulum", __FILE__, pendulum::Usage(), pendulum::Work}, argc, argv);
 }

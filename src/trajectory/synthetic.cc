@@ -63,10 +63,17 @@ Result<void> CheckNumbers(const SyntheticOptions& options) {
   return {};
 }
 
+std::string FrictionNames() {
+  std::string names;
+  for (const std::string_view name : FrictionModels::kNames) names.append(names.empty() ? "" : ", ").append(name);
+  return names;
+}
+
 Result<void> CheckModel(const SyntheticOptions& options) {
   const std::string_view friction = options.model.friction;
   if (!FrictionModels::Visit(friction, []<typename F>() {})) {
-    return Error(StatusCode::kInvalidArgument, "there is no friction law '" + std::string(friction) + "'");
+    return Error(StatusCode::kInvalidArgument,
+                 "there is no friction law '" + std::string(friction) + "'; the laws are " + FrictionNames());
   }
   const std::vector<ParameterInfo> infos = PhysicalParameters(options.model);
   if (options.parameters.size() != infos.size()) {
@@ -97,9 +104,9 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
 Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
   const double count = std::round(options.duration * options.sample_rate);
   if (!(count <= kMostSamples)) {
-    return Error(StatusCode::kInvalidArgument, NumberText(options.duration) + " s at " +
-                                                   NumberText(options.sample_rate) + " Hz are more than " +
-                                                   std::to_string(kMostSamples) + " samples");
+    return Error(StatusCode::kInvalidArgument,
+                 NumberText(options.duration) + " s at " + NumberText(options.sample_rate) + " Hz are more than " +
+                     std::to_string(kMostSamples) + " samples; shorten it or sample more slowly");
   }
   if (count < kMinimumSamples) {
     return Error(StatusCode::kFailedPrecondition,
@@ -189,6 +196,7 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   recording.quantity = options.quantity;
   recording.unit = is_angle ? "rad" : "rad/s";
   recording.resolution = options.resolution;
+  recording.range = options.range;
   recording.value.resize(*count);
   for (Eigen::Index i = 0; i < *count; ++i) {
     const double time = recording.time[i];

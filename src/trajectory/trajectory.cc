@@ -47,7 +47,9 @@ Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const doub
   switch (trajectory.summary().outcome) {
     case TraceSummary::Outcome::kComplete: return trajectory;
     case TraceSummary::Outcome::kNeverMoved:
-      return Error(StatusCode::kFailedPrecondition, "friction holds the pendulum where it starts: it never moves");
+      return Error(
+          StatusCode::kFailedPrecondition,
+          "friction holds the pendulum where it starts: it never moves; release it farther out, or lower dry friction");
     case TraceSummary::Outcome::kNotTraceable: break;
   }
   return Error(StatusCode::kFailedPrecondition,

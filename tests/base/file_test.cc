@@ -52,7 +52,15 @@ TEST_F(ReadFileTest, RefusesMoreBytesThanItMay) {
   EXPECT_THAT(refused.error().message, HasSubstr("run.csv: the file has more than 4 bytes, too many for a rig file"));
 }
 
-TEST_F(ReadFileTest, SaysWhyAFileCannotBeRead) {
+TEST_F(ReadFileTest, SaysThatAFileCannotBeRead) {
+  // Linux opens it and fails to read at 0, for root too.
+  const auto refused = ReadFile("/proc/self/mem", "CSV", 1000);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
+  EXPECT_EQ(refused.error().message, "/proc/self/mem: the file cannot be read; check its permissions");
+}
+
+TEST_F(ReadFileTest, SaysThatThereIsNoFile) {
   EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().message,
             "/nowhere/run.csv: there is no such file; check the path");
   EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().code, StatusCode::kNotFound);

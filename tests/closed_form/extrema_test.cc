@@ -131,7 +131,8 @@ TEST(FindExtrema, RefusesAConstantReading) {
   const auto found = FindExtrema(Sample([](double) { return 0.3; }, 10, 10));
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(found.error().message, "the reading is constant: there is no swing in it");
+  EXPECT_EQ(found.error().message,
+            "the reading is constant: there is no swing in it; check the sensor, or choose another column");
 }
 
 TEST(FindExtrema, RefusesFewerThanThreeTurningPointsAndSaysHowManyThereWere) {

@@ -59,6 +59,15 @@ inline SyntheticOptions TextbookRun(std::string_view model) {
   return options;
 }
 
+/// 10 s of it with noise.
+inline SyntheticOptions NoisyRun(std::string_view model = "coulomb", std::uint64_t seed = 1) {
+  SyntheticOptions run = TextbookRun(model);
+  run.duration = 10;
+  run.noise = 0.002;
+  run.seed = seed;
+  return run;
+}
+
 /// The same pendulum passing -0.2 rad at 1.5 rad/s when the recording begins.
 inline SyntheticOptions MovingRun(std::string_view model) {
   SyntheticOptions options = TextbookRun(model);

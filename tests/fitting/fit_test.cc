@@ -55,14 +55,6 @@ void ExpectTruth(const FitReport& report, const std::vector<double>& truth, doub
   }
 }
 
-/// 10 s of the textbook rig's swing with noise.
-SyntheticOptions NoisyRun() {
-  SyntheticOptions run = TextbookRun("coulomb");
-  run.duration = 10;
-  run.noise = 0.002;
-  return run;
-}
-
 // ---- Recovery ------------------------------------------------------------------------------------------------------
 
 TEST(FitRecording, RecoversTheTruthOfEveryModelFromNoiseFreeData) {
@@ -242,27 +234,22 @@ TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
   EXPECT_FALSE(FitOwnModel(moving).Find("initial_rate")->closed_form);  // a parabola through samples is none
 }
 
-TEST(FitRecording, WarnsOfLackOfFitOnlyWhereThereIsOne) {
-  SyntheticOptions run = TextbookRun("drag");
-  run.release_angle = 1.5;
-  run.noise = 0.002;
-  const Recording recording = Must(SimulateRecording(run));
-  EXPECT_THAT(Fit(recording, ModelOptions("drag")).warnings, IsEmpty());
-  const FitReport poor = Fit(recording, ModelOptions("viscous"));
-  ASSERT_THAT(poor.warnings, Not(IsEmpty()));
-  EXPECT_EQ(poor.warnings[0].code, "lack_of_fit");
-  EXPECT_THAT(poor.warnings[0].message, HasSubstr("too small"));
+TEST(FitRecording, RefusesAModelThatThereIsNot) {
+  const auto refused = FitRecording(Must(SimulateRecording(NoisyRun())), ModelOptions("columb"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(refused.error().message, "there is no model 'columb'; the models are linear, viscous, coulomb, drag");
 }
 
-TEST(FitRecording, RefusesModelsAndDataThatMakeNoSense) {
-  const Recording recording = Must(SimulateRecording(NoisyRun()));
-  EXPECT_EQ(FitRecording(recording, ModelOptions("columb")).error().code, StatusCode::kInvalidArgument);
-  Recording constant = recording;
+TEST(FitRecording, NamesTheFileThatHasNoSwing) {
+  Recording constant = Must(SimulateRecording(NoisyRun()));
+  constant.path = "run.csv";
   constant.value.setConstant(0.3);
   const auto refused = FitRecording(constant, ModelOptions("coulomb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(refused.error().message, "the reading is constant: there is no swing in it");
+  EXPECT_EQ(refused.error().message,
+            "run.csv: the reading is constant: there is no swing in it; check the sensor, or choose another column");
 }
 
 TEST(Termination, HasANameAndAnExitCode) {

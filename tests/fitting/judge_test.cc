@@ -24,15 +24,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// 10 s of the textbook rig's swing with noise.
-SyntheticOptions NoisyRun(std::string_view model = "coulomb", std::uint64_t seed = 1) {
-  SyntheticOptions run = TextbookRun(model);
-  run.duration = 10;
-  run.noise = 0.002;
-  run.seed = seed;
-  return run;
-}
-
 /// Judges parameters that no solver has touched.
 FitReport Judged(const SyntheticOptions& run, const std::vector<double>& parameters, bool usable = true) {
   const Recording recording = Must(SimulateRecording(run));
@@ -193,20 +184,6 @@ TEST(Judge, SaysInWordsWhatTheDataDoNotDependOn) {
   EXPECT_EQ(report.termination, Termination::kNotIdentifiable);
   EXPECT_EQ(report.reason, "the recording does not depend on zero_angle; fix it");
   EXPECT_EQ(JudgedBlindly(Eigen::MatrixXd::Identity(6, 6)).termination, Termination::kConverged);
-}
-
-TEST(Judge, WarnsOfASensorWhoseNoiseDoesNotReachItsResolution) {
-  for (const double counts : {0.0, 0.1, 0.25, 0.5, 1.0}) {
-    SyntheticOptions run = TextbookRun("coulomb");
-    run.resolution = kCount;
-    run.noise = counts * kCount;
-    const std::vector<Warning> warnings = FitOwnModel(run).warnings;
-    const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const Warning& warning) {
-      return warning.code == "quiet_sensor" && warning.message.find("error bars") != std::string::npos;
-    });
-    // Rounding adds a twelfth to the variance: half a count of rms is 0.41 counts of noise.
-    EXPECT_EQ(warned, counts < 0.4) << counts;
-  }
 }
 
 // ---- Fixed parameters ----------------------------------------------------------------------------------------------

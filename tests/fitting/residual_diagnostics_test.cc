@@ -2,10 +2,15 @@
 #include "pendulum/fitting/residual_diagnostics.h"
 
 #include <cmath>
+#include <cstdint>
+#include <random>
 
 #include <boost/math/distributions/normal.hpp>
+#include <boost/random/normal_distribution.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
 
 namespace pendulum {
 namespace {
@@ -78,6 +83,42 @@ TEST(Lag1Correlation, OfKnownSequences) {
   EXPECT_EQ(Lag1Correlation(kFour), -0.5);
   EXPECT_THAT(Lag1Correlation(Eigen::VectorXd::Ones(1000)), DoubleNear(0.999, 1e-12));
   EXPECT_EQ(Lag1Correlation(Eigen::VectorXd::Zero(10)), 0);
+}
+
+Eigen::VectorXd WhiteNoise(Eigen::Index count, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  return Eigen::VectorXd::NullaryExpr(count, [&] { return normal(generator); });
+}
+
+TEST(FollowEachOther, IsNotSaidOfWhiteNoise) {
+  int said = 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) said += FollowEachOther(WhiteNoise(1000, seed), 130) ? 1 : 0;
+  // χ² with 50 degrees of freedom is six standard deviations above its mean in 2e-6 of all cases.
+  EXPECT_EQ(said, 0);
+}
+
+TEST(FollowEachOther, IsSaidOfNoiseThatRemembers) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Eigen::VectorXd noise = WhiteNoise(2000, seed);
+    for (Eigen::Index i = 1; i < noise.size(); ++i) noise[i] += 0.3 * noise[i - 1];
+    EXPECT_TRUE(FollowEachOther(noise, 130)) << seed;
+  }
+}
+
+TEST(FollowEachOther, IsSaidOfAMisfitThatSwingsUnderTheNoise) {
+  // Period 130 samples, a third of the variance.
+  const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(2000, 0, 2000 * 2 * kPi / 130);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_TRUE(FollowEachOther(WhiteNoise(2000, seed) + phase.sin().matrix(), 130)) << seed;
+  }
+}
+
+TEST(FollowEachOther, TakesAnyNumberOfResidualsAndLags) {
+  for (const int lags : {-1, 0, 1, 130, 1'000'000'000}) {
+    EXPECT_FALSE(FollowEachOther(Eigen::VectorXd::Zero(100), lags)) << lags;
+    EXPECT_FALSE(FollowEachOther(Eigen::VectorXd::Unit(8, 3), lags)) << lags;
+  }
 }
 
 }  // namespace

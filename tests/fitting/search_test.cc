@@ -62,5 +62,42 @@ TEST(Search, FindsOneMinimumWhereNothingComesToRest) {
   EXPECT_TRUE(Search(*c.cost, c.problem.data, c.problem.first_guess, c.problem.solve).other_minima.empty());
 }
 
+TEST(Search, EndsNoHigherThanTheSimplerLawsWithinALaw) {
+  // A start with ten times the friction stops the pendulum early, where it fits the rest at the end.
+  SyntheticOptions run = NoisyRun("viscous");
+  run.duration = 60;
+  SolveCase simple(run, "viscous");
+  const Solution expected = Solve(*simple.cost, simple.truth, simple.problem.solve);
+  SolveCase rich(run, "drag");
+  std::vector<double> start = rich.problem.first_guess;
+  start[2] = 0.2;
+  start[3] = 0.2;
+  EXPECT_LE(Search(*rich.cost, rich.problem.data, start, rich.problem.solve).sum, expected.sum * (1 + 1e-8));
+}
+
+TEST(Search, StaysWithinTheBoundsOnItsWayToTheNextNumberOfHalfSwings) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.parameters[2] *= 3;
+  run.duration = 30;
+  run.noise = 0.002;
+  SolveCase c(run, "coulomb");
+  SolveOptions options = c.problem.solve;
+  options.upper[4] = c.truth[4] - 0.002;
+  const Solution found = Search(*c.cost, c.problem.data, c.problem.first_guess, options);
+  EXPECT_EQ(found.parameters[4], options.upper[4]);
+  printf("found %g\n", found.parameters[2]);
+  const Solution open = Search(*c.cost, c.problem.data, c.problem.first_guess, c.problem.solve);
+  for (auto& o : open.other_minima)
+    printf("open %g %g of %g %g\n", o.parameters[2], o.sum, open.parameters[2], open.sum);
+  for (auto& o : found.other_minima) printf("other %g %g %g\n", o.parameters[2], o.sum, o.parameters[4]);
+  int to_weaker = 0, to_stronger = 0;
+  for (const Minimum& other : found.other_minima) {
+    EXPECT_LE(other.parameters[4], options.upper[4]);
+    (other.parameters[2] < found.parameters[2] ? to_weaker : to_stronger) += 1;
+  }
+  EXPECT_THAT(to_weaker, Gt(0));
+  EXPECT_THAT(to_stronger, Gt(0));
+}
+
 }  // namespace
 }  // namespace pendulum

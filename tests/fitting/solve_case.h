@@ -42,12 +42,4 @@ inline void ExpectNear(const std::vector<double>& found, const std::vector<doubl
   }
 }
 
-/// 10 s of the textbook rig with noise, released at 1.9 s.
-inline SyntheticOptions NoisyRun(std::string_view model) {
-  SyntheticOptions run = TextbookRun(model);
-  run.duration = 10;
-  run.noise = 0.002;
-  return run;
-}
-
 }  // namespace pendulum

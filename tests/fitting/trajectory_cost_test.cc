@@ -344,7 +344,7 @@ TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChangeWhenItEndsSoonAfterThe
   }
 }
 
-// Why there is a Search in solve.h: over 5 s of rest at the other side's angle the true number does not win at once.
+// Why there is a Search in search.h: over 5 s of rest at the other side's angle the true number does not win at once.
 TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwingsWhenItEndsLongAfterTheStop) {
   for (const double side : {-1.0, 1.0}) {
     EXPECT_THAT(side * FitAcrossTheChange(2500, side * 3e-4, side * 2e-3), DoubleNear(3e-4, 1e-8));

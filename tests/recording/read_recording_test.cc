@@ -174,12 +174,13 @@ TEST(ParseRecording, WarnsOfMetadataThatWouldChangeTheNumbers) {
   EXPECT_EQ(recording.warnings[0].message, "run.csv:5: the metadata clock_scale is not applied");
 }
 
-TEST(ParseRecording, CountsTheReadingsAtAnEndOfTheDeclaredRange) {
+TEST(ParseRecording, TakesTheDeclaredRangeInSi) {
+  EXPECT_FALSE(RecordingOf(kHeader + Rows()).range);
   const std::string values = "0,-45\n1,-44\n2,0\n3,1\n4,2\n5,44\n6,45\n7,45\n";
-  const Recording recording = RecordingOf("# range: -45,45\n# resolution: 1\ntime_s,angle_deg\n" + values);
-  ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(recording.warnings[0].code, "saturated");
-  EXPECT_EQ(recording.warnings[0].message.substr(0, 11), "3 readings ");
+  const Recording recording = RecordingOf("# range: -45,45\ntime_s,angle_deg\n" + values);
+  ASSERT_TRUE(recording.range);
+  EXPECT_DOUBLE_EQ(recording.range->low, -0.7853981633974483);  // π/4
+  EXPECT_DOUBLE_EQ(recording.range->high, 0.7853981633974483);
 }
 
 // ---- What is refused ---------------------------------------------------------------------------------------------

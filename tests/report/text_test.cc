@@ -84,7 +84,7 @@ TEST(ToText, ShowsNeitherStatisticsNorAnEquationOfAFailedFit) {
   RunReport report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const std::string text = ToText(report);
-  EXPECT_THAT(text, HasSubstr("These are start values, not estimates."));
+  EXPECT_THAT(text, HasSubstr("These are no estimates: nothing was fitted."));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise")));
   EXPECT_THAT(text, Not(HasSubstr("[[Equation")));
 }

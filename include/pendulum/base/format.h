@@ -6,7 +6,7 @@
 
 namespace pendulum {
 
-/// A number for a sentence: that many significant digits, in the shorter of fixed and scientific notation.
+/// A number to at most that many significant digits, as printf's %g.
 std::string NumberText(double value, int significant_digits);
 
 /// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +25,7 @@ struct FitOptions {
   StartChoice start = StartChoice::kAuto;
   std::optional<Rig> rig;         ///< Turns ratios into SI; without it torques are in units of G.
   ParameterValues fixed;          ///< Parameters held at a value.
-  double max_trace_error = 1e-8;  ///< Global error of the trajectory [rad]; also kept below sigma / 1000.
+  double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.
 };
 
@@ -36,7 +35,7 @@ struct FitOptions {
 ///   kConverged        yes           yes                     yes
 ///   kNotConverged     best found    no                      yes
 ///   kNotIdentifiable  best found    no                      yes
-///   kFailed           start values  no                      no
+///   kFailed           not any       no                      no
 enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
 
 /// "converged", "not_converged", "not_identifiable", "failed".

@@ -14,7 +14,8 @@ namespace pendulum {
 /// stop, so they are fitted over 30, 60 and 85 % of the motion first; then dry friction is shifted to either side, the
 /// other parameters following along its profile, until the number of reversals changes, and the fit goes on from there
 /// as long as the cost is lower. Where the result explains less than nine tenths of the variance, the law's last
-/// friction parameter is first held at its bound, so that a law ends no higher than the simpler laws within it.
+/// friction parameter is held at its bound in another search and then let go, and so on down to the first, so that a
+/// law ends no higher than the simpler laws within it.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,17 +10,16 @@
 
 namespace pendulum {
 
-/// Trajectories after which the search for a minimum ends where it is: good recordings need tens, hopeless ones would
-/// take for ever.
-inline constexpr int kMostEvaluations = 1000;
-
 /// What may move, and how far.
 struct SolveOptions {
   std::vector<double> lower;   ///< P; -kUnbounded where there is no bound.
   std::vector<double> upper;   ///< P; kUnbounded where there is no bound.
   std::vector<bool> fixed;     ///< P
   int holding_parameter = -1;  ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
-  int max_iterations = 100;
+  int last_friction = 1;       ///< The last parameter of friction; the first is 1, behind inertia.
+  int release_time = -1;       ///< -1: the recording begins in motion.
+  int max_iterations = 100;    ///< Of Ceres, for each run.
+  int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
 };
 
 /// A point where the solver came to rest.
@@ -32,9 +32,8 @@ struct Minimum {
 struct Solution {
   std::vector<double> parameters;  ///< P, TrajectoryCost's units.
   double sum = 0;                  ///< |r|², in units of the cost's scale².
-  bool usable = false;             ///< False when the trajectory could not be traced at the start values.
+  bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
-  int evaluations = 0;
   std::string message;                ///< Ceres' own words.
   Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
   double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.
@@ -47,8 +46,8 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value);
 /// Levenberg-Marquardt (Ceres) from `start` over all samples the cost uses; parameters stay within their bounds.
 ///
 /// An active-set method: a parameter whose step lands on its bound is held there while the others go on, and let go
-/// again when the cost pulls it inwards at their optimum. Each run stops when the cost changes by less than 1e-10 of
-/// itself, which leaves the estimates within some 1e-3 standard errors. `cost` is not owned.
+/// again when the cost pulls it inwards at their optimum, at most 4 P times. Each run stops when the cost changes by
+/// less than 1e-10 of itself, which leaves the estimates within sqrt(1e-10 N) standard errors. `cost` is not owned.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.

@@ -54,6 +54,12 @@ class TrajectoryCost : public ceres::CostFunction {
 
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
   virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
+
+  /// Trajectories traced so far, with and without derivatives, for whatever purpose.
+  int traces() const { return traces_; }
+
+ protected:
+  mutable int traces_ = 0;
 };
 
 /// The cost of a model with its start. `data` must outlive it. Friction and start are resolved here, once.

@@ -18,10 +18,11 @@ namespace pendulum {
 /// most. A byte order mark, CRLF, blanks around fields and double quotes are accepted; a row may hold no more fields
 /// than the header.
 ///
-/// `#` starts a comment line. `# key: value` is metadata, each key once: `resolution` gives the spacing of values in
-/// the file's unit; `range`, `sample_rate_hz`, `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and
-/// `rig` are checked for their form and not used: a warning `metadata_not_applied` names those that would change the
-/// numbers. Any other key is a comment. A gap in time is ordinary.
+/// `#` starts a comment line. `# key: value` is metadata, each key once: `resolution` gives the spacing of values and
+/// `range` the two ends of what the sensor can show, in the file's unit; `sample_rate_hz`, `clock_scale`,
+/// `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` are checked for their form and not used: a warning
+/// `metadata_not_applied` names those that would change the numbers. Any other key is a comment. A gap in time is
+/// ordinary.
 ///
 /// kNotFound: no such file. kDataLoss: not readable as above. kFailedPrecondition: fewer than kMinimumSamples rows, or
 /// none because the file is empty. Every message begins "path:line:column: " (1-based, bytes), or "path: " when the

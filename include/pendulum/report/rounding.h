@@ -36,9 +36,6 @@ ValueAndError PdgText(double value, double error);
 /// x as the rounding says: "0.830", "3.00e-06"; never "-0.000".
 std::string RoundedText(double x, const Rounding& rounding);
 
-/// x to at most `digits` significant digits, as printf's %g: for numbers that have no error.
-std::string GeneralText(double x, int digits);
-
 /// x with so many decimals, as printf's %f.
 std::string FixedText(double x, int decimals);
 

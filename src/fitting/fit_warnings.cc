@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "pendulum/base/format.h"
+#include "pendulum/closed_form/extrema.h"
+
+namespace pendulum {
+namespace {
+
+/// A reading at an end of the sensor's range only says that the angle is there or beyond.
+void WarnOfSaturation(const Recording& recording, std::vector<Warning>& warnings) {
+  if (!recording.range) return;
+  const double low = recording.range->low + 0.5 * recording.resolution;
+  const double high = recording.range->high - 0.5 * recording.resolution;
+  const auto saturated = (recording.value.array() <= low || recording.value.array() >= high).count();
+  if (saturated == 0) return;
+  warnings.push_back({"saturated", std::to_string(saturated) +
+                                       " readings stand at an end of the sensor's range; they are taken as measured, "
+                                       "which draws the amplitude in: choose a window of smaller swings"});
+}
+
+void WarnOfCorrelation(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr double kRatio = 1.3;
+  constexpr double kLargestSaid = 99;
+  Recording residuals = recording;
+  residuals.value = report.residual;
+  const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
+  const std::string consequence =
+      "the error bars, which take the residuals as independent, are too small: take them as lower limits";
+  if (!(ratio > kRatio)) {
+    warnings.push_back({"correlated_residuals", "the residuals follow each other: " + consequence});
+    return;
+  }
+  const std::string times = ratio > kLargestSaid ? "more than 99" : NumberText(ratio, 2);
+  warnings.push_back({"lack_of_fit", "the residuals are " + times +
+                                         " times the noise between neighbouring samples and follow each other: the "
+                                         "model does not describe everything in this recording (look at --residuals, "
+                                         "try another model or window), and " +
+                                         consequence});
+}
+
+/// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
+void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr double kQuiet = 0.5;
+  const double rms = report.statistics.rms_residual;
+  if (!(rms < kQuiet * recording.resolution)) return;
+  warnings.push_back({"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                                          " resolutions: the noise is too small for rounding to average out, and the "
+                                          "error bars may be several times too small: take them as lower limits"});
+}
+
+void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr double kNegligible = 0.01;
+  constexpr double kRounding = 1e-11;  // rad or rad/s: noise below it is none
+  if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
+  warnings.push_back({"trace_accuracy", "the trajectory is computed to " + NumberText(report.trace_error, 1) +
+                                            " only, which is not small against the noise of " +
+                                            NumberText(report.noise.sigma, 1) +
+                                            ": near the top rounding grows; choose a window of smaller swings"});
+}
+
+/// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
+void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
+  std::vector<ParameterInfo> friction;
+  for (const ParameterEstimate& parameter : report.parameters) {
+    if (!parameter.at_bound) continue;
+    if (parameter.info.name != kReleaseTime.name) {
+      friction.push_back(parameter.info);
+      continue;
+    }
+    warnings.push_back({"at_bound",
+                        "release_time is at an end of the hold: the data ask for a release outside it, and the error "
+                        "bars of the other parameters take it as exact; choose a window with all of the hold, or "
+                        "--start moving with a window after the release"});
+  }
+  if (friction.empty()) return;
+  warnings.push_back(
+      {"at_bound", "at the bound 0: " + NameList(friction) +
+                       "; the error bars of the other parameters take that as exact and are too small if it is not: "
+                       "compare with the fit of a simpler model, or record for longer"});
+}
+
+/// Warnings about the stop of a pendulum that dry friction brings to rest.
+void WarnOfStop(const FitProblem& problem, const Solution& solution, const TraceSummary& trace, const FitReport& report,
+                std::vector<Warning>& warnings) {
+  const int holding = problem.solve.holding_parameter;
+  if (holding < 0 || !report.parameters[holding].std_error) return;
+  const ParameterEstimate& friction = report.parameters[holding];
+  const double si = problem.si_per_internal[holding];
+  const double error = *friction.std_error / si;
+  const std::string name(friction.info.name);
+  const auto samples = static_cast<double>(problem.data.time.size());
+  constexpr double kNearlyAsWell = 9;  // in -2 log L
+  const auto other =
+      std::find_if(solution.other_minima.begin(), solution.other_minima.end(), [&](const Minimum& minimum) {
+        const double distance = minimum.parameters[holding] - solution.parameters[holding];
+        return samples * std::log(minimum.sum / solution.sum) <= kNearlyAsWell && std::abs(distance) >= error;
+      });
+  if (other != solution.other_minima.end()) {
+    warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) + " " +
+                                               std::string(friction.unit) +
+                                               " and another number of half swings the recording is explained nearly "
+                                               "as well; the error bars are those of the first minimum alone"});
+  }
+  if (trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error) {
+    warnings.push_back({"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " + name +
+                                              ", where the number of half swings changes: the error bars are rough; a "
+                                              "window that ends before the stop has better ones"});
+  }
+}
+
+}  // namespace
+
+std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
+                                 const TraceSummary& trace, bool correlated, const FitReport& report) {
+  std::vector<Warning> warnings;
+  WarnOfSaturation(recording, warnings);
+  if (correlated) WarnOfCorrelation(recording, report, warnings);
+  WarnOfQuietSensor(recording, report, warnings);
+  WarnOfTraceAccuracy(report, warnings);
+  if (report.termination != Termination::kConverged) return warnings;
+  WarnOfBounds(report, warnings);
+  WarnOfStop(problem, solution, trace, report, warnings);
+  return warnings;
+}
+
+}  // namespace pendulum

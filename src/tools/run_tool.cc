@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/run_tool.h"
+
+#include <exception>
+#include <iostream>
+
+#include "tools/flags.h"
+#include "tools/output.h"
+
+namespace pendulum {
+namespace {
+
+Result<int> Run(const Tool& tool, int argc, char** argv) {
+  const Result<ParsedFlags> flags = ParseFlags(argc, argv, tool.main_file, tool.usage);
+  if (!flags) return tl::unexpected(flags.error());
+  if (flags->answer.empty()) return tool.work(flags->positional);
+  if (const auto written = WriteOutputs(std::vector<Output>{{"-", flags->answer}}); !written) {
+    return tl::unexpected(written.error());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
+
+int RunTool(const Tool& tool, int argc, char** argv) {
+  try {
+    const Result<int> code = Run(tool, argc, argv);
+    if (code) return *code;
+    Say(tool.name, code.error().message);
+    return ExitCode(code.error().code);
+  } catch (const std::exception& error) {
+    Say(tool.name, std::string("internal error: ") + error.what());
+    return ExitCode(StatusCode::kInternal);
+  }
+}
+
+}  // namespace pendulum
