@@ -91,9 +91,14 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   std::vector<Extremum> extrema;
   if (points.size() >= 3) {
     const double half_width = 0.15 * TypicalSpacing(recording.time, points);
-    // The first candidate may be where the recording began, or lie in its hold: then nothing before it is elsewhere.
-    const auto before = recording.value.head(points[0] + 1).array() - recording.value[points[0]];
-    const bool turned = before.abs().maxCoeff() > std::min(threshold, 0.1 * range);
+    // The first candidate may be where the recording began, or lie in its hold: then nothing before it is elsewhere,
+    // or what is before it is noise.
+    const auto before = recording.value.head(points[0] + 1).array();
+    const double spread = std::sqrt((before - before.mean()).square().mean());
+    const double farthest = (before - recording.value[points[0]]).abs().maxCoeff();
+    constexpr Index kFewestHeld = 8;  // fewer samples do not tell noise from a slope
+    const bool is_noise = before.size() >= kFewestHeld && spread < 2 * noise;
+    const bool turned = farthest > std::min(threshold, 0.1 * range) && !is_noise;
     for (std::size_t i = turned ? 0 : 1; i < points.size(); ++i) {
       extrema.push_back(Vertex(recording, points[i], half_width));
     }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "pendulum/base/physics.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/search.h"
@@ -23,6 +26,18 @@ bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution)
   return true;
 }
 
+/// Takes whole turns out of the zero, which a search near the top may have put in: the same readings with the zero next
+/// to that of the turning points.
+void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
+  const std::size_t zero = problem.infos.size() - 1;
+  const auto angle = static_cast<std::size_t>(problem.solve.last_friction + 1);
+  if (problem.model.gravity != Gravity::kSine || problem.data.quantity != Quantity::kAngle) return;
+  if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
+  const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
+  solution.parameters[zero] -= 2 * kPi * turns;
+  solution.parameters[angle] += 2 * kPi * turns;
+}
+
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
@@ -32,6 +47,7 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
   Solution solution = Search(cost, problem.data, problem.first_guess, problem.solve);
+  TakeTurnsOut(problem, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureAccuracy(cost, tolerance, solution);
     if (solution.trace_error <= max_error || refinement == kMostRefinements) break;
@@ -62,11 +78,49 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
-  const Result<FitProblem> problem = MakeFitProblem(recording, options);
+namespace {
+
+/// A fit before it is judged. The cost looks into the problem.
+struct Attempt {
+  std::unique_ptr<FitProblem> problem;
+  std::unique_ptr<TrajectoryCost> cost;
+  Solution solution;
+};
+
+Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
+  Result<FitProblem> problem = MakeFitProblem(recording, options);
   if (!problem) return tl::unexpected(problem.error());
-  const auto cost = MakeTrajectoryCost(problem->model, problem->start.start, problem->data);
-  return Judge(recording, options, *problem, *cost, SolveToAccuracy(*cost, *problem, options));
+  Attempt attempt;
+  attempt.problem = std::make_unique<FitProblem>(*std::move(problem));
+  attempt.cost = MakeTrajectoryCost(attempt.problem->model, attempt.problem->start.start, attempt.problem->data);
+  attempt.solution = SolveToAccuracy(*attempt.cost, *attempt.problem, options);
+  return attempt;
+}
+
+/// A short hold may be a turning point, and what a release does not explain may have begun in motion.
+bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
+  const StartValues& start = attempt.problem->start;
+  return options.start == StartChoice::kAuto && start.start == StartKind::kRelease &&
+         (start.short_hold || !Explains(attempt.problem->data, attempt.solution));
+}
+
+bool IsBetter(const Attempt& a, const Attempt& b) {
+  return a.solution.usable && (!b.solution.usable || a.solution.sum < b.solution.sum);
+}
+
+}  // namespace
+
+Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
+  Result<Attempt> attempt = TryFit(recording, options);
+  if (!attempt) return tl::unexpected(attempt.error());
+  if (MayBeginInMotion(*attempt, options)) {
+    FitOptions moving = options;
+    moving.start = StartChoice::kMoving;
+    // Not possible where release_time is fixed.
+    if (Result<Attempt> other = TryFit(recording, moving); other && IsBetter(*other, *attempt))
+      attempt = std::move(other);
+  }
+  return Judge(recording, options, *attempt->problem, *attempt->cost, attempt->solution);
 }
 
 }  // namespace pendulum

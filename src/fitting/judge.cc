@@ -99,6 +99,13 @@ bool OnKink(const FitProblem& problem, const TraceSummary& trace, const Solution
          trace.smallest_reversal_margin < kNear * solution.parameters[holding];
 }
 
+/// Residuals of a billionth of the swing are those of numbers, not of a model.
+bool IsRounding(const Recording& recording, const FitReport& report) {
+  constexpr double kRounding = 1e-9;
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  return report.statistics.rms_residual < kRounding * range;
+}
+
 /// Samples in a period, as a number of lags.
 int PeriodLags(const FitProblem& problem) {
   const std::vector<double>& time = problem.data.time;
@@ -119,6 +126,19 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
                                : "the recording tells only a combination of " + names + "; fix one of them";
 }
 
+std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
+  const bool fixed =
+      std::find(problem.solve.fixed.begin(), problem.solve.fixed.end(), true) != problem.solve.fixed.end();
+  const std::string what =
+      fixed ? "not with the values that are fixed, not a free pendulum's swing, or not one of this model: "
+            : "this is not a free pendulum's swing, or not one of this model: ";
+  const std::string leaves = unexplained < 1
+                                 ? "the best trajectory leaves " + std::to_string(std::lround(100 * unexplained)) +
+                                       " % of the reading's variance unexplained"
+                                 : std::string("the best trajectory explains the readings no better than a constant");
+  return what + leaves + (fixed ? "; look at --fix, or" : ";") + " choose a window of free swing with --from and --to";
+}
+
 void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
                     bool on_kink, FitReport& report) {
   const double most_unexplained = correlated ? kMostUnexplained : kMostNoise;
@@ -132,9 +152,7 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   const double shift = RemainingShift(optimum);
   report.termination = Termination::kNotConverged;
   if (unexplained > most_unexplained) {
-    report.reason = "this is not a free pendulum's swing, or not one of this model: the best trajectory leaves " +
-                    std::to_string(std::lround(std::min(100 * unexplained, 1e6))) +
-                    " % of the reading's variance unexplained; choose a window of free swing with --from and --to";
+    report.reason = UnexplainedReason(problem, unexplained);
   } else if (!(shift <= kLargestShift)) {
     report.reason = on_kink
                         ? "the best trajectory stops just where one half swing more would begin, and there the sum "
@@ -250,7 +268,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.noise = {problem.data.scale * std::sqrt(optimum->variance), Lag1Correlation(report.residual)};
   report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum->free.size()), recording.resolution);
   const TraceSummary trace = cost.Trace(solution.parameters);
-  const bool correlated = FollowEachOther(report.residual, PeriodLags(problem));
+  const bool correlated = !IsRounding(recording, report) && FollowEachOther(report.residual, PeriodLags(problem));
   SetTermination(recording, problem, *optimum, correlated, OnKink(problem, trace, solution), report);
   SetParameters(options, problem, *optimum, solution, report);
   SetDerived(problem, *optimum, solution, report);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -93,22 +94,26 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
   return {};
 }
 
-/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
+/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, until so many in a row are no
+/// lower.
 Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
+  constexpr int kPatience = 2;
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
-    for (bool better = true; better && cost.traces() < options.max_traces;) {
-      Solution trial = best;
-      trial.parameters = NextBasin(cost, best.parameters, side, options);
+    Solution trial = best;
+    for (int in_vain = 0; in_vain < kPatience && cost.traces() < options.max_traces;) {
+      trial.parameters = NextBasin(cost, trial.parameters, side, options);
       if (trial.parameters.empty()) break;
       trial = Continue(cost, trial, options);
-      better = trial.usable && trial.sum < best.sum;
+      if (!trial.usable) break;
+      const bool better = trial.sum < best.sum;
+      in_vain = better ? 0 : in_vain + 1;
+      std::vector<Minimum> others = std::move(best.other_minima);
       const Solution& other = better ? best : trial;
-      std::vector<Minimum> other_minima = best.other_minima;
-      if (other.usable) other_minima.push_back({other.parameters, other.sum});
-      best.iterations = trial.iterations;
+      others.push_back({other.parameters, other.sum});
       if (better) best = trial;
-      best.other_minima = other_minima;
+      best.iterations = trial.iterations;
+      best.other_minima = std::move(others);
     }
   }
   return best;
@@ -157,36 +162,43 @@ SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
   return options;
 }
 
-/// The last friction parameter that may be held at its bound to leave a simpler law; -1: none. The first always stays.
-int LastFreeFriction(const SolveOptions& options) {
-  for (int k = options.last_friction; k > 1; --k) {
-    if (!options.fixed[k] && std::isfinite(options.lower[k])) return k;
+/// Friction parameters that may be held at their bound and leave a simpler law.
+std::vector<int> Removable(const SolveOptions& options) {
+  std::vector<int> removable;
+  for (int k = 1; k <= options.last_friction; ++k) {
+    if (!options.fixed[k] && std::isfinite(options.lower[k])) removable.push_back(k);
   }
-  return -1;
+  return removable.size() > 1 ? removable : std::vector<int>{};
 }
 
-/// Searches with the last friction parameter held at its bound, then lets it go.
-Solution SearchFromSimplerLaw(TrajectoryCost& cost, const TrajectoryData& data, std::vector<double> start, int last,
-                              const SolveOptions& options) {
+/// Solves without friction parameter k, then lets it go.
+Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, std::vector<double> start, int k,
+                      const SolveOptions& options) {
   SolveOptions simpler = options;
-  simpler.fixed[last] = true;
-  start[last] = options.lower[last];
-  Solution solution = Search(cost, data, start, simpler);
-  solution.other_minima.clear();
-  return Refine(cost, data, solution, WithBudget(cost, options));
+  simpler.fixed[k] = true;
+  start[k] = options.lower[k];
+  const bool search = k == options.last_friction;
+  return Continue(cost, search ? Search(cost, data, start, simpler) : Solve(cost, start, simpler), options);
 }
 
 }  // namespace
 
+bool Explains(const TrajectoryData& data, const Solution& solution) {
+  return solution.usable && solution.sum <= kExplained * Variance(data);
+}
+
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options) {
-  Solution found = SearchFrom(cost, data, start, WithBudget(cost, options));
-  const int last = LastFreeFriction(options);
-  if (last < 0 || (found.usable && found.sum <= kExplained * Variance(data))) return found;
-  const Solution freed = SearchFromSimplerLaw(cost, data, start, last, options);
-  const bool better = freed.usable && (!found.usable || freed.sum < found.sum);
-  Solution best = better ? freed : found;
-  best.iterations = found.iterations + freed.iterations;
+  Solution best = SearchFrom(cost, data, start, WithBudget(cost, options));
+  if (Explains(data, best) && !ReachesRest(cost, data, best.parameters)) return best;
+  for (const int k : Removable(options)) {
+    Solution other = SolveWithout(cost, data, start, k, WithBudget(cost, options));
+    const bool better = other.usable && (!best.usable || other.sum < best.sum);
+    if (better) std::swap(best, other);
+    if (other.usable) best.other_minima.push_back({other.parameters, other.sum});
+    best.iterations += other.iterations;
+    if (better) best = Refine(cost, data, best, WithBudget(cost, options));
+  }
   return best;
 }
 

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+
+#include "pendulum/fitting/covariance.h"
 
 namespace pendulum {
 namespace {
@@ -81,6 +84,29 @@ void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bo
   solution.message = summary.message;
 }
 
+/// Parameters that the Gauss-Newton step from here carries to a bound, and which one: a step that Ceres found too
+/// small to make leaves them short of it.
+std::vector<std::pair<std::size_t, double>> CarriedToBound(const TrajectoryCost& cost, const SolveOptions& options,
+                                                           const std::vector<bool>& held, const Solution& solution) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(solution.parameters, &sums)) return {};
+  const Eigen::Index size = sums.rows() - 1;
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (!held[i]) free.push_back(i);
+  }
+  const InformationInverse inverse = InvertInformation(sums.topLeftCorner(size, size), free);
+  if (!inverse.identifiable) return {};
+  const Eigen::VectorXd step = -inverse.matrix * sums.col(size)(free);
+  std::vector<std::pair<std::size_t, double>> carried;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto i = static_cast<std::size_t>(free[k]);
+    const int side = BoundSide(options, i, solution.parameters[i] + step[static_cast<Eigen::Index>(k)]);
+    if (side != 0) carried.emplace_back(i, side < 0 ? options.lower[i] : options.upper[i]);
+  }
+  return carried;
+}
+
 /// Of the parameters held at their bound, the one the cost pulls inwards most; -1 when there is none.
 int PulledInwards(const TrajectoryCost& cost, const SolveOptions& options, const std::vector<bool>& held,
                   const Solution& solution) {
@@ -118,6 +144,12 @@ Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const Sol
     const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
     for (const std::size_t i : landed) held[i] = true;
     if (!landed.empty()) continue;
+    const auto carried = CarriedToBound(cost, options, held, solution);
+    for (const auto& [i, bound] : carried) {
+      solution.parameters[i] = bound;
+      held[i] = true;
+    }
+    if (!carried.empty()) continue;
     if (held == options.fixed) break;
     const int pulled = PulledInwards(cost, options, held, solution);
     if (pulled < 0) break;

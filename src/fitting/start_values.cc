@@ -86,22 +86,24 @@ std::optional<Fall> FirstFall(const Centred& data) {
 }
 
 /// The held part at the start, if there is one: the reading stays within 5 % of the amplitude and five standard
-/// deviations of the noise until the release that the first fall dates.
-std::optional<Hold> FindHold(const Centred& data) {
+/// deviations of the noise until the release that the first fall dates, for a tenth of a period or longer. With `asked`
+/// whatever lies before that release.
+std::optional<Hold> FindHold(const Centred& data, bool asked) {
   const std::optional<Fall> fall = FirstFall(data);
   if (!fall) return std::nullopt;
   const Recording& recording = data.recording;
   const double release = fall->time - fall->periods * data.Period(fall->amplitude);
   const Index held = SampleAt(recording, release);
   constexpr Index kFewest = 3;
-  if (release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest) return std::nullopt;
+  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest;
+  if (held < 1 || (is_short && !asked)) return std::nullopt;
   const auto [mean, spread] = MeanAndSpread(data, held);
   const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
   const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
-  if (spread > band) return std::nullopt;
+  if (spread > band && !asked) return std::nullopt;
   // A pendulum at rest that is pushed was not released: the hold must be as far out as the first swing goes, or nearly.
-  if (recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before)
-    return std::nullopt;
+  const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
+  if (is_push && !asked) return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
   while (moving > held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
   return Hold{recording.quantity == Quantity::kAngle ? mean : fall->amplitude, release, recording.time[moving]};
@@ -155,15 +157,18 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 
   const Centred data{recording, *table, values.natural_frequency, SuccessiveDifferenceNoise(recording)};
-  const std::optional<Hold> hold = choice == StartChoice::kMoving ? std::nullopt : FindHold(data);
+  const std::optional<Hold> hold =
+      choice == StartChoice::kMoving ? std::nullopt : FindHold(data, choice == StartChoice::kRelease);
   if (choice == StartChoice::kRelease && !hold) {
     return Error(StatusCode::kFailedPrecondition,
-                 "no held part at the start: the reading moves from the first sample on; --start moving fits it so");
+                 "no held part at the start: the first fall dates the release before the first sample; --start moving "
+                 "fits it so");
   }
   if (hold) {
     values.start = StartKind::kRelease;
     values.latest_release = hold->latest_release - recording.time[0];
     const double release = std::min(hold->release_time - recording.time[0], values.latest_release);
+    values.short_hold = release < 0.5 * data.Period(0);
     values.parameters.insert(values.parameters.end(), {hold->angle, release});
   } else {
     const auto [angle, rate] = InitialState(data);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/trajectory_cost.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -150,20 +151,17 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
-    const double inverse_scale = 1 / data_.scale;
-    Products<kParameters + 1> products;
-    const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
-      std::array<Lanes, kParameters + 1> columns{};  // lanes beyond count stay zero
-      for (int i = 0; i < count; ++i) {
-        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * inverse_scale;
-        columns[kZero][i] = -inverse_scale;
-        columns[kParameters][i] = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
-      }
-      products.Add(columns);
-    };
-    if (!VisitSamples<Dual>(p, add)) return false;
-    *sums = products.Matrix();
-    return sums->allFinite();
+    const bool known =
+        std::ranges::equal(p, last_.parameters) && last_.tolerance == tolerance_ && last_.samples == used_samples_;
+    if (!known) {
+      last_.parameters.clear();
+      if (!AddUp(p, &last_.sums)) return false;
+      last_.parameters.assign(p.begin(), p.end());
+      last_.tolerance = tolerance_;
+      last_.samples = used_samples_;
+    }
+    *sums = last_.sums;
+    return true;
   }
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
@@ -190,6 +188,23 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
  private:
+  bool AddUp(std::span<const double> p, Eigen::MatrixXd* sums) const {
+    const double inverse_scale = 1 / data_.scale;
+    Products<kParameters + 1> products;
+    const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
+      std::array<Lanes, kParameters + 1> columns{};  // lanes beyond count stay zero
+      for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * inverse_scale;
+        columns[kZero][i] = -inverse_scale;
+        columns[kParameters][i] = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
+      }
+      products.Add(columns);
+    };
+    if (!VisitSamples<Dual>(p, add)) return false;
+    *sums = products.Matrix();
+    return sums->allFinite();
+  }
+
   /// Parameter i as a T: carries its own derivative when T is dual.
   template <typename T>
   static T Carry(double value, int i) {
@@ -286,6 +301,15 @@ class TrajectoryCostFor final : public TrajectoryCost {
   const TrajectoryData& data_;
   std::size_t used_samples_;
   double tolerance_ = 1e-10;
+
+  /// Sums and where they were taken: solver, active set and judgement ask for them at the same point, one by one.
+  struct SumsAt {
+    std::vector<double> parameters;
+    double tolerance = 0;
+    std::size_t samples = 0;
+    Eigen::MatrixXd sums;
+  };
+  mutable SumsAt last_;
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ DEFINE_string(set, "",
               "release_angle and release_time or initial_angle and initial_rate, zero_angle or, for a rate, rate_bias "
               "(default 0).");
 DEFINE_string(out, "", "Where to write the recording as CSV; - is standard output.");
-DEFINE_string(truth, "", "Where to write the true parameters as JSON; - is standard output; default nowhere.");
+DEFINE_string(truth, "", "Where to write the truth, the parameters, as JSON; - is standard output; default nowhere.");
 DEFINE_int32(count, 1, "Recordings, with seeds --seed, --seed + 1, ... in run_001.csv, run_002.csv, ...; default 1.");
 DEFINE_uint64(seed, 1, "Seed of noise and jitter; default 1.");
 DEFINE_double(duration, 20, "Length of the recording, s; default 20.");

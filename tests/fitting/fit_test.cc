@@ -234,6 +234,32 @@ TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
   EXPECT_FALSE(FitOwnModel(moving).Find("initial_rate")->closed_form);  // a parabola through samples is none
 }
 
+TEST(FitRecording, TakesATurningPointAtTheStartForNoRelease) {
+  // In motion, 0.06 s before a turning point: for 0.1 s the reading hardly moves.
+  SyntheticOptions run = MovingRun("coulomb");
+  run.initial_angle = 0.395;
+  run.initial_rate = 0.57;
+  run.noise = 0.002;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    run.seed = seed;
+    const FitReport report = FitOwnModel(run);
+    EXPECT_EQ(report.start, StartKind::kMoving) << seed;
+    for (const double deviation : Deviations(report, Truth(run))) EXPECT_LT(std::abs(deviation), 4.5) << seed;
+  }
+}
+
+TEST(FitRecording, GivesTheZeroWithoutWholeTurns) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.release_angle = -3.017;
+  run.noise = 0.05;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    run.seed = seed;
+    const FitReport report = FitOwnModel(run);
+    if (report.termination != Termination::kConverged) continue;
+    EXPECT_THAT(report.Find("zero_angle")->estimate, DoubleNear(run.zero, 0.1)) << seed;
+  }
+}
+
 TEST(FitRecording, RefusesAModelThatThereIsNot) {
   const auto refused = FitRecording(Must(SimulateRecording(NoisyRun())), ModelOptions("columb"));
   ASSERT_FALSE(refused);

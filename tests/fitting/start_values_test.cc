@@ -129,6 +129,30 @@ TEST(EstimateStartValues, FindTheReleaseSeenByARateSensor) {
   }
 }
 
+TEST(EstimateStartValues, FindTheReleaseSeenByANoisyRateSensor) {
+  for (const double noise : {0.02, 0.06, 0.1, 0.2}) {  // the rate swings to 2 rad/s
+    SyntheticOptions options = TextbookRun("coulomb");
+    options.quantity = Quantity::kRate;
+    options.release_time = 3;
+    options.noise = noise;
+    const StartValues start =
+        Must(EstimateStartValues(Must(SimulateRecording(options)), options.model, StartChoice::kAuto));
+    ASSERT_EQ(start.start, StartKind::kRelease) << noise;
+    EXPECT_THAT(start.parameters[4], DoubleNear(3, 0.03)) << noise;
+  }
+}
+
+TEST(EstimateStartValues, TakeAnyHoldForAReleaseWhereOneIsAskedFor) {
+  SyntheticOptions options = TextbookRun("coulomb");
+  options.release_time = 0.05;  // 4 % of a period
+  const Recording recording = Must(SimulateRecording(options));
+  EXPECT_EQ(Must(EstimateStartValues(recording, options.model, StartChoice::kAuto)).start, StartKind::kMoving);
+  const StartValues start = Must(EstimateStartValues(recording, options.model, StartChoice::kRelease));
+  EXPECT_EQ(start.start, StartKind::kRelease);
+  EXPECT_THAT(start.parameters[4], DoubleNear(0.05, 0.02));
+  EXPECT_TRUE(start.short_hold);
+}
+
 TEST(EstimateStartValues, CountTimeFromTheFirstSample) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.start_time = 1000;

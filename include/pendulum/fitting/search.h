@@ -13,10 +13,13 @@ namespace pendulum {
 /// then over twice as many, and so on. Recordings that reach rest have one minimum per number of half swings before the
 /// stop, so they are fitted over 30, 60 and 85 % of the motion first; then dry friction is shifted to either side, the
 /// other parameters following along its profile, until the number of reversals changes, and the fit goes on from there
-/// as long as the cost is lower. Where the result explains less than nine tenths of the variance, the law's last
-/// friction parameter is held at its bound in another search and then let go, and so on down to the first, so that a
+/// as long as the cost is lower. Where the pendulum comes to rest, or the result explains less than nine tenths
+/// of the variance, each friction parameter in turn is also held at its bound in a search and then let go, so that a
 /// law ends no higher than the simpler laws within it.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                 const SolveOptions& options);
+
+/// Whether a solution leaves at most a tenth of the readings' variance.
+bool Explains(const TrajectoryData& data, const Solution& solution);
 
 }  // namespace pendulum

@@ -17,6 +17,7 @@ struct StartValues {
   StartKind start = StartKind::kMoving;
   std::vector<double> parameters;  ///< In TrajectoryCost's order: units of G, times from the first sample.
   double latest_release = 0;       ///< s from the first sample: the first visibly moving one; 0 for a moving start.
+  bool short_hold = false;         ///< Held for less than half a period: it may be a turning point.
   double amplitude = 0;            ///< rad, the largest.
   double natural_frequency = 0;    ///< rad/s
 };
