@@ -235,29 +235,39 @@ TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
 }
 
 TEST(FitRecording, TakesATurningPointAtTheStartForNoRelease) {
-  // In motion, 0.06 s before a turning point: for 0.1 s the reading hardly moves.
-  SyntheticOptions run = MovingRun("coulomb");
-  run.initial_angle = 0.395;
-  run.initial_rate = 0.57;
-  run.noise = 0.002;
+  // In motion just before a turning point and sampled slowly: for a sixth of a period the reading hardly moves.
+  SyntheticOptions run;
+  run.parameters = {0.48493, 0.069953, 0.003533};
+  run.start = StartKind::kMoving;
+  run.initial_angle = 1.25;
+  run.initial_rate = 0.8031;
+  run.duration = 17.09;
+  run.sample_rate = 9.393;
+  run.noise = 0.005;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     run.seed = seed;
     const FitReport report = FitOwnModel(run);
-    EXPECT_EQ(report.start, StartKind::kMoving) << seed;
+    ASSERT_EQ(report.start, StartKind::kMoving) << seed;
     for (const double deviation : Deviations(report, Truth(run))) EXPECT_LT(std::abs(deviation), 4.5) << seed;
   }
 }
 
 TEST(FitRecording, GivesTheZeroWithoutWholeTurns) {
-  SyntheticOptions run = TextbookRun("coulomb");
+  SyntheticOptions run;  // released near the top, where a search may go over it
+  run.parameters = {0.39112, 0.0056959, 0.01155};
   run.release_angle = -3.017;
+  run.duration = 29.04;
+  run.sample_rate = 31.03;
   run.noise = 0.05;
+  int converged = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     run.seed = seed;
     const FitReport report = FitOwnModel(run);
     if (report.termination != Termination::kConverged) continue;
-    EXPECT_THAT(report.Find("zero_angle")->estimate, DoubleNear(run.zero, 0.1)) << seed;
+    ++converged;
+    EXPECT_THAT(report.Find("zero_angle")->estimate, DoubleNear(0, 0.1)) << seed;
   }
+  EXPECT_GE(converged, 8);
 }
 
 TEST(FitRecording, RefusesAModelThatThereIsNot) {
