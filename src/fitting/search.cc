@@ -178,7 +178,9 @@ Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, std::vec
   simpler.fixed[k] = true;
   start[k] = options.lower[k];
   const bool search = k == options.last_friction;
-  return Continue(cost, search ? Search(cost, data, start, simpler) : Solve(cost, start, simpler), options);
+  Solution solution = search ? Search(cost, data, start, simpler) : Solve(cost, start, simpler);
+  solution.other_minima.clear();  // of the simpler law
+  return Continue(cost, solution, options);
 }
 
 }  // namespace
@@ -194,8 +196,10 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vec
   for (const int k : Removable(options)) {
     Solution other = SolveWithout(cost, data, start, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);
+    std::vector<Minimum> others = std::move(best.other_minima);
     if (better) std::swap(best, other);
-    if (other.usable) best.other_minima.push_back({other.parameters, other.sum});
+    if (other.usable) others.push_back({other.parameters, other.sum});
+    best.other_minima = std::move(others);
     best.iterations += other.iterations;
     if (better) best = Refine(cost, data, best, WithBudget(cost, options));
   }
