@@ -30,7 +30,7 @@ bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution)
 /// to that of the turning points.
 void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
   const std::size_t zero = problem.infos.size() - 1;
-  const auto angle = static_cast<std::size_t>(problem.solve.last_friction + 1);
+  const std::size_t angle = problem.solve.last_friction + 1;
   if (problem.model.gravity != Gravity::kSine || problem.data.quantity != Quantity::kAngle) return;
   if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
   const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
