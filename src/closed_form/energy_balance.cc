@@ -37,27 +37,6 @@ Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double na
   return loss;
 }
 
-/// Minimizes |A x - y|² over x >= 0 by trying every set of positive components: exact, and K is at most a handful.
-Eigen::VectorXd NonNegativeLeastSquares(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right) {
-  const auto size = static_cast<int>(normal.rows());
-  Eigen::VectorXd best = Eigen::VectorXd::Zero(size);
-  double best_gain = 0;
-  for (unsigned set = 1; set < (1U << size); ++set) {
-    std::vector<int> chosen;
-    for (int k = 0; k < size; ++k) {
-      if (set & (1U << k)) chosen.push_back(k);
-    }
-    const Eigen::VectorXd x = normal(chosen, chosen).ldlt().solve(right(chosen));
-    if (!x.allFinite() || x.minCoeff() < 0) continue;
-    const double gain = x.dot(right(chosen));  // how much of |y|² is explained
-    if (gain <= best_gain) continue;
-    best_gain = gain;
-    best.setZero();
-    best(chosen) = x;
-  }
-  return best;
-}
-
 /// Normal equations of U_i = U_run - Σ losses, one unknown U_run for each run without gaps (its means are subtracted).
 class LossEquations {
  public:
@@ -99,9 +78,8 @@ class LossEquations {
 
 }  // namespace
 
-std::vector<double> FrictionFromEnergyBalance(const MotionModel& model, const HalfSwingTable& table,
-                                              double natural_frequency) {
-  std::vector<double> friction;
+EnergyBalance BalanceEnergy(const MotionModel& model, const HalfSwingTable& table, double natural_frequency) {
+  EnergyBalance balance;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     LossEquations equations(kFrictionParameters<F>);
     for (const HalfSwing& half : table.half_swings) {
@@ -112,10 +90,35 @@ std::vector<double> FrictionFromEnergyBalance(const MotionModel& model, const Ha
                     Potential(table.gravity, after));
     }
     equations.FinishRun();
-    const Eigen::VectorXd x = NonNegativeLeastSquares(equations.normal, equations.right);
-    friction.assign(x.begin(), x.end());
+    balance = {equations.normal, equations.right};
   });
-  return friction;
+  return balance;
+}
+
+std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector<bool>& left_out) {
+  const auto size = static_cast<int>(balance.right.size());
+  Eigen::VectorXd best = Eigen::VectorXd::Zero(size);
+  double best_gain = 0;
+  // Non-negative least squares by trying every set of positive components: exact, and K is at most a handful.
+  for (unsigned set = 1; set < (1U << size); ++set) {
+    std::vector<int> chosen;
+    bool allowed = true;
+    for (int k = 0; k < size; ++k) {
+      if (!(set & (1U << k))) continue;
+      chosen.push_back(k);
+      allowed = allowed && (left_out.empty() || !left_out[k]);
+    }
+    if (!allowed) continue;
+    const Eigen::VectorXd right = balance.right(chosen);
+    const Eigen::VectorXd x = balance.normal(chosen, chosen).ldlt().solve(right);
+    if (!x.allFinite() || x.minCoeff() < 0) continue;
+    const double gain = x.dot(right);  // how much of the losses is explained
+    if (gain <= best_gain) continue;
+    best_gain = gain;
+    best.setZero();
+    best(chosen) = x;
+  }
+  return {best.begin(), best.end()};
 }
 
 }  // namespace pendulum

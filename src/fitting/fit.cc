@@ -46,7 +46,8 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.data.scale), kSmallestError);
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
-  Solution solution = Search(cost, problem.data, problem.first_guess, problem.solve);
+  const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
+  Solution solution = Search(cost, problem.data, guess, problem.solve);
   TakeTurnsOut(problem, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureAccuracy(cost, tolerance, solution);

@@ -25,6 +25,9 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
+/// Trajectories of a fit: good recordings need tens, hopeless ones would take for ever.
+constexpr int kMostTraces = 3000;
+
 /// s², in units of G; ω0 = 1/sqrt(I) must be of a size that can be traced.
 constexpr double kSmallestInertia = 1e-30;
 
@@ -128,8 +131,21 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.solve.max_iterations = options.max_iterations;
+  problem.solve.max_traces = kMostTraces;
   if (const Result<void> fixed = FixParameters(options.fixed, problem); !fixed) return tl::unexpected(fixed.error());
   return problem;
+}
+
+std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed) {
+  if (fixed == problem.solve.fixed) return problem.first_guess;
+  const auto first = fixed.begin() + 1;
+  const std::vector<bool> left_out(first, first + problem.solve.last_friction);
+  const std::vector<double> friction = FrictionFrom(problem.start.energy_balance, left_out);
+  std::vector<double> guess = problem.first_guess;
+  for (std::size_t i = 1; i <= friction.size(); ++i) {
+    if (!problem.solve.fixed[i]) guess[i] = fixed[i] ? problem.solve.lower[i] : friction[i - 1];
+  }
+  return guess;
 }
 
 }  // namespace pendulum

@@ -94,20 +94,17 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
   return {};
 }
 
-/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, until so many in a row are no
-/// lower.
+/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
 Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
-  constexpr int kPatience = 2;
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
-    Solution trial = best;
-    for (int in_vain = 0; in_vain < kPatience && cost.traces() < options.max_traces;) {
-      trial.parameters = NextBasin(cost, trial.parameters, side, options);
+    for (bool better = true; better && cost.traces() < options.max_traces;) {
+      Solution trial = best;
+      trial.parameters = NextBasin(cost, best.parameters, side, options);
       if (trial.parameters.empty()) break;
       trial = Continue(cost, trial, options);
       if (!trial.usable) break;
-      const bool better = trial.sum < best.sum;
-      in_vain = better ? 0 : in_vain + 1;
+      better = trial.sum < best.sum;
       std::vector<Minimum> others = std::move(best.other_minima);
       const Solution& other = better ? best : trial;
       others.push_back({other.parameters, other.sum});
@@ -154,11 +151,10 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   return Refine(cost, data, solution, options);
 }
 
-/// A stage of the search ends where it is after so many trajectories: good recordings need tens, hopeless ones would
-/// take for ever.
+/// A stage of the search ends where it is after so many trajectories, and leaves some to the others.
 SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
-  constexpr int kMostTraces = 1500;
-  options.max_traces = cost.traces() + kMostTraces;
+  constexpr int kMostTraces = 500;
+  options.max_traces = std::min(options.max_traces, cost.traces() + kMostTraces);
   return options;
 }
 
@@ -172,13 +168,12 @@ std::vector<int> Removable(const SolveOptions& options) {
 }
 
 /// Solves without friction parameter k, then lets it go.
-Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, std::vector<double> start, int k,
+Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, int k,
                       const SolveOptions& options) {
   SolveOptions simpler = options;
   simpler.fixed[k] = true;
-  start[k] = options.lower[k];
-  const bool search = k == options.last_friction;
-  Solution solution = search ? Search(cost, data, start, simpler) : Solve(cost, start, simpler);
+  const bool search = k == Removable(options).back();
+  Solution solution = search ? Search(cost, data, guess, simpler) : Solve(cost, guess(simpler.fixed), simpler);
   solution.other_minima.clear();  // of the simpler law
   return Continue(cost, solution, options);
 }
@@ -189,12 +184,12 @@ bool Explains(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }
 
-Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
-  Solution best = SearchFrom(cost, data, start, WithBudget(cost, options));
+  Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
   if (Explains(data, best) && !ReachesRest(cost, data, best.parameters)) return best;
   for (const int k : Removable(options)) {
-    Solution other = SolveWithout(cost, data, start, k, WithBudget(cost, options));
+    Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);
     std::vector<Minimum> others = std::move(best.other_minima);
     if (better) std::swap(best, other);

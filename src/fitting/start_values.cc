@@ -153,7 +153,8 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
   }
   values.amplitude = LargestAmplitude(*table, values.natural_frequency);
   values.parameters = {inertia};
-  const std::vector<double> friction = FrictionFromEnergyBalance(model, *table, values.natural_frequency);
+  values.energy_balance = BalanceEnergy(model, *table, values.natural_frequency);
+  const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 
   const Centred data{recording, *table, values.natural_frequency, SuccessiveDifferenceNoise(recording)};

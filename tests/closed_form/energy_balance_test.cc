@@ -19,7 +19,7 @@ using testing::Ge;
 
 std::vector<double> FrictionOf(const Recording& recording, std::string_view model) {
   const HalfSwingTable table = Must(TabulateHalfSwings(recording));
-  return FrictionFromEnergyBalance(Must(FindMotionModel(model)), table, NaturalFrequency(table));
+  return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, NaturalFrequency(table)));
 }
 
 /// Amplitudes of a swing that loses energy to dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
@@ -37,26 +37,26 @@ HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
   return table;
 }
 
-TEST(FrictionFromEnergyBalance, OfDryFrictionIsExactAtAnyAmplitude) {
+TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
   for (const double amplitude : {0.3, 1.5, 2.6}) {
     const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
-    const std::vector<double> friction = FrictionFromEnergyBalance(Must(FindMotionModel("coulomb")), table, 5);
+    const std::vector<double> friction = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5));
     EXPECT_NEAR(friction[0], 0, 1e-8) << amplitude;
     EXPECT_NEAR(friction[1], 0.01, 1e-8) << amplitude;
   }
 }
 
-TEST(FrictionFromEnergyBalance, OfSmallViscousSwingsIsTheLogDecrement) {
+TEST(FrictionFrom, OfSmallViscousSwingsIsTheLogDecrement) {
   // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2
   const double viscous = 0.002, zeta = 0.5 * viscous * 5, ratio = std::exp(-kPi * zeta / std::sqrt(1 - zeta * zeta));
   HalfSwingTable table;
   for (int i = 0; i < 10; ++i) {
     table.half_swings.push_back({0, 0.01 * std::pow(ratio, i), 0.01 * std::pow(ratio, i + 1), i > 0});
   }
-  EXPECT_NEAR(FrictionFromEnergyBalance(Must(FindMotionModel("viscous")), table, 5)[0] / viscous, 1, 1e-4);
+  EXPECT_NEAR(FrictionFrom(BalanceEnergy(Must(FindMotionModel("viscous")), table, 5))[0] / viscous, 1, 1e-4);
 }
 
-TEST(FrictionFromEnergyBalance, RecoversEachLawAloneFromItsDecay) {
+TEST(FrictionFrom, RecoversEachLawAloneFromItsDecay) {
   for (const double degrees : {20.0, 60.0, 100.0, 150.0}) {
     SCOPED_TRACE(degrees);
     Decay viscous, coulomb, drag;
@@ -74,7 +74,7 @@ TEST(FrictionFromEnergyBalance, RecoversEachLawAloneFromItsDecay) {
   }
 }
 
-TEST(FrictionFromEnergyBalance, TellsTheThreeLawsApartWhenAllAreThere) {
+TEST(FrictionFrom, TellsTheThreeLawsApartWhenAllAreThere) {
   for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
     for (const double degrees : {60.0, 100.0, 150.0}) {
       SCOPED_TRACE(std::to_string(degrees) + (quantity == Quantity::kRate ? " deg, rate" : " deg, angle"));
@@ -87,7 +87,7 @@ TEST(FrictionFromEnergyBalance, TellsTheThreeLawsApartWhenAllAreThere) {
   }
 }
 
-TEST(FrictionFromEnergyBalance, IsNeverNegative) {
+TEST(FrictionFrom, IsNeverNegative) {
   const auto undamped = [](double t) { return UndampedAngle(1.0, 1.0 / 25, t + 0.3); };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     EXPECT_THAT(FrictionOf(WithNoise(Sample(undamped, 20, 100), 0.01, seed), "drag"), Each(Ge(0.0))) << seed;
@@ -97,18 +97,30 @@ TEST(FrictionFromEnergyBalance, IsNeverNegative) {
       Each(0.0));  // it gains energy
 }
 
-TEST(FrictionFromEnergyBalance, CountsNoLossAcrossAGap) {
+TEST(FrictionFrom, CountsNoLossAcrossAGap) {
   Decay decay;
   decay.viscous = 0.004;
   const Recording recording = WithoutSamples(SimulateDecay(decay), 8.03, 15.71);
   EXPECT_NEAR(FrictionOf(recording, "viscous")[0] / 0.004, 1, 0.03);
 }
 
-TEST(FrictionFromEnergyBalance, GivesEveryRegisteredModelItsParameters) {
+TEST(FrictionFrom, GivesEveryRegisteredModelItsParameters) {
   const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
   for (const MotionModel& model : MotionModels()) {
-    EXPECT_EQ(FrictionFromEnergyBalance(model, table, 5).size() + 1, PhysicalParameters(model).size()) << model.name;
+    EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5)).size() + 1, PhysicalParameters(model).size()) << model.name;
   }
+}
+
+TEST(FrictionFrom, LeavingOneOutIsTheBalanceOfTheSimplerLaw) {
+  Decay decay{5, 0.003, 0.003, 0.0006, 60 * kRadFromDeg, 60, Quantity::kAngle};
+  const HalfSwingTable table = Must(TabulateHalfSwings(SimulateDecay(decay)));
+  const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5);
+  const std::vector<double> coulomb = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5));
+  const std::vector<double> without = FrictionFrom(drag, {false, false, true});
+  EXPECT_EQ(without[2], 0);
+  EXPECT_NEAR(without[0] / coulomb[0], 1, 1e-9);
+  EXPECT_NEAR(without[1] / coulomb[1], 1, 1e-9);
+  EXPECT_EQ(FrictionFrom(drag, {true, true, true}), std::vector<double>(3, 0.0));
 }
 
 }  // namespace

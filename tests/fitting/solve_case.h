@@ -24,6 +24,10 @@ struct SolveCase {
     cost->set_tolerance(1e-13);
   }
 
+  auto Guess() const {
+    return [this](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
+  }
+
   double SumAt(const std::vector<double>& parameters) const {
     double sum = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(cost->SumOfSquares(parameters, &sum));

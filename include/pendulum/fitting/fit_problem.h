@@ -22,6 +22,10 @@ struct FitProblem {
   SolveOptions solve;
 };
 
+/// The first guess for a simpler law: parameters that are fixed besides those of the problem are at their lower bound,
+/// and the other friction parameters balance the energy without them.
+std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
+
 /// Start values from the data, bounds and fixed values from the options.
 ///
 /// Errors as FitRecording.

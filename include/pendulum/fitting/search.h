@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pendulum/fitting/solve.h"
 
 namespace pendulum {
+
+/// Where a search begins when these parameters (P) are fixed, their values included.
+using StartGuess = std::function<std::vector<double>(const std::vector<bool>& fixed)>;
 
 /// The lowest minimum over a whole recording, from start values that may be rough, where there are several minima.
 ///
@@ -16,8 +20,7 @@ namespace pendulum {
 /// as long as the cost is lower. Where the pendulum comes to rest, or the result explains less than nine tenths
 /// of the variance, each friction parameter in turn is also held at its bound in a search and then let go, so that a
 /// law ends no higher than the simpler laws within it.
-Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
-                const SolveOptions& options);
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, const SolveOptions& options);
 
 /// Whether a solution leaves at most a tenth of the readings' variance.
 bool Explains(const TrajectoryData& data, const Solution& solution);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "pendulum/closed_form/energy_balance.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
@@ -20,6 +21,7 @@ struct StartValues {
   bool short_hold = false;         ///< Held for less than half a period: it may be a turning point.
   double amplitude = 0;            ///< rad, the largest.
   double natural_frequency = 0;    ///< rad/s
+  EnergyBalance energy_balance;    ///< Gives the friction of simpler laws too.
 };
 
 /// Inertia from the crossings (period corrected for amplitude), friction from the energy balance, zero from the turning
