@@ -97,7 +97,9 @@ std::optional<Hold> FindHold(const Centred& data, bool asked) {
   constexpr Index kFewest = 3;
   const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest;
   if (held < 1 || (is_short && !asked)) return std::nullopt;
-  const auto [mean, spread] = MeanAndSpread(data, held);
+  // Strong friction makes the release look later than it was: the first part of the hold speaks for it.
+  const Index surely_held = std::max<Index>(7 * held / 10, 1);
+  const auto [mean, spread] = MeanAndSpread(data, surely_held);
   const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
   const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
   if (spread > band && !asked) return std::nullopt;
@@ -105,7 +107,7 @@ std::optional<Hold> FindHold(const Centred& data, bool asked) {
   const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
   if (is_push && !asked) return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
-  while (moving > held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
+  while (moving > surely_held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
   return Hold{recording.quantity == Quantity::kAngle ? mean : fall->amplitude, release, recording.time[moving]};
 }
 
@@ -123,13 +125,17 @@ std::pair<double, double> InitialReading(const Centred& data) {
   return {c[0], c[1]};
 }
 
-/// Angle and rate at the first sample of a recording that begins in motion.
+/// Angle and rate at the first sample of a recording that begins in motion. Seen by a rate sensor the slope tells the
+/// sine of the angle, and what the rate lacks of its next peak the cosine.
 std::pair<double, double> InitialState(const Centred& data) {
   const auto [reading, slope] = InitialReading(data);
   if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
-  const double torque = -slope / (data.natural_frequency * data.natural_frequency);  // θ'' = -ω0² g(θ)
-  const bool is_sine = data.table.gravity == Gravity::kSine;
-  return {is_sine ? std::asin(std::clamp(torque, -1.0, 1.0)) : torque, reading};
+  const double square = data.natural_frequency * data.natural_frequency;
+  const double torque = -slope / square;  // θ'' = -ω0² g(θ)
+  if (data.table.gravity == Gravity::kLinear) return {torque, reading};
+  const double peak = data.table.half_swings.front().before;
+  const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // of the energy at the bottom
+  return {std::atan2(torque, cosine), reading};
 }
 
 double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {

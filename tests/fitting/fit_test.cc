@@ -274,7 +274,7 @@ TEST(FitRecording, RefusesAModelThatThereIsNot) {
   const auto refused = FitRecording(Must(SimulateRecording(NoisyRun())), ModelOptions("columb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(refused.error().message, "there is no model 'columb'; the models are linear, viscous, coulomb, drag");
+  EXPECT_EQ(refused.error().message, "there is no model 'columb'; the models are " + MotionModelNames());
 }
 
 TEST(FitRecording, NamesTheFileThatHasNoSwing) {

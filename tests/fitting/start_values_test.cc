@@ -194,6 +194,20 @@ TEST(EstimateStartValues, FindAngleAndRateSeenByARateSensor) {
   }
 }
 
+TEST(EstimateStartValues, FindAnAngleBeyondTheHorizontalSeenByARateSensor) {
+  for (const double degrees : {-150.0, -100.0, 60.0, 120.0, 150.0}) {
+    SyntheticOptions options = MovingRun("viscous");
+    options.quantity = Quantity::kRate;
+    options.initial_angle = degrees * kRadFromDeg;
+    options.initial_rate = 0.5;
+    options.noise = 0.01;
+    const StartValues start =
+        Must(EstimateStartValues(Must(SimulateRecording(options)), options.model, StartChoice::kAuto));
+    ASSERT_EQ(start.start, StartKind::kMoving) << degrees;
+    EXPECT_THAT(start.parameters[2], DoubleNear(degrees * kRadFromDeg, 0.15)) << degrees;
+  }
+}
+
 TEST(EstimateStartValues, AStartAtATurningPointIsInMotion) {
   SyntheticOptions options = MovingRun("coulomb");
   options.initial_angle = 0.4;
