@@ -59,28 +59,6 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   return solution;
 }
 
-}  // namespace
-
-std::string_view TerminationName(Termination termination) {
-  switch (termination) {
-    case Termination::kConverged: return "converged";
-    case Termination::kNotConverged: return "not_converged";
-    case Termination::kNotIdentifiable: return "not_identifiable";
-    case Termination::kFailed: return "failed";
-  }
-  return "failed";
-}
-
-int ExitCode(Termination termination) { return termination == Termination::kConverged ? 0 : 1; }
-
-const ParameterEstimate* FitReport::Find(std::string_view name) const {
-  const auto found =
-      std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.info.name == name; });
-  return found == parameters.end() ? nullptr : &*found;
-}
-
-namespace {
-
 /// A fit before it is judged. The cost looks into the problem.
 struct Attempt {
   std::unique_ptr<FitProblem> problem;
@@ -110,6 +88,24 @@ bool IsBetter(const Attempt& a, const Attempt& b) {
 }
 
 }  // namespace
+
+std::string_view TerminationName(Termination termination) {
+  switch (termination) {
+    case Termination::kConverged: return "converged";
+    case Termination::kNotConverged: return "not_converged";
+    case Termination::kNotIdentifiable: return "not_identifiable";
+    case Termination::kFailed: return "failed";
+  }
+  return "failed";
+}
+
+int ExitCode(Termination termination) { return termination == Termination::kConverged ? 0 : 1; }
+
+const ParameterEstimate* FitReport::Find(std::string_view name) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.info.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
 
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TryFit(recording, options);

@@ -25,7 +25,6 @@ struct Optimum {
   Eigen::VectorXd gradient;     // P, J'r
   std::vector<int> free;        // neither fixed nor at a bound
   std::vector<int> at_bound;
-  std::vector<int> side;       // P: -1 at the lower bound, 1 at the upper one, 0 when free or fixed
   InformationInverse inverse;  // over free
   double freedom = 1;          // N - free parameters
   double variance = 0;         // of one residual
@@ -39,12 +38,10 @@ std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost
   const Index size = sums.rows() - 1;
   optimum.information = sums.topLeftCorner(size, size);
   optimum.gradient = sums.col(size).head(size);
-  optimum.side.assign(static_cast<std::size_t>(size), 0);
   for (int i = 0; i < static_cast<int>(size); ++i) {
     if (problem.solve.fixed[i]) continue;
     const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
     const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
-    if (pushes_out) optimum.side[i] = side;
     (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
   }
   optimum.inverse = InvertInformation(optimum.information, optimum.free);
@@ -189,11 +186,12 @@ ParameterEstimate MakeEstimate(const FitOptions& options, const FitProblem& prob
   return parameter;
 }
 
-void SetErrors(const FitProblem& problem, const Optimum& optimum, int i, double t95, ParameterEstimate& parameter) {
+void SetErrors(const FitProblem& problem, const Optimum& optimum, const Solution& solution, int i, double t95,
+               ParameterEstimate& parameter) {
   const double scale = problem.si_per_internal[i];
   if (parameter.at_bound) {
     parameter.reason = "at its bound";
-    const bool at_lower = optimum.side[i] < 0;
+    const bool at_lower = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]) < 0;
     const double length = scale * IntervalAtBound(optimum, i);
     (at_lower ? parameter.lower95 : parameter.upper95) = parameter.estimate;
     if (!std::isfinite(length)) return;
@@ -217,7 +215,7 @@ void SetParameters(const FitOptions& options, const FitProblem& problem, const O
     } else if (report.termination != Termination::kConverged) {
       parameter.reason = "the fit is " + std::string(TerminationName(report.termination));
     } else {
-      SetErrors(problem, optimum, i, t95, parameter);
+      SetErrors(problem, optimum, solution, i, t95, parameter);
     }
     report.parameters.push_back(std::move(parameter));
   }

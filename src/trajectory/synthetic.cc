@@ -63,17 +63,11 @@ Result<void> CheckNumbers(const SyntheticOptions& options) {
   return {};
 }
 
-std::string FrictionNames() {
-  std::string names;
-  for (const std::string_view name : FrictionModels::kNames) names.append(names.empty() ? "" : ", ").append(name);
-  return names;
-}
-
 Result<void> CheckModel(const SyntheticOptions& options) {
   const std::string_view friction = options.model.friction;
   if (!FrictionModels::Visit(friction, []<typename F>() {})) {
-    return Error(StatusCode::kInvalidArgument,
-                 "there is no friction law '" + std::string(friction) + "'; the laws are " + FrictionNames());
+    return Error(StatusCode::kInvalidArgument, "there is no friction law '" + std::string(friction) +
+                                                   "'; the laws are " + NameList(FrictionModels::kNames));
   }
   const std::vector<ParameterInfo> infos = PhysicalParameters(options.model);
   if (options.parameters.size() != infos.size()) {

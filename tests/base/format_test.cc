@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -46,6 +47,7 @@ struct Named {
 TEST(NameList, JoinsNamesForASentence) {
   EXPECT_EQ(NameList(std::vector<Named>{}), "");
   EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}}), "inertia");
+  EXPECT_EQ(NameList(std::vector<std::string_view>{"viscous", "drag"}), "viscous, drag");
   EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}, {"viscous"}, {"zero_angle"}}), "inertia, viscous, zero_angle");
 }
 

@@ -15,6 +15,15 @@ namespace {
 using testing::Ge;
 using testing::Gt;
 
+/// Dry friction stops the pendulum well before the end.
+SyntheticOptions RunToRest() {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.parameters[2] *= 3;
+  run.duration = 30;
+  run.noise = 0.002;
+  return run;
+}
+
 /// A start that is right for no law, with what is fixed beyond it at 0.
 StartGuess Always(const std::vector<double>& start) {
   return [start](const std::vector<bool>& fixed) {
@@ -56,11 +65,7 @@ TEST(Search, LeavesAllSamplesInUse) {
 }
 
 TEST(Search, TriesTheNeighbouringNumbersOfHalfSwingsOfARecordingThatReachesRest) {
-  SyntheticOptions run = TextbookRun("coulomb");
-  run.parameters[2] *= 3;
-  run.duration = 30;
-  run.noise = 0.002;
-  SolveCase c(run, "coulomb");
+  SolveCase c(RunToRest(), "coulomb");
   const Solution solution = Search(*c.cost, c.problem.data, c.Guess(), c.problem.solve);
   ASSERT_LT(c.cost->Trace(solution.parameters).stop_time, 30);
   EXPECT_THAT(solution.other_minima.size(), Gt(0));
@@ -87,11 +92,7 @@ TEST(Search, EndsNoHigherThanTheSimplerLawsWithinALaw) {
 }
 
 TEST(Search, StaysWithinTheBoundsOnItsWayToTheNextNumberOfHalfSwings) {
-  SyntheticOptions run = TextbookRun("coulomb");
-  run.parameters[2] *= 3;
-  run.duration = 30;
-  run.noise = 0.002;
-  SolveCase c(run, "coulomb");
+  SolveCase c(RunToRest(), "coulomb");
   SolveOptions options = c.problem.solve;
   options.upper[4] = c.truth[4] - 0.002;
   const Solution found = Search(*c.cost, c.problem.data, c.Guess(), options);

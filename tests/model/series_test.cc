@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
-#include <limits>
 #include <random>
 
 #include <boost/math/differentiation/autodiff.hpp>
@@ -13,20 +11,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/model/coefficients.h"
+
 namespace pendulum {
 namespace {
 
 using testing::DoubleNear;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// The coefficients given, and NaN beyond: what must not be read.
-Series<double> Coefficients(std::initializer_list<double> given) {
-  Series<double> series;
-  series.fill(kNan);
-  std::copy(given.begin(), given.end(), series.begin());
-  return series;
-}
 
 /// Coefficients that shrink like those of a function with a singularity at 1/decay.
 Series<double> RandomSeries(std::mt19937_64& generator, double decay) {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/trajectory/swing.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
-#include <limits>
 
 #include <ceres/jet.h>
 #include <gmock/gmock.h>
@@ -13,22 +10,13 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/friction/registry.h"
+#include "tests/model/coefficients.h"
 
 namespace pendulum {
 namespace {
 
 using testing::DoubleNear;
 using testing::Lt;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// The coefficients given, and NaN beyond: what must not be read.
-Series<double> Coefficients(std::initializer_list<double> given) {
-  Series<double> series;
-  series.fill(kNan);
-  std::copy(given.begin(), given.end(), series.begin());
-  return series;
-}
 
 TEST(OrderForTolerance, FollowsTheFormulaWithinItsLimits) {
   EXPECT_EQ(OrderForTolerance(1e-10), 15);  // 1 + 0.6 · 23.03 = 14.8

@@ -19,11 +19,18 @@ constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; 
 /// terminal might obey, as \xNN.
 std::string Quoted(std::string_view text);
 
-/// The names of items for a sentence: "inertia, viscous, zero_angle". Each item has a member `name`.
+/// The names of items for a sentence: "inertia, viscous, zero_angle". Items are names, or have a member `name`.
 template <typename Range>
 std::string NameList(const Range& items) {
   std::string list;
-  for (const auto& item : items) list.append(list.empty() ? "" : ", ").append(item.name);
+  for (const auto& item : items) {
+    list += list.empty() ? "" : ", ";
+    if constexpr (requires { item.name; }) {
+      list += item.name;
+    } else {
+      list += item;
+    }
+  }
   return list;
 }
 

@@ -67,7 +67,7 @@ struct NoiseEstimate {
 /// What the solver did, over all its runs.
 struct SolverSummary {
   int iterations = 0;
-  int evaluations = 0;      ///< Trajectories, with and without sensitivities.
+  int evaluations = 0;      ///< Trajectories of the start that was kept, with and without sensitivities.
   std::string termination;  ///< Ceres' own words for the last run.
 };
 
@@ -99,10 +99,12 @@ struct FitReport {
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity);
 
 /// Fits one model to a recording: start values from the data, least squares over the whole trajectory, judgement.
+/// With StartChoice::kAuto a release after a short hold, or one that explains little, is compared with a start in
+/// motion.
 ///
 /// kInvalidArgument: no such model, or a name in `fixed` that the model does not have, or a value outside its bounds.
 /// kFailedPrecondition: there is no swing in the data, or too little of one. Cost: about a millisecond for 2000
-/// samples.
+/// samples, tens of milliseconds where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

@@ -45,9 +45,10 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
 /// Levenberg-Marquardt (Ceres) from `start` over all samples the cost uses; parameters stay within their bounds.
 ///
-/// An active-set method: a parameter whose step lands on its bound is held there while the others go on, and let go
-/// again when the cost pulls it inwards at their optimum, at most 4 P times. Each run stops when the cost changes by
-/// less than 1e-10 of itself, which leaves the estimates within sqrt(1e-10 N) standard errors. `cost` is not owned.
+/// An active-set method: a parameter whose step lands on its bound, or would carry it there, is held there while the
+/// others go on, and let go again when the cost pulls it inwards at their optimum, at most 4 P times. Each run stops
+/// when the cost changes by less than 1e-10 of itself, which leaves the estimates within sqrt(1e-10 N) standard errors.
+/// `cost` is not owned.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.
