@@ -52,7 +52,7 @@ Extremum Vertex(const Recording& recording, Index point, double half_width) {
   while (last + 1 < time.size() && time[last + 1] - time[point] <= half_width) ++last;
   first = std::min(first, std::max<Index>(point - 1, 0));
   last = std::max(last, std::min(point + 1, time.size() - 1));
-  const Extremum sample{time[point], recording.value[point]};
+  const Extremum sample{time[point], recording.value[point], point};
   const Index count = last - first + 1;
   if (count < 3) return sample;
   const Eigen::ArrayXd t = time.segment(first, count).array() - time[point];
@@ -61,7 +61,7 @@ Extremum Vertex(const Recording& recording, Index point, double half_width) {
   const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(recording.value.segment(first, count));
   const double vertex = -0.5 * c[1] / c[2];
   if (!(vertex >= t[0] && vertex <= t[count - 1])) return sample;
-  return {time[point] + vertex, c[0] + 0.5 * c[1] * vertex};
+  return {time[point] + vertex, c[0] + 0.5 * c[1] * vertex, point};
 }
 
 }  // namespace
@@ -81,27 +81,38 @@ double SuccessiveDifferenceNoise(const Recording& recording) {
   return *quantile;
 }
 
+double TurningThreshold(const Recording& recording, double noise) {
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  // Twice what the largest of N deviations is expected to be, and one more: noise alone turns nowhere.
+  const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 1;
+  return std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
+}
+
+std::vector<Extremum> FindTurns(const Recording& recording, double threshold) {
+  const std::vector<Index> points = TurningPoints(recording.value, threshold);
+  if (points.size() < 2) return {};
+  const double half_width = 0.15 * TypicalSpacing(recording.time, points);
+  std::vector<Extremum> turns;
+  for (const Index point : points) turns.push_back(Vertex(recording, point, half_width));
+  return turns;
+}
+
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   const double noise = SuccessiveDifferenceNoise(recording);
-  // Twice what the largest of N deviations is expected to be, and one more: noise alone turns nowhere.
-  const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 1;
-  const double threshold = std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
-  const std::vector<Index> points = TurningPoints(recording.value, threshold);
-  std::vector<Extremum> extrema;
-  if (points.size() >= 3) {
-    const double half_width = 0.15 * TypicalSpacing(recording.time, points);
+  const double threshold = TurningThreshold(recording, noise);
+  std::vector<Extremum> extrema = FindTurns(recording, threshold);
+  if (!extrema.empty()) {
     // The first candidate may be where the recording began, or lie in its hold: then nothing before it is elsewhere,
     // or what is before it is noise.
-    const auto before = recording.value.head(points[0] + 1).array();
+    const Index first = extrema[0].sample;
+    const auto before = recording.value.head(first + 1).array();
     const double spread = std::sqrt((before - before.mean()).square().mean());
-    const double farthest = (before - recording.value[points[0]]).abs().maxCoeff();
+    const double farthest = (before - recording.value[first]).abs().maxCoeff();
     constexpr Index kFewestHeld = 8;  // fewer samples do not tell noise from a slope
     const bool is_noise = before.size() >= kFewestHeld && spread < 2 * noise;
     const bool turned = farthest > std::min(threshold, 0.1 * range) && !is_noise;
-    for (std::size_t i = turned ? 0 : 1; i < points.size(); ++i) {
-      extrema.push_back(Vertex(recording, points[i], half_width));
-    }
+    if (!turned) extrema.erase(extrema.begin());
   }
   if (extrema.size() >= 3) return extrema;
   if (range == 0) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
@@ -111,22 +112,23 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
-      : gravity_(gravity), data_(data), used_samples_(data.time.size()) {
-    set_num_residuals(kParameters + 1);
-    mutable_parameter_block_sizes()->assign(kParameters, 1);
+      : gravity_(gravity), data_(data), used_samples_(data.time.size()), count_(kParameters + (data.drifts ? 1 : 0)) {
+    set_num_residuals(count_ + 1);
+    mutable_parameter_block_sizes()->assign(count_, 1);
   }
 
   void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
   void set_used_samples(std::size_t count) override { used_samples_ = count; }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    std::array<double, kParameters> p;
-    for (int i = 0; i < kParameters; ++i) p[i] = *parameters[i];
+    std::array<double, kParameters + 1> values{};
+    for (int i = 0; i < count_; ++i) values[i] = *parameters[i];
+    const std::span<const double> p(values.data(), count_);
     if (jacobians == nullptr) {
-      std::fill_n(residuals, kParameters, 0.0);
+      std::fill_n(residuals, count_, 0.0);
       double sum = 0;
       const bool valid = SumOfSquares(p, &sum);
-      residuals[kParameters] = std::sqrt(sum);
+      residuals[count_] = std::sqrt(sum);
       return valid;
     }
     Eigen::MatrixXd sums;
@@ -140,12 +142,12 @@ class TrajectoryCostFor final : public TrajectoryCost {
     Lanes squares{};
     const auto add = [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
       for (int i = 0; i < count; ++i) {
-        const double residual = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
+        const double residual = (data_.value[first + i] - model[0][i] - Zero(p, first + i)) * inverse_scale;
         squares[i] += residual * residual;
       }
     };
     if (!VisitSamples<double>(p, add)) return false;
-    *sum = 0;
+    *sum = PriorSum(p);
     for (const double square : squares) *sum += square;
     return std::isfinite(*sum);
   }
@@ -155,12 +157,13 @@ class TrajectoryCostFor final : public TrajectoryCost {
         std::ranges::equal(p, last_.parameters) && last_.tolerance == tolerance_ && last_.samples == used_samples_;
     if (!known) {
       last_.parameters.clear();
-      if (!AddUp(p, &last_.sums)) return false;
+      if (!(data_.drifts ? AddUp<2>(p, &last_.sums) : AddUp<1>(p, &last_.sums))) return false;
       last_.parameters.assign(p.begin(), p.end());
       last_.tolerance = tolerance_;
       last_.samples = used_samples_;
     }
     *sums = last_.sums;
+    AddPriors(p, sums);
     return true;
   }
 
@@ -169,34 +172,45 @@ class TrajectoryCostFor final : public TrajectoryCost {
     readings->resize(samples);
     if (jacobian == nullptr) {
       return VisitSamples<double>(p, [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
-        for (int i = 0; i < count; ++i) (*readings)[first + i] = model[0][i] + p[kZero];
+        for (int i = 0; i < count; ++i) (*readings)[first + i] = model[0][i] + Zero(p, first + i);
       });
     }
-    jacobian->resize(samples, kParameters);
+    jacobian->resize(samples, count_);
     return VisitSamples<Dual>(p, [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
       for (int i = 0; i < count; ++i) {
-        (*readings)[first + i] = model[0][i] + p[kZero];
+        (*readings)[first + i] = model[0][i] + Zero(p, first + i);
         for (int j = 0; j < kZero; ++j) (*jacobian)(first + i, j) = model[1 + j][i];
         (*jacobian)(first + i, kZero) = 1;
+        if (data_.drifts) (*jacobian)(first + i, kZero + 1) = data_.time[first + i];
       }
     });
   }
 
   TraceSummary Trace(std::span<const double> p) const override {
     ++traces_;
-    return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), [](const Segment<double>&) {});
+    const std::function<void(const Segment<double>&)> nothing = [](const Segment<double>&) {};
+    return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing);
   }
 
  private:
+  /// What the reading shows at sample i when the angle, or rate, is zero.
+  double Zero(std::span<const double> p, std::size_t i) const {
+    return data_.drifts ? p[kZero] + p[kZero + 1] * data_.time[i] : p[kZero];
+  }
+
+  /// kBaseline parameters for the zero: itself, and its drift.
+  template <int kBaseline>
   bool AddUp(std::span<const double> p, Eigen::MatrixXd* sums) const {
+    constexpr int kResidual = kZero + kBaseline;
     const double inverse_scale = 1 / data_.scale;
-    Products<kParameters + 1> products;
+    Products<kResidual + 1> products;
     const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
-      std::array<Lanes, kParameters + 1> columns{};  // lanes beyond count stay zero
+      std::array<Lanes, kResidual + 1> columns{};  // lanes beyond count stay zero
       for (int i = 0; i < count; ++i) {
         for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * inverse_scale;
         columns[kZero][i] = -inverse_scale;
-        columns[kParameters][i] = (data_.value[first + i] - model[0][i] - p[kZero]) * inverse_scale;
+        if constexpr (kBaseline == 2) columns[kZero + 1][i] = -data_.time[first + i] * inverse_scale;
+        columns[kResidual][i] = (data_.value[first + i] - model[0][i] - Zero(p, first + i)) * inverse_scale;
       }
       products.Add(columns);
     };
@@ -270,7 +284,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
       next = end;
     };
     ++traces_;
-    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visit);
+    // One tracer for all visitors: it is by far the most code here.
+    const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
+    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visitor);
     return summary.outcome == TraceSummary::Outcome::kComplete && next == used_samples_;
   }
 
@@ -300,6 +316,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   Gravity gravity_;
   const TrajectoryData& data_;
   std::size_t used_samples_;
+  int count_;  // of parameters
   double tolerance_ = 1e-10;
 
   /// Sums and where they were taken: solver, active set and judgement ask for them at the same point, one by one.
@@ -313,6 +330,26 @@ class TrajectoryCostFor final : public TrajectoryCost {
 };
 
 }  // namespace
+
+void TrajectoryCost::AddPriors(std::span<const double> parameters, Eigen::MatrixXd* sums) const {
+  const Eigen::Index residual = sums->rows() - 1;
+  for (const PriorTerm& prior : priors_) {
+    const double r = (parameters[prior.parameter] - prior.mean) * prior.weight;
+    (*sums)(prior.parameter, prior.parameter) += prior.weight * prior.weight;
+    (*sums)(prior.parameter, residual) += prior.weight * r;
+    (*sums)(residual, prior.parameter) += prior.weight * r;
+    (*sums)(residual, residual) += r * r;
+  }
+}
+
+double TrajectoryCost::PriorSum(std::span<const double> parameters) const {
+  double sum = 0;
+  for (const PriorTerm& prior : priors_) {
+    const double r = (parameters[prior.parameter] - prior.mean) * prior.weight;
+    sum += r * r;
+  }
+  return sum;
+}
 
 std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,
                                                    const TrajectoryData& data) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,10 +8,13 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include "pendulum/closed_form/free_swing.h"
 #include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/repair_values.h"
 #include "pendulum/recording/window.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
@@ -83,14 +87,17 @@ Result<RunResult> FitFile(FitPendulumOptions options) {
   }
   const auto recording = ReadRecording(options.data);
   if (!recording) return tl::unexpected(recording.error());
-  const auto used = SelectWindow(*recording, options.from, options.to);
-  if (!used) return tl::unexpected(used.error());
-  auto fit = FitRecording(*used, options.fit);
+  const auto part = SelectWindow(RepairValues(*recording), options.from, options.to);
+  if (!part) return tl::unexpected(part.error());
+  const auto swings = FindFreeSwings(*part);
+  if (!swings) return tl::unexpected(swings.error());
+  const auto longest = std::ranges::max_element(*swings, {}, [](const FreeSwing& s) { return s.to - s.from; });
+  auto fit = FitSwing(*part, *longest, options.fit);
   if (!fit) return tl::unexpected(fit.error());
-  report.data = SummarizeData(*recording, *used);
-  report.warnings = used->warnings;
-  report.fits.push_back(*std::move(fit));
-  return Render(options, report, *used);
+  report.data = SummarizeData(*recording, fit->used);
+  report.warnings = fit->used.warnings;
+  report.fits.push_back(fit->fit);
+  return Render(options, report, fit->used);
 }
 
 Result<int> Work(const std::vector<std::string>& positional) {

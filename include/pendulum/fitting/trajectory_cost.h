@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,14 +23,23 @@ struct TrajectoryData {
   std::vector<double> value;     ///< N, rad or rad/s.
   double natural_frequency = 0;  ///< rad/s, roughly; a trial of a very different time scale is refused.
   double latest_release = 0;     ///< s; a trial released outside [0, latest_release] is refused.
+  bool drifts = false;           ///< The zero moves: one parameter more.
   double scale =
       1;  ///< rad or rad/s; residuals are divided by it, so that Ceres' tolerances are those of numbers near 1.
+};
+
+/// What is known of a parameter beside the recording, as a residual (p - mean) · weight beside those of the samples.
+struct PriorTerm {
+  int parameter = 0;
+  double mean = 0;    ///< In the cost's units.
+  double weight = 0;  ///< One over the standard deviation, times that of the noise over `scale`.
 };
 
 /// Samples, sensitivities and the least squares of one trajectory: the part of a fit that is repeated.
 ///
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
-/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias). Residual r_i = value_i -
+/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of the
+/// reading per s] where the data ask for it. Residual r_i = value_i -
 /// model_i(p).
 ///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
@@ -39,7 +49,7 @@ struct TrajectoryData {
 /// false.
 class TrajectoryCost : public ceres::CostFunction {
  public:
-  /// |r|^2 in units of scale^2, or false.
+  /// |r|^2 in units of scale^2, that of the priors included, or false.
   virtual bool SumOfSquares(std::span<const double> parameters, double* sum) const = 0;
 
   /// The (P + 1) x (P + 1) symmetric matrix of sums [J'J, J'r; r'J, r'r], J = dr/dp, r in units of scale; or false.
@@ -55,11 +65,22 @@ class TrajectoryCost : public ceres::CostFunction {
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
   virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
 
+  void set_priors(std::vector<PriorTerm> priors) { priors_ = std::move(priors); }
+  const std::vector<PriorTerm>& priors() const { return priors_; }
+
+  /// The priors' part of |r|^2.
+  double PriorSum(std::span<const double> parameters) const;
+
   /// Trajectories traced so far, with and without derivatives, for whatever purpose.
   int traces() const { return traces_; }
 
  protected:
+  void AddPriors(std::span<const double> parameters, Eigen::MatrixXd* sums) const;
+
   mutable int traces_ = 0;
+
+ private:
+  std::vector<PriorTerm> priors_;
 };
 
 /// The cost of a model with its start. `data` must outlive it. Friction and start are resolved here, once.

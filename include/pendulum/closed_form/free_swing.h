@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// A stretch of a recording in which nothing but gravity and friction moves the pendulum.
+struct FreeSwing {
+  double from = 0;            ///< s, on the file's clock: where its hold begins, or its first sample in motion.
+  double to = 0;              ///< s, on the file's clock
+  double half_period = 0;     ///< s, typical
+  double amplitude = 0;       ///< rad or rad/s: the largest distance of a turning point from its zero
+  std::vector<double> turns;  ///< s, its turning points
+  std::string begins;         ///< Why it begins there, to follow "begins: ".
+  std::string ends;           ///< Why it ends there, to follow "ends: ".
+  bool from_given = false;    ///< The user chose `from`.
+  bool to_given = false;      ///< The user chose `to`.
+  bool beats = false;         ///< The amplitude rises again and again, though it decays: no single pendulum does that.
+};
+
+/// The free swings of a recording in time order, found from its turning points alone.
+///
+/// A half swing is free when it crosses the zero, does not gain amplitude, and takes about as long as a pendulum's of
+/// its amplitude; a run of two or more is a swing. It begins with the hold before it, or where the motion towards its
+/// first turning point begins if that is no longer than a half swing, and after the fall when it was held within 20 deg
+/// of the upright, where a trajectory tells nothing about its release. It ends one period after the last motion that
+/// stands out of the noise, or before the amplitude grows again.
+///
+/// kFailedPrecondition: no free swing; the message says what the recording looks like instead: constant, no turning
+/// points, driven, or held at one angle after another.
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
+
+}  // namespace pendulum
