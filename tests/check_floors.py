@@ -32,7 +32,7 @@ LIBRARY_FLOORS = {
     "ceres": {"fitting"},
     "gflags": {"tools", "service"},
     "glog": {"tools", "service"},
-    "nlohmann": {"model", "report", "tools"},
+    "nlohmann": {"base", "recording", "model", "report", "tools"},
     "openssl": {"recording"},
 }
 # Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.

@@ -16,6 +16,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
@@ -87,78 +88,8 @@ bool Has(const Form& form, std::string_view key) { return std::ranges::find(form
 
 // ---- Messages ----------------------------------------------------------------------------------------------------
 
-/// No rig comes near it, and the JSON object looks keys up one by one.
-constexpr std::size_t kMostBytes = 65536;
-
 tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
   return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
-std::string Shown(const Json& value) {
-  if (value.is_string()) return Quoted(value.get_ref<const std::string&>());
-  if (value.is_structured()) return value.is_array() ? "an array" : "an object";
-  return value.dump();
-}
-
-// ---- From text to one JSON object that has every key once --------------------------------------------------------
-
-/// Watches the parser: which key of the outermost object is being read, and which key an object has twice.
-class KeyWatch {
- public:
-  void See(int depth, Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start) {
-      keys_.resize(std::max<std::size_t>(keys_.size(), depth + 1));
-      keys_[depth].clear();
-    } else if (event == Json::parse_event_t::key) {
-      const auto& key = parsed.get_ref<const std::string&>();
-      std::vector<std::string>& keys = keys_[depth - 1];
-      if (!repeated_ && std::ranges::find(keys, key) != keys.end()) repeated_ = key;
-      keys.push_back(key);
-    }
-  }
-
-  std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
-  const std::optional<std::string>& repeated() const { return repeated_; }
-
- private:
-  std::vector<std::vector<std::string>> keys_;  // Of the object open at each depth.
-  std::optional<std::string> repeated_;
-};
-
-/// The parser counts bytes; a person counts lines.
-tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, const Json::parse_error& error) {
-  const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
-  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the first line.
-  const std::string_view what = error.what();
-  const std::size_t dash = what.find(" - ");
-  std::string_view reason = dash == std::string_view::npos ? "syntax error" : what.substr(dash + 3);
-  reason = reason.substr(0, reason.find("; last read"));
-  return Error(StatusCode::kDataLoss, name + ":" + std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
-                                          std::to_string(before.size() - line_begin + 1) + ": this is not JSON (" +
-                                          std::string(reason) + "); correct it here");
-}
-
-Result<Json> ParseObject(std::string_view text, const std::string& name) {
-  if (text.size() > kMostBytes) return Fault(name, "this is longer than 64 KiB, so it is not a rig; name a rig file");
-  KeyWatch watch;
-  const auto see = [&watch](int depth, Json::parse_event_t event, const Json& parsed) {
-    watch.See(depth, event, parsed);
-    return true;
-  };
-  try {
-    Json rig = Json::parse(text, see);
-    if (!rig.is_object()) {
-      return Fault(name, "the rig is " + Shown(rig) + "; it must be an object: " + std::string(kFormsText));
-    }
-    if (watch.repeated()) {
-      return Fault(name, "the key " + Quoted(*watch.repeated()) + " is given twice; keep one of them");
-    }
-    return rig;
-  } catch (const Json::parse_error& error) {
-    return NotJson(text, name, error);
-  } catch (const Json::exception&) {  // A number overflows.
-    return Fault(name, Quoted(watch.outermost_key()) + " is beyond what a number can be (about 1e308); correct it");
-  }
 }
 
 // ---- From the object to numbers ----------------------------------------------------------------------------------
@@ -194,7 +125,8 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
 
 Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_zero, const std::string& name) {
   if (!json.is_number()) {
-    return Fault(name, key + " is " + Shown(json) + R"(; it must be a number or {"value": number, "std_dev": number})");
+    return Fault(name,
+                 key + " is " + ShownJson(json) + R"(; it must be a number or {"value": number, "std_dev": number})");
   }
   const auto number = json.get<double>();
   if (number > 0 || (number == 0 && may_be_zero)) return number;
@@ -234,7 +166,7 @@ bool IsUsable(const RigValue& value) {
 }  // namespace
 
 Result<Rig> ParseRig(std::string_view text, const std::string& name) {
-  Result<Json> source = ParseObject(text, name);
+  Result<Json> source = ParseJsonObject(text, name, "rig", kFormsText);
   if (!source) return tl::unexpected(std::move(source).error());
   const Result<Form> form = FindForm(*source, name);
   if (!form) return tl::unexpected(form.error());
@@ -260,7 +192,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
 }
 
 Result<Rig> ReadRig(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "rig", kMostBytes);
+  const Result<std::string> text = ReadFile(path, "rig", kMostJsonBytes);
   if (!text) return tl::unexpected(text.error());
   return ParseRig(*text, path.string());
 }

@@ -289,7 +289,7 @@ Result<std::string> Sha256(std::string_view bytes) {
 
 }  // namespace
 
-Result<Recording> ParseRecording(std::string_view text, const std::string& name) {
+Result<Recording> ParseRecording(std::string_view text, const std::string& name, const ReadOptions& /*options*/) {
   Result<Recording> recording = Reader(text, name).Read();
   if (!recording) return recording;
   Result<std::string> sha256 = Sha256(text);
@@ -298,11 +298,11 @@ Result<Recording> ParseRecording(std::string_view text, const std::string& name)
   return recording;
 }
 
-Result<Recording> ReadRecording(const std::filesystem::path& path) {
+Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
   const Result<std::string> bytes = ReadFile(path, "CSV", kMostBytes);
   if (!bytes) return tl::unexpected(bytes.error());
-  return ParseRecording(*bytes, path.string());
+  return ParseRecording(*bytes, path.string(), options);
 }
 
 }  // namespace pendulum

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/status.h"
+#include "pendulum/recording/sensor.h"
 
 namespace pendulum {
 
@@ -17,12 +18,6 @@ enum class Quantity { kAngle, kRate };
 /// The fewest samples that can be called a recording.
 inline constexpr int kMinimumSamples = 8;
 
-/// The interval a sensor can show, rad or rad/s; what lies beyond is shown as the nearest end.
-struct SensorRange {
-  double low;
-  double high;
-};
-
 /// One recording as the sensor saw it.
 ///
 /// Invariant, established by MakeRecording: N >= kMinimumSamples, every number finite, time strictly increasing.
@@ -30,12 +25,19 @@ struct Recording {
   std::string path;    ///< Where it came from, as the user named it; may be empty.
   std::string sha256;  ///< Of the bytes it was read from, lower-case hexadecimal; empty when it was not read.
   Quantity quantity = Quantity::kAngle;
-  std::string unit = "rad";  ///< Of the file's value column: rad, deg, rad/s or deg/s. `value` is SI all the same.
+  std::string unit = "rad";  ///< Of the file's value column: rad, deg, rad/s, deg/s, counts or volts.
   Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
-  Eigen::VectorXd value;     ///< N x 1, rad or rad/s.
-  double resolution = 0;     ///< Spacing of the values the sensor can give, rad or rad/s; 0 when unknown or none.
-  std::optional<SensorRange> range;  ///< What the sensor can show, rad or rad/s; none when unknown or unlimited.
-  std::vector<Warning> warnings;     ///< What was repaired or noticed while reading.
+  Eigen::VectorXd value;     ///< N x 1, rad or rad/s whatever the unit; counts or volts unless is_calibrated().
+  double resolution = 0;  ///< Spacing of the values the sensor can give, in the unit of value; 0 when unknown or none.
+  std::optional<SensorRange> range;        ///< What the sensor can show, in the unit of value; none when unlimited.
+  double clock_scale = 1;                  ///< True seconds in a second of the file's clock; not applied to `time`.
+  double clock_scale_std_dev = 0;          ///< Standard deviation of clock_scale.
+  std::optional<Calibration> calibration;  ///< What turned counts or volts into `value`.
+  std::string rig_json;                    ///< The rig that the file itself describes, as JSON; empty for none.
+  std::vector<Warning> warnings;           ///< What was repaired or noticed while reading.
+
+  /// False when `value` is in counts or volts for want of a calibration: an angle in an unknown unit.
+  bool is_calibrated() const { return calibration.has_value() || (unit != "counts" && unit != "volts"); }
 
   Eigen::Index size() const { return time.size(); }
 };

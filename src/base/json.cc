@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/base/json.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
+  return Error(StatusCode::kDataLoss, name + ": " + sentence);
+}
+
+/// Watches the parser: which key of the outermost object is being read, and which key an object has twice.
+class KeyWatch {
+ public:
+  void See(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) {
+      keys_.resize(std::max<std::size_t>(keys_.size(), depth + 1));
+      keys_[depth].clear();
+    } else if (event == Json::parse_event_t::key) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      std::vector<std::string>& keys = keys_[depth - 1];
+      if (!repeated_ && std::ranges::find(keys, key) != keys.end()) repeated_ = key;
+      keys.push_back(key);
+    }
+  }
+
+  std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
+  const std::optional<std::string>& repeated() const { return repeated_; }
+
+ private:
+  std::vector<std::vector<std::string>> keys_;  // Of the object open at each depth.
+  std::optional<std::string> repeated_;
+};
+
+/// The parser counts bytes; a person counts lines.
+tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, const Json::parse_error& error) {
+  const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
+  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the first line.
+  const std::string_view what = error.what();
+  const std::size_t dash = what.find(" - ");
+  std::string_view reason = dash == std::string_view::npos ? "syntax error" : what.substr(dash + 3);
+  reason = reason.substr(0, reason.find("; last read"));
+  return Error(StatusCode::kDataLoss, name + ":" + std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
+                                          std::to_string(before.size() - line_begin + 1) + ": this is not JSON (" +
+                                          std::string(reason) + "); correct it here");
+}
+
+}  // namespace
+
+Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std::string_view kind,
+                             std::string_view form) {
+  const std::string what(kind);
+  if (text.size() > kMostJsonBytes) {
+    return Fault(name, "this is longer than 64 KiB, so it is not a " + what + "; name a " + what + " file");
+  }
+  KeyWatch watch;
+  const auto see = [&watch](int depth, Json::parse_event_t event, const Json& parsed) {
+    watch.See(depth, event, parsed);
+    return true;
+  };
+  try {
+    Json json = Json::parse(text, see);
+    if (!json.is_object()) {
+      return Fault(name, "the " + what + " is " + ShownJson(json) + "; it must be an object: " + std::string(form));
+    }
+    if (watch.repeated()) {
+      return Fault(name, "the key " + Quoted(*watch.repeated()) + " is given twice; keep one of them");
+    }
+    return json;
+  } catch (const Json::parse_error& error) {
+    return NotJson(text, name, error);
+  } catch (const Json::exception&) {  // A number overflows.
+    return Fault(name, Quoted(watch.outermost_key()) + " is beyond what a number can be (about 1e308); correct it");
+  }
+}
+
+std::string ShownJson(const Json& value) {
+  if (value.is_string()) return Quoted(value.get_ref<const std::string&>());
+  if (value.is_structured()) return value.is_array() ? "an array" : "an object";
+  return value.dump();
+}
+
+}  // namespace pendulum

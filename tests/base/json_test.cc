@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/base/json.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::StartsWith;
+
+std::string FaultOf(const std::string& text) {
+  const auto json = ParseJsonObject(text, "a.json", "rig", R"({"mass"})");
+  EXPECT_FALSE(json.has_value()) << text;
+  if (json) return "";
+  EXPECT_EQ(json.error().code, StatusCode::kDataLoss);
+  return json.error().message;
+}
+
+TEST(ParseJsonObject, KeepsTheOrderOfTheKeys) {
+  const auto json = ParseJsonObject(R"( {"z": 1, "a": [2, {"z": 3}]} )", "a.json", "rig", "");
+  ASSERT_TRUE(json.has_value());
+  EXPECT_EQ(json->dump(), R"({"z":1,"a":[2,{"z":3}]})");
+}
+
+TEST(ParseJsonObject, SaysWhereTextIsNoJson) {
+  EXPECT_EQ(FaultOf("{\n\"a\": 1,\n}"),
+            "a.json:3:1: this is not JSON (unexpected '}'; expected string literal); correct it here");
+  EXPECT_THAT(FaultOf(""), StartsWith("a.json:1:1: this is not JSON"));
+}
+
+TEST(ParseJsonObject, RefusesWhatIsNoObject) {
+  EXPECT_EQ(FaultOf("[1]"), R"(a.json: the rig is an array; it must be an object: {"mass"})");
+}
+
+TEST(ParseJsonObject, RefusesAKeyThatAnyObjectHasTwice) {
+  EXPECT_EQ(FaultOf(R"({"a": {"b": 1, "b": 2}})"), R"(a.json: the key "b" is given twice; keep one of them)");
+}
+
+TEST(ParseJsonObject, RefusesNumbersBeyondThoseOfADouble) {
+  EXPECT_EQ(FaultOf(R"({"a": 1, "b": 1e999})"),
+            R"(a.json: "b" is beyond what a number can be (about 1e308); correct it)");
+}
+
+TEST(ParseJsonObject, RefusesMoreThan64KiB) {
+  EXPECT_EQ(FaultOf(std::string(kMostJsonBytes + 1, ' ')),
+            "a.json: this is longer than 64 KiB, so it is not a rig; name a rig file");
+}
+
+TEST(ShownJson, ShowsNumbersAndStringsAndOnlyTheKindOfTheRest) {
+  EXPECT_EQ(ShownJson(1.5), "1.5");
+  EXPECT_EQ(ShownJson("a\nb"), R"("a\x0ab")");
+  EXPECT_EQ(ShownJson(nullptr), "null");
+  EXPECT_EQ(ShownJson(nlohmann::ordered_json::array()), "an array");
+  EXPECT_EQ(ShownJson(nlohmann::ordered_json::object()), "an object");
+}
+
+}  // namespace
+}  // namespace pendulum
