@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <Eigen/QR>
@@ -27,7 +28,7 @@ struct HalfSwings {
   std::vector<Extremum> turns = {};
   std::vector<double> zero = {};       // at each turn
   std::vector<double> amplitude = {};  // of each turn
-  double half_period = 0;         // s, of a small swing
+  double half_period = 0;              // s, of a small swing
 
   std::size_t size() const { return turns.size() - 1; }
 
@@ -39,21 +40,21 @@ struct HalfSwings {
   }
 
   /// A rise or a band that noise explains.
-  double Tolerance(std::size_t turn) const {
-    return 0.05 * amplitude[turn] + 3 * noise + 2 * recording.resolution;
-  }
+  double Tolerance(std::size_t turn) const { return 0.05 * amplitude[turn] + 3 * noise + 2 * recording.resolution; }
 };
 
-/// The zero near each turn: the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over four turns to either side, so that it may
-/// drift.
+/// The zero near each turn: the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over four turns to either side, so that it
+/// may drift.
 std::vector<double> LocalZeros(const std::vector<Extremum>& turns) {
   constexpr std::ptrdiff_t kNeighbours = 4;
   const auto last = static_cast<std::ptrdiff_t>(turns.size()) - 2;
   std::vector<double> zeros;
   for (std::ptrdiff_t i = 0; i <= last + 1; ++i) {
-    const std::ptrdiff_t centre = std::clamp<std::ptrdiff_t>(i, std::min(1 + kNeighbours, last), std::max<std::ptrdiff_t>(last - kNeighbours, 1));
+    const std::ptrdiff_t centre =
+        std::clamp<std::ptrdiff_t>(i, std::min(1 + kNeighbours, last), std::max<std::ptrdiff_t>(last - kNeighbours, 1));
     std::vector<double> near;
-    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(centre - kNeighbours, 1); j <= std::min(centre + kNeighbours, last); ++j) {
+    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(centre - kNeighbours, 1);
+         j <= std::min(centre + kNeighbours, last); ++j) {
       near.push_back(0.25 * (turns[j - 1].value + 2 * turns[j].value + turns[j + 1].value));
     }
     zeros.push_back(Median(std::move(near)));
@@ -127,8 +128,8 @@ bool Slips(const HalfSwings& halves, std::size_t i) {
          (i + 1 == halves.size() || stays(SlipOf(halves, i + 1).deviation));
 }
 
-/// Whether the amplitude grows in half swing i and stays so: one turning point alone may be an outlier, and at the edges
-/// of a gap there are two that are none.
+/// Whether the amplitude grows in half swing i and stays so: one turning point alone may be an outlier, and at the
+/// edges of a gap there are two that are none.
 bool Gains(const HalfSwings& halves, std::size_t i, bool near_gap) {
   const auto amplitude = halves.amplitude.begin();
   const auto at = static_cast<std::ptrdiff_t>(i);
@@ -139,9 +140,25 @@ bool Gains(const HalfSwings& halves, std::size_t i, bool near_gap) {
   return after > before + halves.Tolerance(i);
 }
 
+/// Whether half swing i loses far more amplitude than those around it: it was braked.
+bool IsBraked(const HalfSwings& halves, std::size_t i) {
+  constexpr std::size_t kNeighbours = 4;
+  constexpr double kFarMore = 2.5;
+  std::vector<double> losses;
+  for (std::size_t j = i - std::min(i, kNeighbours); j < std::min(i + kNeighbours + 1, halves.size()); ++j) {
+    if (j != i) losses.push_back(halves.amplitude[j] - halves.amplitude[j + 1]);
+  }
+  if (losses.size() < kNeighbours) return false;
+  const double typical = std::max(Median(std::move(losses)), 0.0);
+  // One turning point alone may be an outlier.
+  const double after = i + 2 < halves.turns.size() ? std::max(halves.amplitude[i + 1], halves.amplitude[i + 2])
+                                                   : halves.amplitude[i + 1];
+  return halves.amplitude[i] - after > kFarMore * typical + halves.Tolerance(i);
+}
+
 Verdict Judge(const HalfSwings& halves, std::size_t i) {
-  const bool near_gap = HasGap(halves, i) || (i > 0 && HasGap(halves, i - 1)) ||
-                        (i + 1 < halves.size() && HasGap(halves, i + 1));
+  const bool near_gap =
+      HasGap(halves, i) || (i > 0 && HasGap(halves, i - 1)) || (i + 1 < halves.size() && HasGap(halves, i + 1));
   if (near_gap) return Gains(halves, i, true) ? Verdict::kGains : Verdict::kFree;
   const double zero = 0.5 * (halves.zero[i] + halves.zero[i + 1]);
   if ((halves.turns[i].value > zero) == (halves.turns[i + 1].value > zero)) return Verdict::kIrregular;
@@ -150,7 +167,8 @@ Verdict Judge(const HalfSwings& halves, std::size_t i) {
   constexpr double kLongest = 1.5;
   const double duration = RelativeDuration(halves, i);
   if (duration > kLongest) return Verdict::kFreeAfterHold;
-  return duration < kShortest || (i > 0 && Slips(halves, i)) ? Verdict::kIrregular : Verdict::kFree;
+  const bool irregular = duration < kShortest || (i > 0 && (Slips(halves, i) || IsBraked(halves, i)));
+  return irregular ? Verdict::kIrregular : Verdict::kFree;
 }
 
 /// A run of free half swings: turns [first, last].
@@ -197,6 +215,31 @@ struct Beginning {
   std::string why;
 };
 
+/// Whether samples [first, last] read one value: no creep beyond three standard deviations of noise, no more scatter
+/// than twice the noise.
+bool IsSteady(const HalfSwings& halves, Index first, Index last) {
+  const Recording& recording = halves.recording;
+  const Index count = last - first + 1;
+  Eigen::MatrixX2d basis(count, 2);
+  basis << Eigen::ArrayXd::Ones(count), Eigen::ArrayXd::LinSpaced(count, 0, 1);
+  const Eigen::VectorXd value = recording.value.segment(first, count);
+  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(value);
+  const double scatter = (value - basis * line).norm() / std::sqrt(static_cast<double>(count));
+  const double noise = std::max({halves.noise, recording.resolution, 1e-2 * halves.threshold});
+  return std::abs(line[1]) < 3 * noise && scatter < 2 * noise;
+}
+
+/// The end of a hold that is steady, or the moment it ends: a hand that moves holds nothing.
+Beginning SteadyPart(const HalfSwings& halves, Index first, Index last) {
+  constexpr Index kFewest = 8;
+  // The release lies somewhere within the band too.
+  const Index held = first + 7 * (last - first) / 10;
+  for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
+    if (IsSteady(halves, begin, held)) return {begin, "held, then released"};
+  }
+  return {last, "after the release: the hold before it is not steady"};
+}
+
 /// The hold that the first turn of a run lies in, if it is one: the reading stays near it for longer than a swing does.
 std::optional<Beginning> HoldBefore(const HalfSwings& halves, std::size_t turn) {
   const Recording& recording = halves.recording;
@@ -213,15 +256,16 @@ std::optional<Beginning> HoldBefore(const HalfSwings& halves, std::size_t turn) 
   const double natural = 0.25 * halves.half_period * halves.Stretch(turn);
   const double dwell = recording.time[LastWithin(recording, end, level, band)] - recording.time[begin];
   if (dwell < (rate ? 1.0 : 2.0) * natural || begin == end) return std::nullopt;
-  return Beginning{begin, "held, then released"};
+  return SteadyPart(halves, begin, LastWithin(recording, end, level, band));
 }
 
 /// After a fall from near the upright: the next turning point.
 std::optional<Beginning> AfterTheFall(const HalfSwings& halves, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   if (halves.recording.quantity != Quantity::kAngle || !(halves.amplitude[turn] > kUpright)) return std::nullopt;
-  return Beginning{halves.turns[turn + 1].sample, "after the fall from " + NumberText(halves.amplitude[turn] / kRadFromDeg, 3) +
-                               " deg, where the smallest push decides when it falls and the release tells nothing"};
+  return Beginning{halves.turns[turn + 1].sample,
+                   "after the fall from " + NumberText(halves.amplitude[turn] / kRadFromDeg, 3) +
+                       " deg, where the smallest push decides when it falls and the release tells nothing"};
 }
 
 Beginning Begin(const HalfSwings& halves, const Run& run) {
@@ -265,6 +309,15 @@ Index EndOfMotion(const HalfSwings& halves, Index sample, Index limit) {
   return end;
 }
 
+/// Whether the swing goes on after turn `last` as little as no friction would have it: the next turning point is
+/// missing though time was left for two.
+bool IsStopped(const HalfSwings& halves, std::size_t last, Index limit) {
+  if (last == 0) return false;
+  const double time_left = halves.recording.time[limit] - halves.turns[last].time;
+  const double next = halves.amplitude[last] - 1.5 * (halves.amplitude[last - 1] - halves.amplitude[last]);
+  return time_left > 3 * halves.half_period * halves.Stretch(last) && next > halves.threshold + halves.Tolerance(last);
+}
+
 /// How a swing ends.
 struct Ending {
   Index sample;
@@ -287,6 +340,7 @@ Ending End(const HalfSwings& halves, const Run& run) {
     }
     limit = LastWithin(recording, rest, recording.value[rest], band);
   }
+  if (IsStopped(halves, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};
   const Index end = EndOfMotion(halves, turn, limit);
   const double rest = recording.time[limit] - recording.time[end];
   if (rest <= 6 * halves.half_period) {
@@ -317,16 +371,82 @@ tl::unexpected<Status> NoSwing(const std::string& sentence) {
   return Error(StatusCode::kFailedPrecondition, sentence + "; choose a window of free swing with --from and --to");
 }
 
-/// Mean amplitude of the last third of the turns over that of the first.
-double Decay(const HalfSwings& halves) {
-  const auto third = static_cast<std::ptrdiff_t>(halves.amplitude.size() / 3);
-  double early = 0;
-  double late = 0;
-  for (std::ptrdiff_t i = 0; i < third; ++i) {
-    early += halves.amplitude[static_cast<std::size_t>(i)];
-    late += halves.amplitude[halves.amplitude.size() - 1 - static_cast<std::size_t>(i)];
+double MedianOf(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+  return Median(std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count)));
+}
+
+/// Median amplitude of the last third of turns [first, last] over that of the first.
+double Decay(const HalfSwings& halves, std::size_t first, std::size_t last) {
+  const std::size_t third = std::max<std::size_t>((last - first + 1) / 3, 1);
+  return MedianOf(halves.amplitude, last + 1 - third, third) / MedianOf(halves.amplitude, first, third);
+}
+
+/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors.
+bool Decays(const HalfSwings& halves, std::size_t first, std::size_t last) {
+  constexpr double kClearly = 0.95;
+  constexpr Index kFewest = 6;
+  const auto count = static_cast<Index>(last - first + 1);
+  if (count < kFewest || Decay(halves, first, last) < kClearly) return true;
+  const Eigen::VectorXd amplitude = Eigen::Map<const Eigen::VectorXd>(halves.amplitude.data() + first, count);
+  Eigen::MatrixX3d basis(count, 3);
+  const Eigen::ArrayXd index = Eigen::ArrayXd::LinSpaced(count, -1, 1);
+  // Turns to either side differ by what the zero is off.
+  basis << Eigen::ArrayXd::Ones(count), index,
+      Eigen::ArrayXd::NullaryExpr(count, [](Index i) { return i % 2 ? 1 : -1; });
+  const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(amplitude);
+  const double scatter = (amplitude - basis * c).norm() / std::sqrt(static_cast<double>(count - 3));
+  return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
+}
+
+/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more.
+double ShareOfClimbs(const HalfSwings& halves) {
+  constexpr std::size_t kFewest = 3;
+  std::size_t climbing = 0;
+  std::size_t low = 0;
+  std::size_t high = 0;
+  const auto close = [&] {
+    const bool climbs = halves.amplitude[high] > 1.1 * halves.amplitude[low] + halves.Tolerance(low);
+    if (climbs && high >= low + kFewest) climbing += high - low;
+  };
+  for (std::size_t i = 1; i < halves.turns.size(); ++i) {
+    if (halves.amplitude[i] >= halves.amplitude[high]) {
+      high = i;
+    } else if (halves.amplitude[i] < 0.95 * halves.amplitude[high] || halves.amplitude[i] < halves.amplitude[low]) {
+      close();
+      low = high = i;
+    }
   }
-  return late / early;
+  close();
+  return static_cast<double>(climbing) / static_cast<double>(halves.size());
+}
+
+/// What is no free swing though it turns again and again: an error, or a swing that beats.
+Result<std::optional<FreeSwing>> Unfree(const HalfSwings& halves, const std::vector<Run>& runs) {
+  constexpr double kMostClimbs = 0.2;
+  constexpr double kDecayed = 0.7;
+  constexpr std::size_t kFewest = 6;
+  const std::size_t turns = halves.turns.size();
+  const auto longest = std::ranges::max_element(runs, {}, [](const Run& run) { return run.last - run.first; });
+  const std::size_t free = longest == runs.end() ? 0 : longest->last - longest->first + 1;
+  const bool climbs = ShareOfClimbs(halves) > kMostClimbs;
+  if (!climbs && 2 * free >= turns) {
+    if (Decays(halves, longest->first, longest->last)) return std::nullopt;
+    return NoSwing("the amplitude does not decay over " + std::to_string(free - 1) +
+                   " half swings: the pendulum is driven, or its friction is too small to see");
+  }
+  const double largest = *std::ranges::max_element(halves.amplitude);
+  const bool scattered = 3 * free < turns && (free < kFewest || halves.amplitude[longest->first] < 0.5 * largest);
+  if (!climbs && !scattered) return std::nullopt;
+  if (Decay(halves, 0, turns - 1) > kDecayed) {
+    if (climbs) return NoSwing("the amplitude climbs again and again and does not decay: the pendulum is driven");
+    return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
+                   " follow each other as a free swing's do, in equal times and with less and "
+                   "less amplitude: the pendulum was moved by hand or motor, or held at one angle after another");
+  }
+  FreeSwing swing = MakeSwing(halves, {0, turns - 1});
+  swing.beats = true;
+  return swing;
 }
 
 }  // namespace
@@ -340,11 +460,12 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
   std::vector<Verdict> verdicts;
   for (std::size_t i = 0; i < halves.size(); ++i) verdicts.push_back(Judge(halves, i));
   const std::vector<Run> runs = FreeRuns(halves, verdicts);
-  if (std::getenv("TRIM")) for (std::size_t i = 0; i < halves.size(); ++i) if (verdicts[i] != Verdict::kFree) fprintf(stderr, "verdict %d at %g amp %g %g dur %g\n", (int)verdicts[i], halves.turns[i].time, halves.amplitude[i], halves.amplitude[i+1], RelativeDuration(halves, i));
+  const Result<std::optional<FreeSwing>> unfree = Unfree(halves, runs);
+  if (!unfree) return tl::unexpected(unfree.error());
+  if (*unfree) return std::vector<FreeSwing>{**unfree};
   std::vector<FreeSwing> swings;
   for (const Run& run : runs) swings.push_back(MakeSwing(halves, run));
-  if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude");
-  (void)Decay;
+  if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude and cross the zero");
   return swings;
 }
 

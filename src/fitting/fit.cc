@@ -29,13 +29,30 @@ bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution)
 /// Takes whole turns out of the zero, which a search near the top may have put in: the same readings with the zero next
 /// to that of the turning points.
 void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
-  const std::size_t zero = problem.infos.size() - 1;
+  const std::size_t zero = problem.zero();
   const std::size_t angle = problem.solve.last_friction + 1;
   if (problem.model.gravity != Gravity::kSine || problem.data.quantity != Quantity::kAngle) return;
   if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
   const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
   solution.parameters[zero] -= 2 * kPi * turns;
   solution.parameters[angle] += 2 * kPi * turns;
+}
+
+/// Solves again with the priors' weights for the noise that the residuals show, until it stays the same.
+void WeighPriors(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostRounds = 20;
+  constexpr double kSame = 1e-4;
+  const auto freedom = static_cast<double>(problem.data.time.size() - problem.infos.size());
+  double noise = 1;  // in units of data.scale
+  for (int round = 0; !problem.priors.empty() && solution.usable && round < kMostRounds; ++round) {
+    const double sum = solution.sum - cost.PriorSum(solution.parameters);
+    const double before = std::exchange(noise, std::sqrt(std::max(sum, 0.0) / freedom));
+    if (std::abs(noise - before) <= kSame * noise) break;
+    std::vector<PriorTerm> priors = problem.priors;
+    for (PriorTerm& prior : priors) prior.weight *= noise;
+    cost.set_priors(std::move(priors));
+    solution = Continue(cost, solution, problem.solve);
+  }
 }
 
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
@@ -47,8 +64,10 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
   const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
+  cost.set_priors(problem.priors);
   Solution solution = Search(cost, problem.data, guess, problem.solve);
   TakeTurnsOut(problem, solution);
+  WeighPriors(cost, problem, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureAccuracy(cost, tolerance, solution);
     if (solution.trace_error <= max_error || refinement == kMostRefinements) break;

@@ -41,33 +41,76 @@ std::string Range(const FitProblem& problem, std::size_t i) {
   return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
 }
 
-/// Puts a fixed value in, in the units of the problem; refuses one that the parameter cannot have.
-Result<void> FixParameter(double value, std::size_t i, FitProblem& problem) {
-  const double internal = (value - problem.offset[i]) / problem.si_per_internal[i];
+/// Index of a parameter that an option names; `what` the option does, for the message.
+Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& name, const std::string& what) {
+  const auto info = std::ranges::find(problem.infos, name, &ParameterInfo::name);
+  if (info != problem.infos.end()) return static_cast<std::size_t>(info - problem.infos.begin());
+  return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" + name +
+                                                 "' to " + what + " with this start; it has " +
+                                                 NameList(problem.infos));
+}
+
+double Internal(const FitProblem& problem, std::size_t i, double value) {
+  return (value - problem.offset[i]) / problem.si_per_internal[i];
+}
+
+/// Begins parameter i at a value; refuses one that it cannot have.
+Result<void> BeginAt(double value, std::size_t i, const std::string& what, FitProblem& problem) {
+  const double internal = Internal(problem, i, value);
   const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
   const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
   if (!std::isfinite(internal) || outside || too_small) {
-    return Error(StatusCode::kInvalidArgument, std::string(problem.infos[i].name) + " cannot be fixed at " +
+    return Error(StatusCode::kInvalidArgument, std::string(problem.infos[i].name) + " cannot be " + what + " " +
                                                    NumberText(value) + "; it must be " + Range(problem, i));
   }
   problem.first_guess[i] = internal;
-  problem.solve.fixed[i] = true;
   return {};
 }
 
-Result<void> FixParameters(const ParameterValues& fixed, FitProblem& problem) {
-  for (const auto& entry : fixed) {
-    const auto info =
-        std::find_if(problem.infos.begin(), problem.infos.end(), [&](const auto& i) { return i.name == entry.first; });
-    if (info == problem.infos.end()) {
-      return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" +
-                                                     entry.first + "' to fix with this start; it has " +
-                                                     NameList(problem.infos));
+Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
+  for (const auto& [name, range] : bounds) {
+    const Result<std::size_t> i = FindParameter(problem, name, "bound");
+    if (!i) return tl::unexpected(i.error());
+    double& lower = problem.solve.lower[*i];
+    double& upper = problem.solve.upper[*i];
+    const double most = std::max(Internal(problem, *i, range.lower), lower);
+    const double least = std::min(Internal(problem, *i, range.upper), upper);
+    if (!(most < least)) {
+      return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " leave it no value; it must be " +
+                                                     Range(problem, *i) + ", and may be fixed with --fix");
     }
-    const auto i = static_cast<std::size_t>(info - problem.infos.begin());
-    if (Result<void> done = FixParameter(entry.second, i, problem); !done) return done;
+    lower = most;
+    upper = least;
+    problem.first_guess[*i] = std::clamp(problem.first_guess[*i], lower, upper);
   }
   return {};
+}
+
+Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
+  for (const auto& [name, prior] : priors) {
+    const Result<std::size_t> i = FindParameter(problem, name, "give a prior");
+    if (!i) return tl::unexpected(i.error());
+    const double scale = problem.si_per_internal[*i];
+    problem.priors.push_back({static_cast<int>(*i), Internal(problem, *i, prior.mean), scale / prior.std_dev});
+  }
+  return {};
+}
+
+/// Puts the user's bounds, start values, fixed values and priors in.
+Result<void> ApplyOptions(const FitOptions& options, FitProblem& problem) {
+  if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
+  for (const auto& [name, value] : options.initial) {
+    const Result<std::size_t> i = FindParameter(problem, name, "begin");
+    if (!i) return tl::unexpected(i.error());
+    if (Result<void> done = BeginAt(value, *i, "begun at", problem); !done) return done;
+  }
+  for (const auto& [name, value] : options.fixed) {
+    const Result<std::size_t> i = FindParameter(problem, name, "fix");
+    if (!i) return tl::unexpected(i.error());
+    if (Result<void> done = BeginAt(value, *i, "fixed at", problem); !done) return done;
+    problem.solve.fixed[*i] = true;
+  }
+  return ApplyPriors(options.priors, problem);
 }
 
 /// Bounds in the units of the problem: those of the parameters, and the hold for the release.
@@ -93,9 +136,31 @@ TrajectoryData MakeData(const Recording& recording, const StartValues& start) {
   return data;
 }
 
+/// The recording with seconds that last a second.
+Recording TrueTime(Recording recording) {
+  const double first = recording.time[0];
+  if (recording.clock_scale != 1) {
+    recording.time = first + recording.clock_scale * (recording.time.array() - first);
+  }
+  return recording;
+}
+
+tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  return Error(StatusCode::kDataLoss,
+               where + "the readings are in " + recording.unit + " and model " + std::string(model.name) +
+                   " needs an angle; calibrate first (--calibration), or fit --model linear, whose period and damping "
+                   "need none");
+}
+
+bool NamesDrift(const FitOptions& options) {
+  const auto names = [](const auto& map) { return map.contains(kZeroDrift.name) || map.contains(kBiasDrift.name); };
+  return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+}
+
 }  // namespace
 
-std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity) {
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, bool drifts) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);
   if (start == StartKind::kRelease) {
     infos.insert(infos.end(), {kReleaseAngle, kReleaseTime});
@@ -103,13 +168,17 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
     infos.insert(infos.end(), {kInitialAngle, kInitialRate});
   }
   infos.push_back(quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
+  if (drifts) infos.push_back(quantity == Quantity::kAngle ? kZeroDrift : kBiasDrift);
   return infos;
 }
 
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
-  const Result<MotionModel> model = FindMotionModel(options.model);
+  Result<MotionModel> model = FindMotionModel(options.model);
   if (!model) return tl::unexpected(model.error());
-  const Result<StartValues> start = EstimateStartValues(recording, *model, options.start);
+  model->gravity = options.gravity.value_or(model->gravity);
+  if (!recording.is_calibrated() && model->gravity == Gravity::kSine) return NeedsCalibration(recording, *model);
+  const Recording timed = TrueTime(recording);
+  const Result<StartValues> start = EstimateStartValues(timed, *model, options.start);
   if (!start)
     return Error(start.error().code,
                  recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
@@ -117,13 +186,19 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   FitProblem problem;
   problem.model = *model;
   problem.start = *start;
-  problem.infos = FitParameters(*model, start->start, recording.quantity);
-  problem.first_guess = start->parameters;
-  problem.data = MakeData(recording, *start);
+  const bool drifts = NamesDrift(options);
+  problem.infos = FitParameters(*model, start->start, recording.quantity, drifts);
+  if (drifts) problem.start.parameters.push_back(0);
+  problem.first_guess = problem.start.parameters;
+  problem.data = MakeData(timed, *start);
+  problem.data.drifts = drifts;
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   for (const ParameterInfo& info : problem.infos) {
-    problem.si_per_internal.push_back(info.scales_with_gravity() ? gravity_torque : 1.0);
-    problem.offset.push_back(info.name == kReleaseTime.name ? recording.time[0] : 0.0);
+    const bool is_release = info.name == kReleaseTime.name;
+    problem.si_per_internal.push_back(is_release                   ? 1 / recording.clock_scale
+                                      : info.scales_with_gravity() ? gravity_torque
+                                                                   : 1.0);
+    problem.offset.push_back(is_release ? recording.time[0] : 0.0);
   }
   SetBounds(problem);
   problem.solve.fixed.assign(problem.infos.size(), false);
@@ -132,7 +207,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.solve.max_iterations = options.max_iterations;
   problem.solve.max_traces = kMostTraces;
-  if (const Result<void> fixed = FixParameters(options.fixed, problem); !fixed) return tl::unexpected(fixed.error());
+  if (const Result<void> applied = ApplyOptions(options, problem); !applied) return tl::unexpected(applied.error());
   return problem;
 }
 

@@ -5,30 +5,24 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/fitting/not_a_pendulum.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
 namespace {
 
-/// Every so many-th sample, for fits that only compare windows.
-Recording Thinned(Recording recording) {
-  constexpr Eigen::Index kMostSamples = 5000;
-  const Eigen::Index stride = (recording.size() + kMostSamples - 1) / kMostSamples;
-  if (stride <= 1) return recording;
-  const Eigen::Index count = (recording.size() + stride - 1) / stride;
-  recording.time = recording.time(Eigen::seqN(0, count, stride)).eval();
-  recording.value = recording.value(Eigen::seqN(0, count, stride)).eval();
-  return recording;
-}
+/// So many samples are enough to compare windows.
+constexpr Eigen::Index kMostSamples = 5000;
 
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
  public:
-  WindowTrials(const Recording& recording, const FitOptions& options) : recording_(Thinned(recording)) {
+  WindowTrials(const Recording& recording, const FitOptions& options) : recording_(Thinned(recording, kMostSamples)) {
     options_.model = options.model == "linear" ? "linear" : "drag";
     options_.start = options.start;
   }
@@ -89,7 +83,8 @@ std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps
     const auto [from, to] = window(less);
     const auto [inner_from, inner_to] = window(more);
     const double allowed = kDisturbed + kInexact * static_cast<double>(more - less - 1);
-    return trials.Rms(from, to, inner_from, inner_to) <= allowed * trials.Rms(inner_from, inner_to, inner_from, inner_to);
+    return trials.Rms(from, to, inner_from, inner_to) <=
+           allowed * trials.Rms(inner_from, inner_to, inner_from, inner_to);
   };
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool enough = std::all_of(steps.begin() + static_cast<std::ptrdiff_t>(i) + 1, steps.end(),
@@ -113,48 +108,146 @@ void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swin
   WindowTrials trials(recording, options);
   const std::vector<double> turns = InnerTurns(swing);
   const std::vector<std::size_t> steps = Steps(turns.size());
-  if (!swing.from_given) {
-    const std::size_t k = LeaveOut(trials, steps, [&](std::size_t left_out) {
-      return std::pair(left_out == 0 ? swing.from : turns[left_out - 1], swing.to);
-    });
-    if (k > 0) {
-      swing.begins = "what is before it does not fit what follows: a hand, or another disturbance";
-      swing.from = turns[k - 1];
-    }
+  const auto without_first = [&](std::size_t k) { return std::pair(k == 0 ? swing.from : turns[k - 1], swing.to); };
+  const auto without_last = [&](std::size_t k) {
+    return std::pair(swing.from, k == 0 ? swing.to : turns[turns.size() - k]);
+  };
+  if (const std::size_t k = swing.from_given ? 0 : LeaveOut(trials, steps, without_first); k > 0) {
+    swing.from = turns[k - 1];
+    swing.begins = "what is before it does not fit what follows: a hand, or another disturbance";
   }
-  if (!swing.to_given) {
-    const std::size_t k = LeaveOut(trials, steps, [&](std::size_t left_out) {
-      return std::pair(swing.from, left_out == 0 ? swing.to : turns[turns.size() - left_out]);
-    });
-    if (k > 0) {
-      swing.ends = "what follows it does not fit what is before: a hand, or another disturbance";
-      swing.to = turns[turns.size() - k];
-    }
+  if (const std::size_t k = swing.to_given ? 0 : LeaveOut(trials, steps, without_last); k > 0) {
+    swing.to = turns[turns.size() - k];
+    swing.ends = "what follows it does not fit what is before: a hand, or another disturbance";
   }
 }
 
-bool Lacks(const FitReport& fit) {
-  return std::ranges::any_of(fit.warnings, [](const Warning& warning) { return warning.code == "lack_of_fit"; }) ||
-         fit.termination != Termination::kConverged;
+bool HasWarning(const FitReport& fit, std::string_view code) {
+  return std::ranges::any_of(fit.warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+Result<SwingFit> FitBetween(const Recording& recording, const FreeSwing& swing, const FitOptions& options) {
+  Result<Recording> used = SelectWindow(recording, swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  used->warnings.clear();
+  Result<FitReport> fit = FitRecording(*used, options);
+  if (!fit) return tl::unexpected(fit.error());
+  return SwingFit{*std::move(used), swing, *std::move(fit)};
+}
+
+/// Ends the window earlier until the fit converges: near a stop it may have no minimum.
+Result<SwingFit> EndEarlier(const Recording& recording, SwingFit result, const FitOptions& options) {
+  const std::vector<double> turns = InnerTurns(result.swing);
+  for (const std::size_t k : Steps(turns.size())) {
+    if (k == 0) continue;
+    FreeSwing shorter = result.swing;
+    shorter.to = turns[turns.size() - k];
+    shorter.ends = "with what follows it the fit does not converge";
+    Result<SwingFit> trial = FitBetween(recording, shorter, options);
+    if (trial && trial->fit.termination == Termination::kConverged) return trial;
+  }
+  return result;
+}
+
+/// A pendulum's errors are none of something else.
+void Withdraw(const std::string& why, FitReport& fit) {
+  fit.termination = Termination::kNotConverged;
+  fit.reason = "this is not a free pendulum's swing: " + why;
+  fit.warnings.push_back({"not_a_pendulum", fit.reason});
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+    if (!parameter.fixed) parameter.reason = "not a pendulum";
+  }
+  for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
+  fit.covariance_names.clear();
+  fit.covariance.resize(0, 0);
+}
+
+std::optional<std::string> WhyNoPendulum(const SwingFit& result) {
+  if (result.swing.beats) return "its amplitude grows again and again, as that of two pendulums that are coupled does";
+  return WhyLinear(result.used, result.fit);
+}
+
+/// The swing's window as FindFreeSwings would have it, for ends that the user chose.
+FreeSwing GivenSwing(const Recording& part) {
+  FreeSwing swing;
+  swing.from = part.time[0];
+  swing.to = part.time[part.size() - 1];
+  swing.from_given = swing.to_given = true;
+  swing.begins = swing.ends = "as asked";
+  return swing;
 }
 
 }  // namespace
 
-Result<SwingFit> FitSwing(const Recording& recording, FreeSwing swing, const FitOptions& options) {
-  Result<Recording> used = SelectWindow(recording, swing.from, swing.to);
-  if (!used) return tl::unexpected(used.error());
-  Result<FitReport> fit = FitRecording(*used, options);
-  if (fit && Lacks(*fit)) {
-    const FreeSwing whole = swing;
-    Trim(*used, options, swing);
-    if (swing.from != whole.from || swing.to != whole.to) {
-      used = SelectWindow(recording, swing.from, swing.to);
-      if (!used) return tl::unexpected(used.error());
-      fit = FitRecording(*used, options);
-    }
+Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice) {
+  const Result<Recording> part = SelectWindow(recording, choice.from, choice.to);
+  if (!part) return tl::unexpected(part.error());
+  const bool from_given = !std::isnan(choice.from);
+  const bool to_given = !std::isnan(choice.to);
+  if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
+  Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
+  if (!found) {
+    const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+    return Error(found.error().code, where + found.error().message);
   }
-  if (!fit) return tl::unexpected(fit.error());
-  return SwingFit{*std::move(used), std::move(swing), *std::move(fit)};
+  ChosenSwings swings{*std::move(found), {}};
+  const auto count = static_cast<int>(swings.found.size());
+  if (choice.release > count) {
+    return Error(StatusCode::kInvalidArgument, "there is no free swing " + std::to_string(choice.release) +
+                                                   " in the recording; it has " + std::to_string(count));
+  }
+  if (choice.release == SwingChoice::kAll) {
+    for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
+    return swings;
+  }
+  const auto longest =
+      std::ranges::max_element(swings.found, {}, [](const FreeSwing& swing) { return swing.to - swing.from; });
+  // An end that the user gave belongs to the swing next to it.
+  int k = from_given ? 1 : to_given ? count : static_cast<int>(longest - swings.found.begin()) + 1;
+  if (choice.release > 0) k = choice.release;
+  FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
+  if (from_given && choice.release == SwingChoice::kLongest) {
+    swing.from = part->time[0];
+    swing.from_given = true;
+    swing.begins = "as asked";
+  }
+  if (to_given && choice.release == SwingChoice::kLongest) {
+    swing.to = part->time[part->size() - 1];
+    swing.to_given = true;
+    swing.ends = "as asked";
+  }
+  swings.chosen = {k};
+  return swings;
+}
+
+Result<SwingFit> FitSwing(const Recording& recording, FreeSwing swing, const FitOptions& options) {
+  Result<SwingFit> result = FitBetween(recording, swing, options);
+  if (!result) return result;
+  const auto lacks = [&] {
+    return result->fit.termination != Termination::kConverged || HasWarning(result->fit, "lack_of_fit") ||
+           HasWarning(result->fit, "correlated_residuals");
+  };
+  if (!lacks()) return result;
+  if (const auto why = WhyNoPendulum(*result)) {
+    Withdraw(*why, result->fit);
+    return result;
+  }
+  Trim(result->used, options, swing);
+  const bool disturbed = swing.from != result->swing.from || swing.to != result->swing.to;
+  if (disturbed) result = FitBetween(recording, swing, options);
+  if (!result) return result;
+  if (result->fit.termination != Termination::kConverged && !swing.to_given) {
+    result = EndEarlier(recording, *std::move(result), options);
+  }
+  if (disturbed) {
+    result->fit.warnings.push_back(
+        {"disturbed", "left out as disturbed: the window begins at " + NumberText(result->swing.from, 4) +
+                          " s and ends at " + NumberText(result->swing.to, 4) +
+                          " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
+  }
+  if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit) : std::nullopt) Withdraw(*why, result->fit);
+  return result;
 }
 
 }  // namespace pendulum

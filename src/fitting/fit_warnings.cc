@@ -5,7 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include <Eigen/QR>
+
 #include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
 #include "pendulum/closed_form/extrema.h"
 
 namespace pendulum {
@@ -41,6 +44,41 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, std:
                                          "model does not describe everything in this recording (look at --residuals, "
                                          "try another model or window), and " +
                                          consequence});
+}
+
+/// Line through the mean residuals of whole periods, which the swing itself leaves alone.
+void WarnOfDrift(const Recording& recording, const FitProblem& problem, const FitReport& report,
+                 std::vector<Warning>& warnings) {
+  constexpr Eigen::Index kFewest = 5;
+  constexpr double kSure = 5;  // standard errors
+  if (problem.data.drifts) return;
+  const Eigen::VectorXd& time = recording.time;
+  const double period = 2 * kPi / (problem.start.natural_frequency * recording.clock_scale);
+  std::vector<double> when, mean;
+  for (Eigen::Index first = 0; first < time.size();) {
+    Eigen::Index end = first;
+    while (end < time.size() && time[end] - time[first] < period) ++end;
+    if (end < time.size()) {
+      when.push_back(time.segment(first, end - first).mean());
+      mean.push_back(report.residual.segment(first, end - first).mean());
+    }
+    first = end;
+  }
+  const auto count = static_cast<Eigen::Index>(when.size());
+  if (count < kFewest) return;
+  const Eigen::Map<const Eigen::VectorXd> y(mean.data(), count);
+  Eigen::MatrixX2d basis(count, 2);
+  basis << Eigen::VectorXd::Ones(count), Eigen::Map<const Eigen::VectorXd>(when.data(), count).array() - when.front();
+  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(y);
+  const double scatter = (y - basis * line).norm() / std::sqrt(static_cast<double>(count - 2));
+  const double spread = (basis.col(1).array() - basis.col(1).mean()).matrix().norm();
+  if (!(std::abs(line[1]) * spread > kSure * scatter)) return;
+  const bool angle = recording.quantity == Quantity::kAngle;
+  const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
+  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " +
+                                        NumberText(line[1] * (when.back() - when.front()), 2) +
+                                        (angle ? " rad" : " rad/s") + " over the window; --init " + name +
+                                        "=0 makes the drift a parameter of the fit"});
 }
 
 /// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
@@ -120,6 +158,7 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
   std::vector<Warning> warnings;
   WarnOfSaturation(recording, warnings);
   if (correlated) WarnOfCorrelation(recording, report, warnings);
+  if (correlated) WarnOfDrift(recording, problem, report, warnings);
   WarnOfQuietSensor(recording, report, warnings);
   WarnOfTraceAccuracy(report, warnings);
   if (report.termination != Termination::kConverged) return warnings;

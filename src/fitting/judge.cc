@@ -47,7 +47,7 @@ std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost
   optimum.inverse = InvertInformation(optimum.information, optimum.free);
   const auto samples = static_cast<double>(problem.data.time.size());
   optimum.freedom = std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
-  optimum.variance = solution.sum / optimum.freedom;
+  optimum.variance = (solution.sum - cost.PriorSum(solution.parameters)) / optimum.freedom;
   return optimum;
 }
 
@@ -166,23 +166,38 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   }
 }
 
+/// The power of a unit of time in a parameter: that of the clock's scale in its estimate.
+int PowerOfTime(const ParameterInfo& info) {
+  if (info.name == kInitialRate.name) return -1;
+  if (!info.scales_with_gravity()) return 0;
+  return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
+}
+
+/// What the rig's gravity torque and the clock's scale leave open: both multiply the parameter (MODEL.md eq. (24)).
+std::optional<double> SystematicError(const Recording& recording, const FitOptions& options,
+                                      const ParameterEstimate& parameter) {
+  double relative = PowerOfTime(parameter.info) * recording.clock_scale_std_dev / recording.clock_scale;
+  if (options.rig && parameter.info.scales_with_gravity()) {
+    const RigValue& torque = options.rig->gravity_torque;
+    relative = std::hypot(relative, torque.std_dev / torque.value);
+  }
+  if (relative == 0) return std::nullopt;
+  return std::abs(parameter.estimate * relative);
+}
+
 /// Value, unit and flags of parameter i, without its errors.
-ParameterEstimate MakeEstimate(const FitOptions& options, const FitProblem& problem, const Solution& solution,
-                               std::size_t i) {
+ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                               const Solution& solution, std::size_t i) {
   ParameterEstimate parameter;
   parameter.info = problem.infos[i];
   parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
   const auto reported = [&](double internal) { return problem.si_per_internal[i] * internal + problem.offset[i]; };
   parameter.estimate = reported(solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];
-  const bool is_state = parameter.info.name == kInitialAngle.name || parameter.info.name == kInitialRate.name;
-  if (!is_state && !parameter.fixed) parameter.closed_form = reported(problem.start.parameters[i]);
-  if (options.rig && parameter.info.scales_with_gravity() && !parameter.fixed) {
-    const RigValue& torque = options.rig->gravity_torque;
-    if (torque.std_dev > 0) {
-      parameter.systematic_std_error = std::abs(parameter.estimate) * torque.std_dev / torque.value;
-    }
-  }
+  const auto is_one_of = [&](auto... infos) { return ((parameter.info.name == infos.name) || ...); };
+  const bool has_closed_form = !is_one_of(kInitialAngle, kInitialRate, kZeroDrift, kBiasDrift);
+  if (has_closed_form && !parameter.fixed) parameter.closed_form = reported(problem.start.parameters[i]);
+  if (!parameter.fixed) parameter.systematic_std_error = SystematicError(recording, options, parameter);
   return parameter;
 }
 
@@ -204,11 +219,11 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, const Solution
   parameter.upper95 = parameter.estimate + t95 * *parameter.std_error;
 }
 
-void SetParameters(const FitOptions& options, const FitProblem& problem, const Optimum& optimum,
-                   const Solution& solution, FitReport& report) {
+void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                   const Optimum& optimum, const Solution& solution, FitReport& report) {
   const double t95 = boost::math::quantile(boost::math::students_t(optimum.freedom), 0.975);
   for (int i = 0; i < static_cast<int>(problem.infos.size()); ++i) {
-    ParameterEstimate parameter = MakeEstimate(options, problem, solution, static_cast<std::size_t>(i));
+    ParameterEstimate parameter = MakeEstimate(recording, options, problem, solution, static_cast<std::size_t>(i));
     parameter.at_bound = std::find(optimum.at_bound.begin(), optimum.at_bound.end(), i) != optimum.at_bound.end();
     if (parameter.fixed) {
       parameter.reason = "fixed";
@@ -257,7 +272,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
     report.reason =
         "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
         "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
-    SetParameters(options, problem, Optimum{}, solution, report);
+    SetParameters(recording, options, problem, Optimum{}, solution, report);
     return report;
   }
   report.fitted = solution.readings;
@@ -266,9 +281,12 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.noise = {problem.data.scale * std::sqrt(optimum->variance), Lag1Correlation(report.residual)};
   report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum->free.size()), recording.resolution);
   const TraceSummary trace = cost.Trace(solution.parameters);
-  const bool correlated = !IsRounding(recording, report) && FollowEachOther(report.residual, PeriodLags(problem));
+  const bool correlated = !IsRounding(recording, report) &&
+                          (FollowEachOther(report.residual, PeriodLags(problem)) ||
+                           SwingAlong(recording.time, report.fitted, report.residual,
+                                      2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
   SetTermination(recording, problem, *optimum, correlated, OnKink(problem, trace, solution), report);
-  SetParameters(options, problem, *optimum, solution, report);
+  SetParameters(recording, options, problem, *optimum, solution, report);
   SetDerived(problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) SetCovariance(problem, *optimum, report);
   report.warnings = FitWarnings(recording, problem, solution, trace, correlated, report);

@@ -45,8 +45,9 @@ void Unwrap(Recording& recording) {
   if (jumps == 0) return;
   recording.range.reset();  // of an angle within a turn
   recording.warnings.push_back(
-      {"unwrapped", std::to_string(jumps) +
-                        " jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued"});
+      {"unwrapped",
+       std::to_string(jumps) +
+           " jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued"});
 }
 
 /// Keeps the samples that are marked, and nothing else.
@@ -62,50 +63,93 @@ void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
   recording.value.conservativeResize(count);
 }
 
-/// The least step that readings make: their resolution, or what a tenth of the changes stays below.
-double LeastStep(const Recording& recording) {
+/// The least step that readings make: their resolution, or what a share of the changes stays below.
+double LeastStep(const Recording& recording, double share) {
   std::vector<double> steps;
   for (Index i = 1; i < recording.size(); ++i) {
     const double step = std::abs(recording.value[i] - recording.value[i - 1]);
     if (step > 0) steps.push_back(step);
   }
   if (steps.empty()) return recording.resolution;
-  const auto tenth = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
-  std::nth_element(steps.begin(), tenth, steps.end());
-  return std::max(*tenth, recording.resolution);
+  const auto least = steps.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(steps.size()));
+  std::nth_element(steps.begin(), least, steps.end());
+  return std::max(*least, recording.resolution);
 }
 
-/// Leaves out readings that repeat the one before while those around them move on: where a tracker repeats most of its
-/// values all of them, else only three and more in a row.
-void LeaveOutStale(double least_step, Recording& recording) {
-  constexpr Index kReach = 4;
-  constexpr double kMoves = 3;  // least steps from one sample to the next
-  constexpr double kMostly = 0.25;
-  constexpr Index kFewestInARow = 3;
+/// A row only where the value changes: steps of one size, never none, at uneven times.
+void NoticeEvents(double least_step, Recording& recording) {
+  constexpr double kSame = 1e-3;
+  constexpr double kMostly = 0.3;
+  constexpr double kNever = 0.002;
+  constexpr double kUneven = 1.5;
+  double single = 0;
+  double none = 0;
+  std::vector<double> intervals;
+  for (Index i = 1; i < recording.size(); ++i) {
+    const double step = std::abs(recording.value[i] - recording.value[i - 1]);
+    single += std::abs(step - least_step) < kSame * least_step ? 1 : 0;
+    none += step == 0 ? 1 : 0;
+    intervals.push_back(recording.time[i] - recording.time[i - 1]);
+  }
+  const auto steps = static_cast<double>(intervals.size());
+  std::ranges::sort(intervals);
+  const bool uneven = intervals[intervals.size() * 9 / 10] > kUneven * intervals[intervals.size() / 10];
+  if (!uneven || single < kMostly * steps || none > kNever * steps) return;
+  recording.warnings.push_back(
+      {"event_driven",
+       "a row stands only where the value changes: the angle then is at the edge of its count, not in the middle, half "
+       "a "
+       "count early all along, and the error bars know nothing of it; record at even times if you can"});
+}
+
+/// Readings that only repeat the one before while those around them change by many least steps: at all, and in one
+/// direction.
+struct Repeats {
+  std::vector<bool> amid_change;
+  std::vector<bool> amid_motion;
+  Index changing = 0;
+  Index repeated = 0;
+};
+
+Repeats FindRepeats(double least_step, const Recording& recording) {
+  constexpr Index kReach = 6;
+  constexpr double kChange = 12;  // least steps in all
+  constexpr double kMotion = 3;   // least steps from one sample to the next
   const Eigen::VectorXd& value = recording.value;
   const Index last = recording.size() - 1;
-  const auto is_stale = [&](Index i) {
+  Repeats repeats{std::vector<bool>(static_cast<std::size_t>(last + 1)), {}};
+  repeats.amid_motion = repeats.amid_change;
+  for (Index i = 1; i <= last; ++i) {
     const Index from = std::max<Index>(i - kReach, 0);
     const Index to = std::min(i + kReach, last);
-    const bool moves = std::abs(value[to] - value[from]) > kMoves * least_step * static_cast<double>(to - from);
-    return std::pair(moves, moves && value[i] == value[i - 1]);
-  };
-  Index moving = 0;
-  Index repeats = 0;
-  for (Index i = 1; i <= last; ++i) {
-    const auto [moves, stale] = is_stale(i);
-    moving += moves ? 1 : 0;
-    repeats += stale ? 1 : 0;
+    const auto near = value.segment(from, to - from + 1);
+    const bool changes = near.maxCoeff() - near.minCoeff() > kChange * least_step;
+    const bool moves = std::abs(value[to] - value[from]) > kMotion * least_step * static_cast<double>(to - from);
+    const bool same = value[i] == value[i - 1];
+    repeats.changing += changes ? 1 : 0;
+    repeats.repeated += changes && same ? 1 : 0;
+    repeats.amid_change[static_cast<std::size_t>(i)] = changes && same;
+    repeats.amid_motion[static_cast<std::size_t>(i)] = moves && same;
   }
-  const bool mostly = static_cast<double>(repeats) > kMostly * static_cast<double>(moving);
-  std::vector<bool> kept(static_cast<std::size_t>(recording.size()), true);
+  return repeats;
+}
+
+/// Leaves out stale readings: where a tracker repeats many of its values all of them, else only three and more in a
+/// row.
+void LeaveOutStale(double least_step, Recording& recording) {
+  constexpr double kMany = 0.25;
+  constexpr std::size_t kFewestInARow = 3;
+  const Repeats repeats = FindRepeats(least_step, recording);
+  const bool many = static_cast<double>(repeats.repeated) > kMany * static_cast<double>(repeats.changing);
+  const std::vector<bool>& stale = many ? repeats.amid_change : repeats.amid_motion;
+  std::vector<bool> kept(stale.size(), true);
   Index left_out = 0;
-  for (Index i = 1; i <= last;) {
-    Index end = i;
-    while (end <= last && is_stale(end).second) ++end;
-    if (end - i >= (mostly ? 1 : kFewestInARow)) {
-      std::fill(kept.begin() + i, kept.begin() + end, false);
-      left_out += end - i;
+  for (std::size_t i = 1; i < stale.size();) {
+    std::size_t end = i;
+    while (end < stale.size() && stale[end]) ++end;
+    if (end - i >= (many ? 1 : kFewestInARow)) {
+      std::fill(kept.begin() + static_cast<std::ptrdiff_t>(i), kept.begin() + static_cast<std::ptrdiff_t>(end), false);
+      left_out += static_cast<Index>(end - i);
     }
     i = std::max(end, i + 1);
   }
@@ -151,12 +195,11 @@ double Extrapolated(const Recording& recording, Index a, Index b, Index i) {
   return recording.value[b] + slope * (recording.time[i] - recording.time[b]);
 }
 
-/// Leaves out readings that neither the two before nor the two after lead to: a kick or a release is led to by one side.
-void LeaveOutSpikes(double least_step, Recording& recording) {
-  constexpr double kFar = 16;   // medians: about 8 standard deviations of an extrapolation
-  constexpr double kSteps = 6;
-  constexpr Index kMostInARow = 4;
-  constexpr Index kMostOf = 10;
+/// Leaves out readings that neither the two before nor the two after lead to: a kick or a release is led to by one
+/// side.
+Index LeaveOutSpikesOnce(double least_step, Recording& recording) {
+  constexpr double kFar = 8;  // medians; of noise, seven of its standard deviations
+  constexpr double kSteps = 2.5;
   const LocalScale scale(recording);
   const Eigen::VectorXd& value = recording.value;
   std::vector<bool> kept(static_cast<std::size_t>(recording.size()), true);
@@ -164,18 +207,32 @@ void LeaveOutSpikes(double least_step, Recording& recording) {
   for (Index i = 2; i + 2 < recording.size(); ++i) {
     const double far = kFar * scale.At(i) + kSteps * least_step;
     const auto is_far = [&](double predicted) { return std::abs(value[i] - predicted) > far; };
-    if (!is_far(Extrapolated(recording, i - 2, i - 1, i)) || !is_far(Extrapolated(recording, i + 2, i + 1, i))) continue;
+    if (!is_far(Extrapolated(recording, i - 2, i - 1, i)) || !is_far(Extrapolated(recording, i + 2, i + 1, i)))
+      continue;
     kept[static_cast<std::size_t>(i)] = false;
     ++left_out;
   }
+  if (left_out > 0 && recording.size() - left_out >= kMinimumSamples) KeepOnly(kept, recording);
+  return left_out;
+}
+
+void LeaveOutSpikes(double least_step, Recording& recording) {
+  constexpr int kMostPasses = 4;  // what stands next to a spike is judged without it
+  constexpr Index kMostOf = 10;
+  Recording without = recording;
+  Index left_out = 0;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const Index more = LeaveOutSpikesOnce(least_step, without);
+    left_out += more;
+    if (more == 0) break;
+  }
   if (left_out == 0) return;
-  (void)kMostInARow;
   if (left_out * kMostOf > recording.size()) {
     recording.warnings.push_back({"many_spikes", std::to_string(left_out) + " readings stand far from their "
                                                                             "neighbours, too many to leave out"});
     return;
   }
-  KeepOnly(kept, recording);
+  recording = std::move(without);
   recording.warnings.push_back(
       {"spikes", std::to_string(left_out) + " readings far from their neighbours on both sides are left out"});
 }
@@ -184,9 +241,9 @@ void LeaveOutSpikes(double least_step, Recording& recording) {
 
 Recording RepairValues(Recording recording) {
   Unwrap(recording);
-  const double least_step = LeastStep(recording);
-  LeaveOutStale(least_step, recording);
-  LeaveOutSpikes(least_step, recording);
+  NoticeEvents(LeastStep(recording, 0.1), recording);
+  LeaveOutStale(LeastStep(recording, 0.01), recording);
+  LeaveOutSpikes(LeastStep(recording, 0.1), recording);
   return recording;
 }
 

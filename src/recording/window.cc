@@ -48,4 +48,13 @@ Result<Recording> SelectWindow(const Recording& recording, double from, double t
   return window;
 }
 
+Recording Thinned(const Recording& recording, Eigen::Index most) {
+  const Eigen::Index stride = std::max<Eigen::Index>((recording.size() + most - 1) / most, 1);
+  const Eigen::Index count = (recording.size() + stride - 1) / stride;
+  Recording thinned = recording;
+  thinned.time = recording.time(Eigen::seqN(0, count, stride));
+  thinned.value = recording.value(Eigen::seqN(0, count, stride));
+  return thinned;
+}
+
 }  // namespace pendulum

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
-#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +14,6 @@
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/recording/repair_values.h"
-#include "pendulum/recording/window.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
 #include "pendulum/report/text.h"
@@ -87,15 +85,13 @@ Result<RunResult> FitFile(FitPendulumOptions options) {
   }
   const auto recording = ReadRecording(options.data);
   if (!recording) return tl::unexpected(recording.error());
-  const auto part = SelectWindow(RepairValues(*recording), options.from, options.to);
-  if (!part) return tl::unexpected(part.error());
-  const auto swings = FindFreeSwings(*part);
+  const Recording repaired = RepairValues(*recording);
+  const auto swings = ChooseSwings(repaired, options.swing);
   if (!swings) return tl::unexpected(swings.error());
-  const auto longest = std::ranges::max_element(*swings, {}, [](const FreeSwing& s) { return s.to - s.from; });
-  auto fit = FitSwing(*part, *longest, options.fit);
+  auto fit = FitSwing(repaired, swings->found[swings->chosen.front() - 1], options.fit);
   if (!fit) return tl::unexpected(fit.error());
   report.data = SummarizeData(*recording, fit->used);
-  report.warnings = fit->used.warnings;
+  report.warnings = repaired.warnings;
   report.fits.push_back(fit->fit);
   return Render(options, report, fit->used);
 }

@@ -59,9 +59,9 @@ Result<void> ParseTime(std::string_view flag, const std::string& value, double& 
 }
 
 Result<void> ParseWindow(const FitPendulumFlags& flags, FitPendulumOptions& options) {
-  if (auto parsed = ParseTime("--from", flags.from, options.from); !parsed) return parsed;
-  if (auto parsed = ParseTime("--to", flags.to, options.to); !parsed) return parsed;
-  if (options.from >= options.to) {
+  if (auto parsed = ParseTime("--from", flags.from, options.swing.from); !parsed) return parsed;
+  if (auto parsed = ParseTime("--to", flags.to, options.swing.to); !parsed) return parsed;
+  if (options.swing.from >= options.swing.to) {
     return Wrong("--from " + flags.from + " s does not lie before --to " + flags.to + " s");
   }
   return {};

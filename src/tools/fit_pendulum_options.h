@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit_swing.h"
 #include "tools/output.h"
 
 namespace pendulum {
@@ -29,8 +28,7 @@ struct FitPendulumFlags {
 struct FitPendulumOptions {
   std::string data;  ///< Path of the recording.
   std::string rig;   ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
-  double from = std::numeric_limits<double>::quiet_NaN();  ///< s on the file's clock; NaN leaves that end open.
-  double to = std::numeric_limits<double>::quiet_NaN();    ///< s on the file's clock; NaN leaves that end open.
+  SwingChoice swing;
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.
   std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
   FitOptions fit;

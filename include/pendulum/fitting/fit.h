@@ -22,9 +22,13 @@ namespace pendulum {
 /// in units of G without one.
 struct FitOptions {
   std::string model = "coulomb";
+  std::optional<Gravity> gravity;  ///< Instead of the model's own.
   StartChoice start = StartChoice::kAuto;
   std::optional<Rig> rig;         ///< Turns ratios into SI; without it torques are in units of G.
   ParameterValues fixed;          ///< Parameters held at a value.
+  ParameterValues initial;        ///< Where parameters begin instead of where the data say.
+  ParameterRanges bounds;         ///< Bounds within a parameter's own.
+  ParameterPriors priors;         ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
   double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.
 };
@@ -95,14 +99,18 @@ struct FitReport {
 };
 
 /// The parameters of a fit in order: inertia, friction, then release_angle and release_time or initial_angle and
-/// initial_rate, then zero_angle or rate_bias.
-std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity);
+/// initial_rate, then zero_angle or rate_bias, and its drift if it `drifts`.
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
+                                         bool drifts = false);
 
-/// Fits one model to a recording: start values from the data, least squares over the whole trajectory, judgement.
-/// With StartChoice::kAuto a release after a short hold, or one that explains little, is compared with a start in
-/// motion.
+/// Fits one model to the whole of a recording: start values from the data, least squares over the whole trajectory,
+/// judgement. With StartChoice::kAuto a release after a short hold, or one that explains little, is compared with a
+/// start in motion. Times are those of the recording's clock times its clock_scale, except release_time, which is on
+/// the file's own clock. zero_drift (bias_drift of a rate) is a parameter of the fit when the options name it, and 0
+/// otherwise.
 ///
-/// kInvalidArgument: no such model, or a name in `fixed` that the model does not have, or a value outside its bounds.
+/// kInvalidArgument: no such model, or a name in the options that the model does not have with this start, or a value
+/// outside its bounds. kDataLoss: counts or volts without a calibration, for a model that needs an angle.
 /// kFailedPrecondition: there is no swing in the data, or too little of one. Cost: about a millisecond for 2000
 /// samples, tens of milliseconds where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);

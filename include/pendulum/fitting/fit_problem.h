@@ -20,6 +20,10 @@ struct FitProblem {
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
   SolveOptions solve;
+  std::vector<PriorTerm> priors;  ///< Weights are one over the standard deviation, for a noise of `data.scale`.
+
+  /// Index of the zero, which its drift may follow.
+  std::size_t zero() const { return infos.size() - (data.drifts ? 2 : 1); }
 };
 
 /// The first guess for a simpler law: parameters that are fixed besides those of the problem are at their lower bound,

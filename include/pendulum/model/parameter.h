@@ -14,6 +14,21 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// Values by parameter name.
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
+/// An interval that a parameter may lie in.
+struct ParameterRange {
+  double lower = -kUnbounded;
+  double upper = kUnbounded;
+};
+
+/// What is known of a parameter before the fit.
+struct ParameterPrior {
+  double mean = 0;
+  double std_dev = 0;  ///< Positive.
+};
+
+using ParameterRanges = std::map<std::string, ParameterRange, std::less<>>;
+using ParameterPriors = std::map<std::string, ParameterPrior, std::less<>>;
+
 /// Everything that is said of a parameter, said once: flags, bounds, tables, JSON and the documentation follow from it.
 ///
 /// Torques are in units of the gravity torque G below the report (G = 1), so a parameter that is a torque, or an
@@ -50,5 +65,19 @@ inline constexpr ParameterInfo kZeroAngle{
     "zero_angle", "z", "rad", "rad", -kUnbounded, kUnbounded, "reading at which gravity's torque vanishes"};
 inline constexpr ParameterInfo kRateBias{
     "rate_bias", "z", "rad/s", "rad/s", -kUnbounded, kUnbounded, "reading of the gyro at rest"};
+inline constexpr ParameterInfo kZeroDrift{"zero_drift",
+                                          "z'",
+                                          "rad/s",
+                                          "rad/s",
+                                          -kUnbounded,
+                                          kUnbounded,
+                                          "how fast zero_angle, that of the first used sample, moves"};
+inline constexpr ParameterInfo kBiasDrift{"bias_drift",
+                                          "z'",
+                                          "rad/s^2",
+                                          "rad/s^2",
+                                          -kUnbounded,
+                                          kUnbounded,
+                                          "how fast rate_bias, that of the first used sample, moves"};
 
 }  // namespace pendulum

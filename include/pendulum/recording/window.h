@@ -11,4 +11,7 @@ namespace pendulum {
 /// the window and the span of the recording.
 Result<Recording> SelectWindow(const Recording& recording, double from, double to);
 
+/// Every so many-th sample, so that at most `most` remain.
+Recording Thinned(const Recording& recording, Eigen::Index most);
+
 }  // namespace pendulum

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/not_a_pendulum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/period.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// So many samples are enough to tell what moves.
+constexpr Eigen::Index kMostSamples = 5000;
+
+/// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
+std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity) {
+  FitOptions options;
+  options.model = "drag";
+  options.gravity = gravity;
+  Result<FitReport> fit = FitRecording(recording, options);
+  if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
+  return *std::move(fit);
+}
+
+std::string Percent(double share) { return NumberText(100 * share, 2) + " %"; }
+
+bool DescribesAll(const FitReport& report) {
+  return std::ranges::none_of(report.warnings, [](const Warning& warning) {
+    return warning.code == "lack_of_fit" || warning.code == "correlated_residuals";
+  });
+}
+
+/// A mass on a spring swings with one period at every amplitude. pendulum: a fit with sine gravity.
+std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum) {
+  constexpr double kSmallest = 0.2;  // rad; below it the two can hardly be told apart
+  constexpr double kMuchLess = 0.7;
+  constexpr double kSurely = 30;
+  if (recording.quantity != Quantity::kAngle) return std::nullopt;
+  const double amplitude = 0.5 * (recording.value.maxCoeff() - recording.value.minCoeff());
+  if (amplitude < kSmallest) return std::nullopt;
+  const std::optional<FitReport> linear = FitRichest(recording, Gravity::kLinear);
+  if (!linear) return std::nullopt;
+  const double left = pendulum.statistics.rms_residual;
+  const double ratio = linear->statistics.rms_residual / left;
+  const double gain = -2 * static_cast<double>(recording.size()) * std::log(ratio);  // in -2 log L
+  if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
+  constexpr double kNearTop = 3.1;
+  return "the period does not depend on the amplitude as a pendulum's does, which is " +
+         Percent(PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " + NumberText(amplitude, 3) +
+         " rad: a linear oscillator leaves " + NumberText(linear->statistics.rms_residual, 3) +
+         " rad (rms), a pendulum " + NumberText(left, 3) + " rad; --model linear describes the former";
+}
+
+/// One frequency's share of the residuals.
+struct Line {
+  double frequency = 0;  // rad/s
+  double share = 0;      // of their variance
+};
+
+/// The strongest line among the frequencies up to ten times the pendulum's own, by Scargle's periodogram without its
+/// phase (Astrophys. J. 263:835, 1982), and the share of all within a fifth of it, for a mode that decays is no sharp
+/// line.
+Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
+  constexpr Eigen::Index kMostTerms = 2500;
+  constexpr int kMostFrequencies = 1000;
+  constexpr double kWidth = 0.2;
+  const Eigen::Index stride = (time.size() + kMostTerms - 1) / kMostTerms;
+  const Eigen::Index count = (time.size() + stride - 1) / stride;
+  const Eigen::ArrayXd t = time(Eigen::seqN(0, count, stride)).array() - time[0];
+  const Eigen::ArrayXd r = residual(Eigen::seqN(0, count, stride)).array();
+  const double independent = 2 * kPi / t[count - 1];
+  const double spacing = std::max(independent, 10 * natural / kMostFrequencies);
+  std::vector<Line> lines;
+  for (double frequency = spacing; frequency < 10 * natural; frequency += spacing) {
+    const Eigen::ArrayXd phase = frequency * t;
+    const double power = std::pow((r * phase.cos()).sum(), 2) + std::pow((r * phase.sin()).sum(), 2);
+    lines.push_back({frequency, 2 * power * spacing / (independent * static_cast<double>(count) * r.square().sum())});
+  }
+  Line strongest = *std::ranges::max_element(lines, {}, &Line::share);
+  const double centre = strongest.frequency;
+  strongest.share = 0;
+  for (const Line& line : lines) {
+    if (std::abs(line.frequency - centre) < kWidth * centre) strongest.share += line.share;
+  }
+  return strongest;
+}
+
+std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
+  constexpr double kMostOfIt = 0.4;
+  constexpr double kSmallest = 0.03;  // of the swing's rms
+  const auto frequency = std::ranges::find(report.derived, "natural_frequency", &DerivedQuantity::name);
+  if (frequency == report.derived.end()) return std::nullopt;
+  const double natural = frequency->estimate;
+  const double swing = std::sqrt((recording.value.array() - recording.value.mean()).square().mean());
+  if (!(report.statistics.rms_residual > kSmallest * swing)) return std::nullopt;
+  const Line line = StrongestLine(recording.time, report.residual, natural);
+  const double ratio = line.frequency / natural;
+  const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);
+  if (own || line.share < kMostOfIt) return std::nullopt;
+  return Percent(line.share) + " of what the fit leaves is an oscillation with a period of " +
+         NumberText(2 * kPi / line.frequency, 4) + " s beside the pendulum's " + NumberText(2 * kPi / natural, 4) +
+         " s: two modes, of a second pendulum, a string or a loose support";
+}
+
+}  // namespace
+
+std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report) {
+  if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
+  const Recording some = Thinned(recording, kMostSamples);
+  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine);
+  return richest ? IsLinear(some, *richest) : std::nullopt;
+}
+
+std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report) {
+  if (report.termination == Termination::kFailed) return std::nullopt;
+  if (report.model.gravity == Gravity::kLinear) return HasTwoModes(recording, report);
+  const Recording some = Thinned(recording, kMostSamples);
+  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine);
+  return richest ? HasTwoModes(some, *richest) : std::nullopt;
+}
+
+}  // namespace pendulum
