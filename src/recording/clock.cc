@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "pendulum/base/format.h"
@@ -15,6 +15,9 @@ namespace {
 
 using Eigen::Index;
 using Check = Result<void>;
+
+/// Of a time in a message: those that a double always keeps, so that a counter is not shown with an exponent.
+constexpr int kDigits = 15;
 
 std::string Count(Index count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -31,7 +34,7 @@ class ClockRepair {
   const Eigen::VectorXd& time() const { return samples_.time; }
   Index size() const { return samples_.time.size(); }
 
-  std::string TimeText(double time) const { return NumberText(time) + " " + samples_.time_unit; }
+  std::string TimeText(double time) const { return NumberText(time, kDigits) + " " + samples_.time_unit; }
   std::string LineText(Index row) const { return samples_.name + ":" + std::to_string(samples_.lines.LineOf(row)); }
   tl::unexpected<Status> Fault(Index row, const std::string& sentence) const {
     return Error(StatusCode::kDataLoss, LineText(row) + ": " + sentence);
@@ -201,19 +204,36 @@ double NarrowestBand(const Eigen::VectorXd& time, double middle, double reach) {
   return (low + high) / 2;
 }
 
+/// The slope of least squares.
+double MeanSlope(const Eigen::VectorXd& time) {
+  const double middle = static_cast<double>(time.size() - 1) / 2;
+  double products = 0, squares = 0;
+  for (Index i = 0; i < time.size(); ++i) {
+    const double centred = static_cast<double>(i) - middle;
+    products += centred * (time[i] - time[0]);
+    squares += centred * centred;
+  }
+  return products / squares;
+}
+
 /// Replaces stamps by the uniform clock a + b i that agrees with every one of them to half a step of the grid, and a
-/// twentieth of it for the sampling's own jitter. Stamps that were cut off instead of rounded differ by a constant.
+/// twentieth of it for the sampling's own jitter: that of least squares, or the one that comes nearest to all. Stamps
+/// that were cut off instead of rounded differ by a constant.
 bool ClockRepair::MakeUniform(double grid) {
   constexpr double kWidest = 1.1;
   const double steps = static_cast<double>(size() - 1);
   const double mean = (time()[size() - 1] - time()[0]) / steps;
-  const double slope = NarrowestBand(time(), mean, kWidest * grid / steps);
-  const Band band = BandAlong(time(), slope);
+  double slope = MeanSlope(time());
+  Band band = BandAlong(time(), slope);
+  if (band.width() > kWidest * grid) {
+    slope = NarrowestBand(time(), mean, kWidest * grid / steps);
+    band = BandAlong(time(), slope);
+  }
   if (band.width() > kWidest * grid || !(slope > 0)) return false;
   const double per_second = samples_.time_unit == "s" ? 1 : samples_.time_unit == "ms" ? 1e3 : 1e6;
   Warn("time_rounded", 0,
        "the times are rounded to " + TimeText(grid) + ", coarse against the sampling interval; " +
-           "they were replaced by a uniform clock of " + NumberText(per_second / slope, 6) +
+           "they were replaced by a uniform clock of " + NumberText(per_second / slope, 5) +
            " Hz, which agrees with each of them: this assumes uniform sampling");
   const double middle = (band.low + band.high) / 2;
   samples_.time = Eigen::VectorXd::LinSpaced(size(), middle, middle + slope * steps);
@@ -299,15 +319,19 @@ struct Tangle {
   Index end;
 };
 
-/// The tangle about row i, which does not follow the row before it.
-Tangle TangleAround(const Eigen::VectorXd& time, Index i) {
-  Tangle tangle{i - 1, i + 1};
-  double low = time[i], high = time[i - 1];
-  while (true) {
-    while (tangle.begin > 0 && time[tangle.begin - 1] >= low) high = std::max(high, time[--tangle.begin]);
-    if (tangle.end == time.size() || time[tangle.end] > high) return tangle;
-    low = std::min(low, time[tangle.end++]);
+/// All tangles of two rows and more.
+std::vector<Tangle> FindTangles(const Eigen::VectorXd& time) {
+  std::vector<double> earliest_after(time.size(), std::numeric_limits<double>::infinity());
+  for (Index i = time.size() - 1; i > 0; --i) earliest_after[i - 1] = std::min(earliest_after[i], time[i]);
+  std::vector<Tangle> tangles;
+  double latest = -std::numeric_limits<double>::infinity();
+  for (Index begin = 0, i = 0; i < time.size(); ++i) {
+    latest = std::max(latest, time[i]);
+    if (latest >= earliest_after[i]) continue;
+    if (i > begin) tangles.push_back({begin, i + 1});
+    begin = i + 1;
   }
+  return tangles;
 }
 
 /// Marks all rows of the tangle but a longest increasing sequence of them (patience sorting, O(n log n)).
@@ -340,15 +364,10 @@ Check ClockRepair::LeaveOutBackward() {
                           ", so the clock was set back: these are two recordings in one file; split it before this "
                           "line");
     }
+    if (first == 0 && time()[i] <= latest) first = i;
     latest = std::max(latest, time()[i]);
   }
-  for (Index i = 1; i < size(); ++i) {
-    if (time()[i] > time()[i - 1]) continue;
-    if (gone == 0) first = i;
-    const Tangle tangle = TangleAround(time(), i);
-    gone += LeaveOutFewest(time(), tangle, keep);
-    i = tangle.end;
-  }
+  for (const Tangle& tangle : FindTangles(time())) gone += LeaveOutFewest(time(), tangle, keep);
   if (gone == 0) return {};
   const std::string sentence = "time " + TimeText(time()[first]) + " does not follow " + TimeText(time()[first - 1]) +
                                " of line " + std::to_string(samples_.lines.LineOf(first - 1));
