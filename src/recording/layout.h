@@ -40,7 +40,7 @@ struct Name {
 /// True for what only a header holds: letters that are no part of a number.
 inline bool IsName(std::string_view text) {
   text = Unquote(text);
-  return text.find_first_not_of("0123456789+-.,eE:> \t") != std::string_view::npos ||
+  return text.find_first_not_of("0123456789+-.,;eE:> \t") != std::string_view::npos ||
          (!text.empty() && text.find_first_not_of("eE") == std::string_view::npos);
 }
 
@@ -83,6 +83,7 @@ inline std::size_t CountFields(std::string_view row, char separator) {
 /// The separator that makes every field of a row a number, if any.
 inline std::optional<char> SeparatorOfNumbers(std::string_view row) {
   for (const char separator : {'\t', ';', ',', ' '}) {
+    if (separator != ' ' && row.find(separator) == std::string_view::npos) continue;
     Numbers numbers(separator != ',');
     bool all_numbers = true;
     for (FieldCutter fields(row, separator); !fields.done() && all_numbers;) {

@@ -116,8 +116,10 @@ Check Reader::ReadLine() {
   // What a spreadsheet leaves of an empty row.
   if (text.find_first_not_of(" \t,;") == std::string_view::npos) return {};
   if (has_layout_) return TakeRow();
-  if (head_.empty() && Unquote(text).starts_with("sep=") && Unquote(text).size() == 5) {
-    separator_ = Unquote(text).back();
+  constexpr std::string_view kSeparatorKey = "sep=";  // What a spreadsheet writes for itself.
+  const std::string_view key = line_.text.substr(line_.text.starts_with('"') ? 1 : 0);
+  if (head_.empty() && key.size() > kSeparatorKey.size() && key.starts_with(kSeparatorKey)) {
+    separator_ = key[kSeparatorKey.size()];
     return {};
   }
   head_.push_back({std::string(line_.text), line_.number});

@@ -63,7 +63,7 @@ inline void Calibrate(const Calibration& calibration, const Metadata& metadata, 
   if (metadata.range) ends = SensorRange{metadata.range->low, metadata.range->high};
   recording.range.reset();
   if (ends) {
-    const auto [first, last] = std::minmax(calibration.Angle(ends->low), calibration.Angle(ends->high));
+    const auto [first, last] = std::minmax({calibration.Angle(ends->low), calibration.Angle(ends->high)});
     if (first < last) recording.range = SensorRange{first, last};
   }
   for (double& value : recording.value) value = calibration.Angle(value);
