@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
+#include "tangle.h"
 
 namespace pendulum {
 namespace {
@@ -312,45 +312,6 @@ void ClockRepair::Keep(const std::vector<bool>& keep) {
 }
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
-
-/// Rows [begin, end) that must be looked at together: all before are earlier, all after are later.
-struct Tangle {
-  Index begin;
-  Index end;
-};
-
-/// All tangles of two rows and more.
-std::vector<Tangle> FindTangles(const Eigen::VectorXd& time) {
-  std::vector<double> earliest_after(time.size(), std::numeric_limits<double>::infinity());
-  for (Index i = time.size() - 1; i > 0; --i) earliest_after[i - 1] = std::min(earliest_after[i], time[i]);
-  std::vector<Tangle> tangles;
-  double latest = -std::numeric_limits<double>::infinity();
-  for (Index begin = 0, i = 0; i < time.size(); ++i) {
-    latest = std::max(latest, time[i]);
-    if (latest >= earliest_after[i]) continue;
-    if (i > begin) tangles.push_back({begin, i + 1});
-    begin = i + 1;
-  }
-  return tangles;
-}
-
-/// Marks all rows of the tangle but a longest increasing sequence of them (patience sorting, O(n log n)).
-Index LeaveOutFewest(const Eigen::VectorXd& time, Tangle tangle, std::vector<bool>& keep) {
-  std::vector<Index> tails;  // Of the sequences of each length the lowest last row.
-  std::vector<Index> before(tangle.end - tangle.begin, Index{-1});  // The row before each row in its sequence.
-  for (Index i = tangle.begin; i < tangle.end; ++i) {
-    keep[i] = false;
-    const auto place = std::ranges::lower_bound(tails, time[i], {}, [&](Index row) { return time[row]; });
-    if (place != tails.begin()) before[i - tangle.begin] = *std::prev(place);
-    if (place == tails.end()) {
-      tails.push_back(i);
-    } else {
-      *place = i;
-    }
-  }
-  for (Index i = tails.back(); i >= 0; i = before[i - tangle.begin]) keep[i] = true;
-  return tangle.end - tangle.begin - static_cast<Index>(tails.size());
-}
 
 Check ClockRepair::LeaveOutBackward() {
   constexpr double kMostShare = 0.05;

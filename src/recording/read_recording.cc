@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <new>
+#include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +13,7 @@
 
 #include "column.h"
 #include "csv.h"
+#include "head.h"
 #include "host_stamp.h"
 #include "layout.h"
 #include "metadata.h"
@@ -38,17 +39,8 @@ class Reader {
   Result<Recording> Read();
 
  private:
-  /// One of the first lines, which are kept until it is known what they are.
-  struct HeadLine {
-    std::string text;
-    std::size_t number;
-  };
-
   Check ReadLine();
   Check BeginRows();
-  void FindHost();
-  void ReadHeader(std::string_view first, std::vector<csv::Name>& names);
-  void ReadFirstNumbers(std::string_view first);
   Check ChooseColumns(const std::vector<csv::Name>& names);
   Check TakeRow();
   Check ReadRow();
@@ -66,14 +58,13 @@ class Reader {
     samples_.warnings.push_back({code, lines_.name() + ": " + sentence});
   }
 
-  std::string_view Device(std::string_view line) const;  // What the device sent of a line.
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
   bool is_host_time() const { return has_host_ && !layout_.time && !(rate_hz() > 0); }
 
   LineReader lines_;
   const ReadOptions& options_;
   csv::Metadata metadata_;
-  std::vector<HeadLine> head_;
+  std::vector<csv::HeadLine> head_;
   char separator_ = '\0';  // What the line `sep=` says.
   bool has_host_ = false;  // Lines begin with the stamp of a serial monitor.
   bool has_layout_ = false;
@@ -128,56 +119,18 @@ Check Reader::ReadLine() {
 
 // ---- What the columns are ----------------------------------------------------------------------------------------
 
-void Reader::FindHost() {
-  has_host_ = std::ranges::any_of(head_, [](const HeadLine& line) {
-    const auto stamp = csv::FindHostStamp(line.text);
-    return stamp && stamp->second_of_day;
-  });
-}
-
-std::string_view Reader::Device(std::string_view line) const {
-  if (!has_host_) return line;
-  const auto stamp = csv::FindHostStamp(line);
-  return stamp ? stamp->rest : line;
-}
-
 /// Looks at the first lines, then reads those of them that are rows.
 Check Reader::BeginRows() {
   has_layout_ = true;
-  FindHost();
-  const std::string_view first = Device(head_.front().text);
+  has_host_ = csv::HasHostStamps(head_);
   line_ = {lines_.name(), head_.front().text, head_.front().number};
-  std::vector<csv::Name> names = csv::SplitHeader(first, separator_ != '\0' ? separator_ : csv::Separator(first));
-  layout_.has_header = std::ranges::any_of(names, [](const csv::Name& name) { return csv::IsName(name.text); });
-  if (layout_.has_header) {
-    ReadHeader(first, names);
-  } else {
-    names.clear();
-    ReadFirstNumbers(first);
-  }
+  const std::vector<csv::Name> names = csv::LookAtHead(head_, has_host_, separator_, layout_);
   if (Check chosen = ChooseColumns(names); !chosen) return chosen;
   for (std::size_t i = layout_.has_header ? 1 : 0; i < head_.size(); ++i) {
     line_ = {lines_.name(), head_[i].text, head_[i].number};
     if (Check taken = TakeRow(); !taken) return taken;
   }
   return {};
-}
-
-void Reader::ReadHeader(std::string_view first, std::vector<csv::Name>& names) {
-  layout_.separator = separator_ != '\0' ? separator_ : csv::Separator(first);
-  // Blanks stand in the name of a single column too; the row below it tells.
-  const bool is_one_name =
-      layout_.separator == ' ' && head_.size() > 1 && csv::CountFields(Device(head_[1].text), ' ') == 1;
-  if (is_one_name) names = {{Unquote(first), Trim(first).data()}};
-  layout_.width = names.size();
-}
-
-void Reader::ReadFirstNumbers(std::string_view first) {
-  const std::string_view second = Device(head_.back().text);
-  auto separator = csv::SeparatorOfNumbers(second);
-  if (!separator) separator = csv::SeparatorOfNumbers(first);
-  layout_.separator = separator_ != '\0' ? separator_ : separator.value_or(csv::Separator(second));
-  layout_.width = std::max(csv::CountFields(first, layout_.separator), csv::CountFields(second, layout_.separator));
 }
 
 Check Reader::ChooseColumns(const std::vector<csv::Name>& names) {
@@ -287,7 +240,7 @@ Check Reader::MakeRoom() {
   try {
     samples_.time.conservativeResize(room);
     samples_.value.conservativeResize(room);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::exception&) {
     return line_.Fault(line_.text.data(), "the rows up to here fill the memory; split the file");
   }
   return {};
