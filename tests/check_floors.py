@@ -39,7 +39,7 @@ LIBRARY_FLOORS = {
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "fuzz"}
 
 # What only the floors that talk to people may do.
 TALKING_FLOORS = {"tools", "service"}

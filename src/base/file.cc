@@ -2,39 +2,83 @@
 #include "pendulum/base/file.h"
 
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
 #include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace pendulum {
+namespace {
 
-Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t most_bytes) {
-  constexpr std::uintmax_t kBlock = 65536;
-  const auto fault = [&](const std::string& sentence) {
-    return Error(StatusCode::kDataLoss, path.string() + ": " + sentence);
-  };
+tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
+  return Error(StatusCode::kDataLoss, name + ": " + sentence);
+}
+
+tl::unexpected<Status> Unreadable(const std::string& name) {
+  return Fault(name, "the file cannot be read; check its permissions");
+}
+
+}  // namespace
+
+InputFile::InputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+
+InputFile::InputFile(InputFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)) {}
+
+InputFile::~InputFile() {
+  if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
+}
+
+InputFile InputFile::StandardInput() { return {STDIN_FILENO, "standard input"}; }
+
+Result<InputFile> InputFile::Open(const std::filesystem::path& path, std::string_view kind) {
   std::error_code unknown;
   const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
   if (type == std::filesystem::file_type::not_found) {
     return Error(StatusCode::kNotFound, path.string() + ": there is no such file; check the path");
   }
   if (type == std::filesystem::file_type::directory) {
-    return fault("this is a directory; name a " + std::string(kind) + " file in it");
+    return Fault(path.string(), "this is a directory; name a " + std::string(kind) + " file in it");
   }
-  std::ifstream file(path, std::ios::binary);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return Unreadable(path.string());
+  return InputFile(descriptor, path.string());
+}
+
+Result<std::size_t> InputFile::Read(std::span<char> room) {
+  std::size_t used = 0;
+  while (used < room.size()) {
+    const ssize_t got = ::read(descriptor_, room.data() + used, room.size() - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return Unreadable(name_);
+    if (got == 0) break;
+    used += static_cast<std::size_t>(got);
+  }
+  return used;
+}
+
+Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t most_bytes) {
+  constexpr std::uintmax_t kBlock = 65536;
+  Result<InputFile> file = InputFile::Open(path, kind);
+  if (!file) return tl::unexpected(file.error());
+  std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   std::string bytes(std::min(unknown ? kBlock : size, most_bytes) + 1, '\0');  // The extra byte finds the end.
   std::size_t used = 0;
-  while (file.read(bytes.data() + used, static_cast<std::streamsize>(bytes.size() - used))) {
-    used = bytes.size();
-    if (used > most_bytes) break;
+  while (true) {
+    const Result<std::size_t> got = file->Read(std::span(bytes).subspan(used));
+    if (!got) return tl::unexpected(got.error());
+    used += *got;
+    if (used < bytes.size() || used > most_bytes) break;
     bytes.resize(std::min<std::uintmax_t>(2 * used, most_bytes + 1));
   }
-  if (!file.is_open() || file.bad()) return fault("the file cannot be read; check its permissions");
   if (used > most_bytes) {
-    return fault("the file has more than " + std::to_string(most_bytes) + " bytes, too many for a " +
-                 std::string(kind) + " file; name another, or split it");
+    return Fault(path.string(), "the file has more than " + std::to_string(most_bytes) + " bytes, too many for a " +
+                                    std::string(kind) + " file; name another, or split it");
   }
-  bytes.resize(used + static_cast<std::size_t>(file.gcount()));
+  bytes.resize(used);
   return bytes;
 }
 

@@ -13,7 +13,7 @@
 /// What a header says: which separator the file uses, and the unit that each column's name tells.
 namespace pendulum::csv {
 
-enum class Kind { kTime, kAngle, kRate, kNeedsCalibration };
+enum class Kind { kTime, kAngle, kRate, kRaw, kUnusable };
 
 /// What a column is when its name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 / 1000.0,
 /// the double nearest to 0.033, which 33 * 1e-3 is not.
@@ -29,17 +29,12 @@ struct Unit {
 
 /// A suffix stands before any that it ends in.
 constexpr std::array kUnits = {
-    Unit{"rad_s", Kind::kRate, "rad/s"},
-    Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
-    Unit{"rad", Kind::kAngle, "rad"},
-    Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
-    Unit{"s", Kind::kTime, "s"},
-    Unit{"ms", Kind::kTime, "ms", 1, 1e3},
-    Unit{"us", Kind::kTime, "us", 1, 1e6},
-    Unit{"counts", Kind::kNeedsCalibration, "counts"},
-    Unit{"volts", Kind::kNeedsCalibration, "volts"},
-    Unit{"m_s2", Kind::kNeedsCalibration, "m/s^2"},
-    Unit{"px", Kind::kNeedsCalibration, "px"},
+    Unit{"rad_s", Kind::kRate, "rad/s"},   Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
+    Unit{"rad", Kind::kAngle, "rad"},      Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
+    Unit{"s", Kind::kTime, "s"},           Unit{"ms", Kind::kTime, "ms", 1, 1e3},
+    Unit{"us", Kind::kTime, "us", 1, 1e6}, Unit{"counts", Kind::kRaw, "counts"},
+    Unit{"volts", Kind::kRaw, "volts"},    Unit{"m_s2", Kind::kUnusable, "m/s^2"},
+    Unit{"px", Kind::kUnusable, "px"},
 };
 
 /// Small letters, and what stands in ASCII for ° and for the two code points of µ.
@@ -76,18 +71,53 @@ inline std::string CanonicalName(std::string_view name) {
   return canonical;
 }
 
+/// The unit of that suffix, or nullptr.
+inline const Unit* UnitOfSuffix(std::string_view suffix) {
+  const auto* const found = std::ranges::find(kUnits, suffix, &Unit::suffix);
+  return found == kUnits.end() ? nullptr : found;
+}
+
+/// The unit that a canonical name ends in, and what stands before it.
+struct NameParts {
+  std::string_view stem;
+  const Unit* unit = nullptr;
+};
+
+inline NameParts SplitName(std::string_view canonical) {
+  for (const Unit& unit : kUnits) {
+    if (!canonical.ends_with(unit.suffix)) continue;
+    const std::string_view stem = canonical.substr(0, canonical.size() - unit.suffix.size());
+    if (stem.empty() || stem.ends_with('_')) return {stem, &unit};
+  }
+  return {canonical};
+}
+
 /// The unit that the name tells, if any. Only `time` itself is a time: `delay_s` is not.
 inline const Unit* FindUnit(std::string_view name) {
   const std::string canonical = CanonicalName(name);
-  for (const Unit& unit : kUnits) {
-    if (!canonical.ends_with(unit.suffix)) continue;
-    const std::string_view stem = std::string_view(canonical).substr(0, canonical.size() - unit.suffix.size());
-    if (unit.kind == Kind::kTime ? stem == "time_" : stem.empty() || stem.ends_with('_')) return &unit;
-  }
-  return nullptr;
+  const auto [stem, unit] = SplitName(canonical);
+  return unit != nullptr && unit->kind == Kind::kTime && stem != "time_" ? nullptr : unit;
 }
 
-/// The separator that the header uses most outside quotes; a comma is the likeliest to stand in a name instead.
+/// The unit of time that the name of a column tells that the user says is the time: `t_ms` too.
+inline const Unit* FindTimeUnit(std::string_view name) {
+  const std::string canonical = CanonicalName(name);
+  const Unit* unit = SplitName(canonical).unit;
+  return unit != nullptr && unit->kind == Kind::kTime ? unit : nullptr;
+}
+
+/// The unit before the last of a name that tells two, such as `angle_deg [rad]`; else nullptr.
+inline const Unit* SecondUnit(std::string_view name) {
+  const std::string canonical = CanonicalName(name);
+  std::string_view stem = SplitName(canonical).stem;
+  if (stem.size() == canonical.size() || stem.size() < 2) return nullptr;
+  stem.remove_suffix(1);
+  const auto [rest, unit] = SplitName(stem);
+  return unit == nullptr || rest.empty() || unit->kind == Kind::kTime ? nullptr : unit;
+}
+
+/// The separator that the header uses most outside quotes, a blank where it uses none of the others; a comma is the
+/// likeliest to stand in a name instead.
 inline char Separator(std::string_view header) {
   constexpr std::string_view kCandidates = "\t;,";
   std::array<std::size_t, kCandidates.size()> uses{};
@@ -97,7 +127,8 @@ inline char Separator(std::string_view header) {
     const std::size_t candidate = kCandidates.find(c);
     if (!quoted && candidate < uses.size()) ++uses[candidate];
   }
-  return kCandidates[std::ranges::max_element(uses) - uses.begin()];
+  const auto* const most = std::ranges::max_element(uses);
+  return *most == 0 ? ' ' : kCandidates[most - uses.begin()];
 }
 
 }  // namespace pendulum::csv

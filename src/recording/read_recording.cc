@@ -2,307 +2,364 @@
 #include "pendulum/recording/read_recording.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
+#include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
-
-#include <openssl/evp.h>
+#include <vector>
 
 #include "column.h"
 #include "csv.h"
+#include "head.h"
+#include "host_stamp.h"
+#include "layout.h"
 #include "metadata.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/recording/clock.h"
+#include "pendulum/recording/line_reader.h"
+#include "to_angle.h"
 
 namespace pendulum {
 namespace {
 
-using csv::FieldCutter, csv::Kind, csv::MetadataKey, csv::ParseNumber, csv::Trim, csv::Unit, csv::Unquote;
+using csv::FieldCutter, csv::Layout, csv::Line, csv::Trim, csv::Unquote;
 using Check = Result<void>;
 
-struct Column {
-  std::size_t index;
-  std::string_view name;
-  const char* at;  // Where its name stands in the header.
-  const Unit* unit;
-};
+constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 /// Reads one text, line by line.
 class Reader {
  public:
-  Reader(std::string_view text, std::string name) : text_(text), rest_(text), name_(std::move(name)) {}
+  Reader(LineReader lines, const ReadOptions& options) : lines_(std::move(lines)), options_(options) {}
 
   Result<Recording> Read();
 
  private:
-  tl::unexpected<Status> NotText();
-  bool NextLine();
   Check ReadLine();
-  Check ReadComment(std::string_view comment);
-  Check ReadHeader();
-  Check AddColumn(std::string_view field);
-  Check CheckColumns() const;
+  Check BeginRows();
+  Check ChooseColumns(const std::vector<csv::Name>& names);
+  Check TakeRow();
   Check ReadRow();
-  Check ReadField(std::string_view field, const Column& column, double& number) const;
-  Check Append(double time, double value, const char* at);
+  Check ReadField(std::string_view field, const csv::Column& column, double& number);
+  Check TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
+  Check MakeRoom();
+  void Append(double time, double value);
+  void WarnOfIncompleteRow(const Line& line);
+  Check CheckEnd();
+  void LeaveOutCutStamp();
+  void WarnOfClock();
+  Check SetTimes();
   Result<Recording> Finish();
+  void Warn(const std::string& code, const std::string& sentence) {
+    samples_.warnings.push_back({code, lines_.name() + ": " + sentence});
+  }
 
-  std::string ColumnNames() const;
-  tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
-                               StatusCode code = StatusCode::kDataLoss) const;
+  double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
+  bool is_host_time() const { return has_host_ && !layout_.time && !(rate_hz() > 0); }
 
-  std::string_view text_;
-  std::string_view rest_;  // What follows line_.
-  std::string name_;
-  std::string_view line_;
-  std::size_t line_number_ = 0;
-  char separator_ = ',';
-  std::size_t width_ = 0;  // Columns of the header; 0 before it is read.
-  std::string_view header_;
-  std::optional<Column> time_;
-  std::optional<Column> value_;
-  std::array<bool, csv::kMetadataKeys.size()> seen_{};
-  double file_resolution_ = 0;
-  std::optional<csv::Range> file_range_;
+  LineReader lines_;
+  const ReadOptions& options_;
+  csv::Metadata metadata_;
+  std::vector<csv::HeadLine> head_;
+  char separator_ = '\0';  // What the line `sep=` says.
+  bool has_host_ = false;  // Lines begin with the stamp of a serial monitor.
+  bool has_layout_ = false;
+  Layout layout_;
+  std::size_t time_index_ = kNoColumn;
+  Line line_;  // The row being read; before there are rows, the header.
+  csv::Numbers numbers_;
+  std::optional<Status> cut_;  // The fault of a row that may be cut off, should another row follow.
+  Line cut_line_;
+  std::string cut_text_;
+  bool is_short_ = false;      // The row just read has too few fields.
+  double midnights_ = 0;       // s, to add to the host's time of day.
+  double last_host_time_ = 0;  // s, with midnights.
   Eigen::Index rows_ = 0;
-  double last_time_ = 0;  // In the file's unit.
-  std::size_t last_row_line_ = 0;
-  Recording recording_;  // Until Finish, time and value have room for more than rows_.
+  RawSamples samples_;  // Until Finish, time and value have room for more than rows_.
 };
 
-/// An error at the byte `at` of the current line.
-tl::unexpected<Status> Reader::Fault(const char* at, const std::string& sentence, StatusCode code) const {
-  return Error(code, name_ + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) + ":" +
-                         std::to_string(at - line_.data() + 1) + ": " + sentence);
-}
-
 Result<Recording> Reader::Read() {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-  if (rest_.find('\0') != std::string_view::npos) return NotText();
-  while (NextLine()) {
+  samples_.name = lines_.name();
+  line_.file = lines_.name();
+  while (true) {
+    const Result<bool> next = lines_.Next();
+    if (!next) return tl::unexpected(next.error());
+    if (!*next) break;
+    line_.text = lines_.line();
+    line_.number = lines_.number();
     if (Check read = ReadLine(); !read) return tl::unexpected(std::move(read).error());
+  }
+  if (!has_layout_ && !head_.empty()) {
+    if (Check begun = BeginRows(); !begun) return tl::unexpected(std::move(begun).error());
   }
   return Finish();
 }
 
-/// NUL bytes are what a logger leaves that lost its power, or an encoding of two bytes a character.
-tl::unexpected<Status> Reader::NotText() {
-  while (NextLine() && line_.find('\0') == std::string_view::npos) continue;
-  return Fault(line_.data() + line_.find('\0'),
-               "a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8");
-}
-
-bool Reader::NextLine() {
-  if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
-  line_ = rest_.substr(0, end);
-  rest_.remove_prefix(std::min(line_.size() + 1, rest_.size()));
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
-  ++line_number_;
-  return true;
-}
-
 Check Reader::ReadLine() {
-  const std::string_view text = Trim(line_);
+  constexpr std::size_t kHeadLines = 2;  // A header and a row, or two rows of which the first may be cut off.
+  const std::string_view text = Trim(line_.text);
   if (text.empty()) return {};
-  if (text.front() == '#') return ReadComment(Trim(text.substr(1)));
+  if (text.front() == '#') return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
   // What a spreadsheet leaves of an empty row.
   if (text.find_first_not_of(" \t,;") == std::string_view::npos) return {};
-  return width_ == 0 ? ReadHeader() : ReadRow();
+  if (has_layout_) return TakeRow();
+  constexpr std::string_view kSeparatorKey = "sep=";  // What a spreadsheet writes for itself.
+  const std::string_view key = line_.text.substr(line_.text.starts_with('"') ? 1 : 0);
+  if (head_.empty() && key.size() > kSeparatorKey.size() && key.starts_with(kSeparatorKey)) {
+    separator_ = key[kSeparatorKey.size()];
+    return {};
+  }
+  head_.push_back({std::string(line_.text), line_.number});
+  return head_.size() < kHeadLines ? Check() : BeginRows();
 }
 
-Check Reader::ReadComment(std::string_view comment) {
-  const std::size_t colon = std::min(comment.find(':'), comment.size());
-  const auto* const entry = std::ranges::find(csv::kMetadataKeys, Trim(comment.substr(0, colon)), &MetadataKey::key);
-  if (entry == csv::kMetadataKeys.end() || colon == comment.size()) return {};
-  const std::string_view value = Trim(comment.substr(colon + 1));
-  const std::string key(entry->key);
-  if (!entry->is_well_formed(value)) {
-    return Fault(value.data(), "the metadata " + key + " is " + Quoted(value) + "; it must be " +
-                                   std::string(entry->rule) + ": correct or delete this line");
-  }
-  bool& seen = seen_.at(entry - csv::kMetadataKeys.begin());
-  if (seen) return Fault(comment.data(), "the metadata " + key + " is given twice; keep one of them");
-  seen = true;
-  if (key == "resolution") ParseNumber(value, file_resolution_);
-  if (key == "range") csv::ParseRange(value, file_range_.emplace());
-  if (entry->changes_numbers) {
-    recording_.warnings.push_back({"metadata_not_applied", name_ + ":" + std::to_string(line_number_) +
-                                                               ": the metadata " + key + " is not applied"});
+// ---- What the columns are ----------------------------------------------------------------------------------------
+
+/// Looks at the first lines, then reads those of them that are rows.
+Check Reader::BeginRows() {
+  has_layout_ = true;
+  has_host_ = csv::HasHostStamps(head_);
+  line_ = {lines_.name(), head_.front().text, head_.front().number};
+  const std::vector<csv::Name> names = csv::LookAtHead(head_, has_host_, separator_, layout_);
+  if (Check chosen = ChooseColumns(names); !chosen) return chosen;
+  for (std::size_t i = layout_.has_header ? 1 : 0; i < head_.size(); ++i) {
+    line_ = {lines_.name(), head_[i].text, head_[i].number};
+    if (Check taken = TakeRow(); !taken) return taken;
   }
   return {};
 }
 
-Check Reader::ReadHeader() {
-  header_ = line_;
-  separator_ = csv::Separator(line_);
-  bool has_name = false;
-  for (FieldCutter fields(line_, separator_); !fields.done();) {
-    const std::string_view field = fields.Next();
-    double number = 0;
-    has_name = has_name || (!Unquote(field).empty() && !ParseNumber(Unquote(field), number));
-    if (Check added = AddColumn(field); !added) return added;
+Check Reader::ChooseColumns(const std::vector<csv::Name>& names) {
+  csv::ColumnChooser chooser(line_, names, options_, metadata_.sample_rate_hz > 0, has_host_);
+  if (Check chosen = chooser.Choose(layout_); !chosen) return chosen;
+  if (Check checked = CheckCalibration(line_, layout_.value, options_, metadata_, samples_.warnings); !checked) {
+    return checked;
   }
-  if (!has_name) {
-    return Fault(line_.data(),
-                 "the first row holds numbers where the names of the columns should stand; put a header "
-                 "above it, such as time_s,angle_deg");
-  }
-  return CheckColumns();
-}
-
-Check Reader::AddColumn(std::string_view field) {
-  const std::string_view name = Unquote(field);
-  const Column column = {width_++, name, Trim(field).data(), csv::FindUnit(name)};
-  if (column.unit == nullptr) return {};
-  const bool is_time = column.unit->kind == Kind::kTime;
-  std::optional<Column>& role = is_time ? time_ : value_;
-  if (role) {
-    return Fault(column.at, "columns " + Quoted(role->name) + " and " + Quoted(name) + " could both be the " +
-                                (is_time ? "time" : "quantity") + "; delete or rename one of them");
-  }
-  role = column;
-  return {};
-}
-
-Check Reader::CheckColumns() const {
-  if (!time_) {
-    return Fault(line_.data(), "none of the columns " + ColumnNames() +
-                                   " is a time; name the column of times time_s, time_ms or time_us");
-  }
-  if (!value_) {
-    return Fault(line_.data(), "none of the columns " + ColumnNames() +
-                                   " is an angle or a rate; end its name in its unit: _rad, _deg, _rad_s or _deg_s");
-  }
-  if (value_->unit->kind == Kind::kNeedsCalibration) {
-    return Fault(value_->at, "column " + Quoted(value_->name) + " is in " + std::string(value_->unit->name) +
-                                 " and needs a calibration to become an angle; convert it to degrees or "
-                                 "radians and end its name in _deg or _rad");
+  numbers_ = csv::Numbers(layout_.separator != ',');
+  if (layout_.time) {
+    time_index_ = layout_.time->index;
+    samples_.time_unit = layout_.time->unit->name;
   }
   return {};
 }
 
-/// The header's names as a message may show them.
-std::string Reader::ColumnNames() const {
-  constexpr std::size_t kShown = 8;
-  std::string names;
-  FieldCutter fields(header_, separator_);
-  for (std::size_t i = 0; i < std::min(width_, kShown); ++i) {
-    names += (i == 0 ? "" : ", ") + Quoted(Unquote(fields.Next()));
+// ---- Rows --------------------------------------------------------------------------------------------------------
+
+/// Reads a row; the first of a paste without header and the last of a file may be cut off.
+Check Reader::TakeRow() {
+  if (cut_) return tl::unexpected(*cut_);
+  is_short_ = false;
+  Check read = ReadRow();
+  if (read) return read;
+  const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head_.front().number && head_.size() > 1;
+  if (is_first) {
+    WarnOfIncompleteRow(line_);
+    return {};
   }
-  return names + (width_ > kShown ? ", ..." : "");
+  if (!is_short_ && lines_.is_terminated()) return read;
+  cut_ = std::move(read).error();
+  cut_text_ = line_.text;
+  cut_line_ = {lines_.name(), cut_text_, line_.number};
+  return {};
+}
+
+void Reader::WarnOfIncompleteRow(const Line& line) {
+  samples_.warnings.push_back({"incomplete_row", std::string(line.file) + ":" + std::to_string(line.number) +
+                                                     ": the row " + Quoted(line.text) +
+                                                     " is cut off; it was left out"});
 }
 
 Check Reader::ReadRow() {
   double time = 0, value = 0;
-  const char* time_at = line_.data();
   std::size_t index = 0;
-  for (FieldCutter fields(line_, separator_); !fields.done(); ++index) {
-    const bool is_time = index == time_->index;
-    if (is_time) time_at = fields.at();
-    if (is_time || index == value_->index) {
+  std::string_view row = line_.text;
+  if (has_host_) {
+    const auto stamp = csv::FindHostStamp(row);
+    if (stamp) row = stamp->rest;
+    if (Check taken = TakeHostTime(stamp, time); !taken) return taken;
+  }
+  for (FieldCutter fields(row, layout_.separator); !fields.done(); ++index) {
+    const bool is_time = index == time_index_;
+    if (is_time || index == layout_.value.index) {
       double& number = is_time ? time : value;
-      if (fields.NextNumber(number)) continue;
-      if (Check read = ReadField(fields.Next(), is_time ? *time_ : *value_, number); !read) return read;
-    } else if (const std::string_view text = Trim(fields.Next()); index >= width_ && !text.empty()) {
-      return Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
-                                    " beyond the header's " + std::to_string(width_) +
-                                    " columns; name every column, and write decimals with a point");
+      if (fields.NextNumber(numbers_, number)) continue;
+      if (Check read = ReadField(fields.Next(), is_time ? *layout_.time : layout_.value, number); !read) return read;
+    } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
+      return line_.Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
+                                          " beyond the header's " + std::to_string(layout_.width) +
+                                          " columns; name every column, and write decimals with a point");
     }
   }
-  const Column& last = time_->index > value_->index ? *time_ : *value_;
+  const bool is_time_last = layout_.time && layout_.time->index > layout_.value.index;
+  const csv::Column& last = is_time_last ? *layout_.time : layout_.value;
   if (index <= last.index) {
-    return Fault(line_.data() + line_.size(), "the row ends after " + std::to_string(index) + " of " +
-                                                  std::to_string(width_) + " fields, before " + Quoted(last.name) +
-                                                  "; complete the row or delete it");
+    is_short_ = true;
+    return line_.Fault(line_.text.data() + line_.text.size(),
+                       "the row ends after " + std::to_string(index) + " of " + std::to_string(layout_.width) +
+                           " fields, before column " + last.name + "; complete the row or delete it");
   }
-  return Append(time, value, time_at);
+  if (rows_ == samples_.time.size()) {
+    if (Check made = MakeRoom(); !made) return made;
+  }
+  Append(time, value);
+  return {};
 }
 
 /// A field that is quoted, or at fault.
-Check Reader::ReadField(std::string_view field, const Column& column, double& number) const {
+Check Reader::ReadField(std::string_view field, const csv::Column& column, double& number) {
   const std::string_view text = Unquote(field);
-  if (ParseNumber(text, number)) return {};
-  return Fault(Trim(field).data(), "column " + Quoted(column.name) + " " + csv::WhyNotANumber(text));
+  if (numbers_.Parse(text, number)) return {};
+  return line_.Fault(Trim(field).data(), "column " + column.name + " " + numbers_.WhyNot(text));
 }
 
-Check Reader::Append(double time, double value, const char* time_at) {
-  const double seconds = time_->unit->ToSi(time);
-  if (rows_ > 0 && seconds <= recording_.time[rows_ - 1]) {
-    const std::string unit = " " + std::string(time_->unit->name);
-    return Fault(time_at, "time " + NumberText(time) + unit + " does not follow " + NumberText(last_time_) + unit +
-                              " of line " + std::to_string(last_row_line_) +
-                              "; times must increase: delete or correct the row");
+/// The host's stamp in seconds since the midnight before the first row, where it is the time.
+Check Reader::TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time) {
+  constexpr double kDay = 86400;
+  if (!is_host_time()) return {};
+  if (!stamp || !stamp->second_of_day) {
+    return line_.Fault(line_.text.data(),
+                       "this line does not begin with the host's time, such as 14:03:22.123 ->, as "
+                       "others do; complete the row or delete it");
   }
-  if (rows_ == recording_.time.size()) {
-    constexpr std::size_t kUsualRowBytes = 16;
-    const auto room = std::max(2 * rows_, static_cast<Eigen::Index>(text_.size() / kUsualRowBytes + kMinimumSamples));
-    recording_.time.conservativeResize(room);
-    recording_.value.conservativeResize(room);
+  time = *stamp->second_of_day + midnights_;
+  if (rows_ > 0 && time < last_host_time_ - kDay / 2) {
+    midnights_ += kDay;
+    time += kDay;
   }
-  recording_.time[rows_] = seconds;
-  recording_.value[rows_] = value_->unit->ToSi(value);
+  last_host_time_ = time;
+  return {};
+}
+
+Check Reader::MakeRoom() {
+  constexpr Eigen::Index kFirstRoom = 4096;
+  const Eigen::Index room = std::max(2 * rows_, kFirstRoom);
+  try {
+    samples_.time.conservativeResize(room);
+    samples_.value.conservativeResize(room);
+  } catch (const std::exception&) {
+    return line_.Fault(line_.text.data(), "the rows up to here fill the memory; split the file");
+  }
+  return {};
+}
+
+void Reader::Append(double time, double value) {
+  samples_.time[rows_] = time;
+  samples_.value[rows_] = value;
+  samples_.lines.Add(line_.number);
   ++rows_;
-  last_time_ = time;
-  last_row_line_ = line_number_;
+}
+
+// ---- The end -----------------------------------------------------------------------------------------------------
+
+Check Reader::CheckEnd() {
+  if (cut_ && rows_ < kMinimumSamples) return tl::unexpected(*cut_);
+  if (cut_) WarnOfIncompleteRow(cut_line_);
+  if (rows_ >= kMinimumSamples) return {};
+  const std::string least = "at least " + std::to_string(kMinimumSamples);
+  const std::string sentence =
+      lines_.is_empty() ? "the file is empty; a header and " + least + " rows of data are needed"
+      : !has_layout_    ? "the file holds only comments and blank lines; a header and " + least + " rows are needed"
+                     : "rows of data found: " + std::to_string(rows_) + "; " + least + " are needed: record for longer";
+  const Line last{lines_.name(), "", lines_.number()};
+  return last.Fault(last.text.data(), sentence, StatusCode::kFailedPrecondition);
+}
+
+/// Of a paste without header the first stamp may have lost its leading digits and read as a number all the same.
+void Reader::LeaveOutCutStamp() {
+  constexpr double kFar = 10;  // Times the steps that follow, and a digit or more.
+  constexpr Eigen::Index kSteps = 7;
+  const Eigen::VectorXd& time = samples_.time;
+  if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples) return;
+  double usual = 0;
+  for (Eigen::Index i = 2; i <= kSteps; ++i) usual = std::max(usual, time[i] - time[i - 1]);
+  if (time[0] < 0 || kFar * time[0] > time[1] || !(time[1] - time[0] > kFar * usual)) return;
+  WarnOfIncompleteRow({lines_.name(), head_.front().text, head_.front().number});
+  LineNumbers lines;
+  for (Eigen::Index i = 1; i < rows_; ++i) lines.Add(samples_.lines.LineOf(i));
+  samples_.lines = std::move(lines);
+  --rows_;
+  for (Eigen::VectorXd* column : {&samples_.time, &samples_.value}) {
+    std::copy(column->begin() + 1, column->begin() + 1 + rows_, column->begin());
+  }
+}
+
+void Reader::WarnOfClock() {
+  if (is_host_time()) {
+    Warn("host_time",
+         "the times are those at which the host received each line; a column of the device's own times is "
+         "better, name it with --time_column");
+  }
+  if (!layout_.time && rate_hz() > 0 && metadata_.lost_samples.find_first_of("123456789") != std::string::npos) {
+    Warn("lost_samples", "the file says that " + metadata_.lost_samples +
+                             " samples were lost, and times counted from the sample rate are late after each");
+  }
+  if (layout_.time && !layout_.is_time_unit_told) {
+    Warn("time_unit_assumed", "column " + layout_.time->name +
+                                  " does not tell its unit and was taken as seconds; give "
+                                  "--time_column with :s, :ms or :us after the column");
+  }
+}
+
+/// Seconds, with the clock repaired.
+Check Reader::SetTimes() {
+  if (!layout_.time && rate_hz() > 0) {
+    for (Eigen::Index i = 0; i < rows_; ++i) samples_.time[i] = static_cast<double>(i) / rate_hz();
+    return {};
+  }
+  if (layout_.time && !layout_.is_time_unit_told && csv::AllWhole(samples_.time)) {
+    return line_.Fault(line_.text.data(),
+                       "column " + layout_.time->name +
+                           " holds whole numbers and does not tell its unit; give --time_column "
+                           "with :s, :ms or :us after the column",
+                       StatusCode::kInvalidArgument);
+  }
+  Result<RawSamples> repaired = RepairClock(std::move(samples_));
+  if (!repaired) return tl::unexpected(std::move(repaired).error());
+  samples_ = *std::move(repaired);
+  const csv::Unit& unit = layout_.time ? *layout_.time->unit : *csv::UnitOfSuffix("s");
+  if (unit.divisor != 1) {
+    for (double& time : samples_.time) time = unit.ToSi(time);
+  }
   return {};
 }
 
 Result<Recording> Reader::Finish() {
-  if (rows_ < kMinimumSamples) {
-    const std::string least = "at least " + std::to_string(kMinimumSamples);
-    const std::string sentence =
-        text_.empty() ? "the file is empty; a header and " + least + " rows of data are needed"
-        : width_ == 0
-            ? "the file holds only comments and blank lines; a header and " + least + " rows are needed"
-            : "rows of data found: " + std::to_string(rows_) + "; " + least + " are needed: record for longer";
-    return Fault(line_.data(), sentence, StatusCode::kFailedPrecondition);
-  }
-  recording_.path = name_;
-  recording_.quantity = value_->unit->kind == Kind::kRate ? Quantity::kRate : Quantity::kAngle;
-  recording_.unit = value_->unit->name;
-  recording_.time.conservativeResize(rows_);
-  recording_.value.conservativeResize(rows_);
-  recording_.resolution = value_->unit->ToSi(file_resolution_);
-  if (file_range_) {
-    recording_.range = SensorRange{value_->unit->ToSi(file_range_->low), value_->unit->ToSi(file_range_->high)};
-  }
-  return MakeRecording(std::move(recording_));
-}
-
-Result<std::string> Sha256(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
-  }
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += {HexDigit(digest.at(i) >> 4), HexDigit(digest.at(i) & 15)};
-  return text;
+  if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
+  LeaveOutCutStamp();
+  WarnOfClock();
+  samples_.time.conservativeResize(rows_);
+  samples_.value.conservativeResize(rows_);
+  Recording recording;
+  if (Check set = SetTimes(); !set) return tl::unexpected(std::move(set).error());
+  recording.path = lines_.name();
+  recording.time = std::move(samples_.time);
+  recording.value = std::move(samples_.value);
+  recording.warnings = std::move(samples_.warnings);
+  recording.clock_scale = metadata_.clock_scale;
+  recording.clock_scale_std_dev = metadata_.clock_scale_std_dev;
+  recording.rig_json = metadata_.rig_json;
+  csv::SetValues(layout_.value, options_, metadata_, recording);
+  Result<std::string> sha256 = lines_.Sha256();
+  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  recording.sha256 = *std::move(sha256);
+  return MakeRecording(std::move(recording));
 }
 
 }  // namespace
 
-Result<Recording> ParseRecording(std::string_view text, const std::string& name, const ReadOptions& /*options*/) {
-  Result<Recording> recording = Reader(text, name).Read();
-  if (!recording) return recording;
-  Result<std::string> sha256 = Sha256(text);
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
-  recording->sha256 = std::move(*sha256);
-  return recording;
+Result<Recording> ParseRecording(std::string_view text, const std::string& name, const ReadOptions& options) {
+  return Reader(LineReader(text, name), options).Read();
 }
 
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options) {
-  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
-  const Result<std::string> bytes = ReadFile(path, "CSV", kMostBytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  return ParseRecording(*bytes, path.string(), options);
+  if (path == "-") return Reader(LineReader(InputFile::StandardInput()), options).Read();
+  Result<InputFile> file = InputFile::Open(path, "CSV");
+  if (!file) return tl::unexpected(std::move(file).error());
+  return Reader(LineReader(*std::move(file)), options).Read();
 }
 
 }  // namespace pendulum

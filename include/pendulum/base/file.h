@@ -1,14 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "pendulum/base/status.h"
 
 namespace pendulum {
+
+/// A file that is open for reading, which may be a pipe.
+class InputFile {
+ public:
+  /// `kind` says what it should be: "a <kind> file". kNotFound: there is no such file. kDataLoss: it is a directory or
+  /// cannot be opened.
+  static Result<InputFile> Open(const std::filesystem::path& path, std::string_view kind);
+
+  /// Standard input, "standard input" in messages.
+  static InputFile StandardInput();
+
+  InputFile(InputFile&& other) noexcept;
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  InputFile& operator=(InputFile&&) = delete;
+  ~InputFile();
+
+  /// Fills `room` with the next bytes, waiting for them; gives how many there were, fewer only at the end of the file.
+  /// kDataLoss: it cannot be read.
+  Result<std::size_t> Read(std::span<char> room);
+
+  /// The path as it was given.
+  const std::string& name() const { return name_; }
+
+ private:
+  InputFile(int descriptor, std::string name);
+
+  int descriptor_;
+  std::string name_;
+};
 
 /// Every byte of a file, which may be a pipe. `kind` says what it should be: "a <kind> file".
 ///

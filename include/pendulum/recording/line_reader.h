@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/status.h"
+
+struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
+
+namespace pendulum {
+
+/// The lines of a text and the SHA-256 of its bytes, with no more than a block of a file in memory at a time.
+///
+/// A byte order mark before the first line is skipped. What could not be CSV text is refused before it is read further:
+/// kDataLoss for a NUL byte (path:line:column) and for a line longer than kLongestLine.
+class LineReader {
+ public:
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  ///< Bytes.
+
+  /// The lines of a text in memory, which must outlive this object; `name` stands for the path in messages.
+  LineReader(std::string_view text, std::string name);
+
+  /// The lines of a file from where it stands.
+  explicit LineReader(InputFile file);
+
+  LineReader(LineReader&& other) noexcept;
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+  LineReader& operator=(LineReader&&) = delete;
+  ~LineReader();
+
+  /// Goes to the next line; false when there is none. kDataLoss: as above, or the file cannot be read.
+  Result<bool> Next() {
+    if (GoOn()) return true;
+    return NextBlock();
+  }
+
+  std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), until Next.
+  std::size_t number() const { return number_; }         ///< Of the line, 1-based; 0 before the first.
+  bool is_terminated() const { return is_terminated_; }  ///< False for a last line that has no line end.
+  bool is_empty() const { return is_empty_; }            ///< True when the text has no byte.
+  const std::string& name() const { return name_; }
+
+  /// SHA-256 of all bytes, once Next has given false; lower-case hexadecimal. kInternal: OpenSSL cannot compute it.
+  Result<std::string> Sha256();
+
+ private:
+  struct FreeDigest {
+    void operator()(evp_md_ctx_st* digest) const;
+  };
+
+  bool GoOn();
+  Result<bool> NextBlock();
+  void TakeLine(const char* line_end);
+  Result<void> Begin();
+  Result<void> Refill();
+  Result<void> Take(std::string_view bytes);
+  tl::unexpected<Status> TooLong() const;
+
+  std::string name_;
+  std::unique_ptr<InputFile> file_;  // Null when all bytes are in memory.
+  std::unique_ptr<char[]> buffer_;
+  const char* at_ = nullptr;   // Of the bytes in memory, the first that is not yet in a line.
+  const char* end_ = nullptr;  // Their end.
+  std::unique_ptr<evp_md_ctx_st, FreeDigest> digest_;
+  std::string_view line_;
+  std::size_t number_ = 0;
+  bool is_terminated_ = true;
+  bool is_empty_ = true;
+  bool has_begun_ = false;
+};
+
+}  // namespace pendulum

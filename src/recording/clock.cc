@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/clock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/median.h"
+#include "tangle.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Check = Result<void>;
+
+/// Of a time in a message: those that a double always keeps, so that a counter is not shown with an exponent.
+constexpr int kDigits = 15;
+
+std::string Count(Index count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+/// One file's stamps under repair.
+class ClockRepair {
+ public:
+  explicit ClockRepair(RawSamples samples) : samples_(std::move(samples)) {}
+
+  Result<RawSamples> Repair();
+
+ private:
+  const Eigen::VectorXd& time() const { return samples_.time; }
+  Index size() const { return samples_.time.size(); }
+
+  std::string TimeText(double time) const { return NumberText(time, kDigits) + " " + samples_.time_unit; }
+  std::string LineText(Index row) const { return samples_.name + ":" + std::to_string(samples_.lines.LineOf(row)); }
+  tl::unexpected<Status> Fault(Index row, const std::string& sentence) const {
+    return Error(StatusCode::kDataLoss, LineText(row) + ": " + sentence);
+  }
+  void Warn(const std::string& code, Index row, const std::string& sentence) {
+    samples_.warnings.push_back({code, LineText(row) + ": " + sentence});
+  }
+
+  bool IsUniform() const;
+  bool Increases() const;
+  double MedianStep() const;
+  void Unwrap();
+  std::optional<double> Grid() const;
+  bool IsNotDecreasing() const;
+  Index OddSteps(double grid) const;
+  Index FirstOfSharedStamp() const;
+  Index SharedRows(std::vector<bool>& keep) const;
+  bool MakeUniform(double grid);
+  Check LeaveOutShared();
+  Check LeaveOutBackward();
+  void Keep(const std::vector<bool>& keep);
+  void WarnOfScatter();
+
+  RawSamples samples_;
+};
+
+/// All steps alike to a tenth of the mean one: nothing to repair, whatever grid the stamps are on.
+bool ClockRepair::IsUniform() const {
+  const Index steps = size() - 1;
+  if (steps < 1) return true;
+  double least = time()[1] - time()[0], largest = least;
+  for (Index i = 1; i < steps; ++i) {
+    const double step = time()[i + 1] - time()[i];
+    least = std::min(least, step);
+    largest = std::max(largest, step);
+  }
+  const double mean = (time()[steps] - time()[0]) / static_cast<double>(steps);
+  return least > 0 && largest - least < 0.09 * mean;
+}
+
+bool ClockRepair::Increases() const {
+  for (Index i = 1; i < size(); ++i) {
+    if (time()[i] <= time()[i - 1]) return false;
+  }
+  return true;
+}
+
+bool ClockRepair::IsNotDecreasing() const { return std::is_sorted(time().begin(), time().end()); }
+
+/// Of the steps that go forward; 0 when there is none.
+double ClockRepair::MedianStep() const {
+  std::vector<double> steps;
+  for (Index i = 1; i < size(); ++i) {
+    if (time()[i] > time()[i - 1]) steps.push_back(time()[i] - time()[i - 1]);
+  }
+  return steps.empty() ? 0 : Median(std::move(steps));
+}
+
+// ---- Counters that begin again -----------------------------------------------------------------------------------
+
+/// A counter of 32 bits holds whole numbers and drops by nearly all of its range.
+void ClockRepair::Unwrap() {
+  constexpr double kRange = 4294967296.0;
+  constexpr double kUsualSteps = 10;
+  if (samples_.time_unit == "s") return;
+  std::vector<Index> wraps;
+  double largest = 0;
+  for (Index i = 0; i < size(); ++i) {
+    if (time()[i] != std::floor(time()[i]) || time()[i] < 0 || time()[i] >= kRange) return;
+    if (i == 0) continue;
+    const double step = time()[i] - time()[i - 1];
+    if (step < -kRange / 2) wraps.push_back(i);
+    largest = std::max(largest, step);
+  }
+  if (wraps.empty()) return;
+  const double limit = std::max(largest, kUsualSteps * MedianStep());
+  for (const Index i : wraps) {
+    if (time()[i] + kRange - time()[i - 1] > limit) return;
+  }
+  Warn("time_wrapped", wraps.front(),
+       "the times begin again from 0 after 2^32 " + samples_.time_unit + ", " +
+           Count(static_cast<Index>(wraps.size()), "time") + " in all; they were counted on");
+  double add = 0;
+  std::size_t next = 0;
+  for (Index i = wraps.front(); i < size(); ++i) {
+    if (next < wraps.size() && wraps[next] == i) {
+      add += kRange;
+      ++next;
+    }
+    samples_.time[i] += add;
+  }
+}
+
+// ---- Coarse stamps -----------------------------------------------------------------------------------------------
+
+bool IsMultiple(double number, double grid) {
+  const double steps = number / grid;
+  return std::abs(steps - std::round(steps)) < 1e-4;
+}
+
+/// The coarsest 1, 2 or 5 times a power of ten that all stamps lie on, counted from the first, when it is a tenth of
+/// the mean sampling interval or more.
+std::optional<double> ClockRepair::Grid() const {
+  constexpr std::array kMantissas = {5.0, 2.0, 1.0};
+  constexpr int kMostDecades = 12;
+  const double span = time().maxCoeff() - time().minCoeff();
+  const double mean = span / static_cast<double>(size() - 1);
+  if (!(mean > 0) || !std::isfinite(span)) return std::nullopt;
+  int exponent = static_cast<int>(std::floor(std::log10(span)));
+  for (int decade = 0; decade < kMostDecades; ++decade, --exponent) {
+    for (const double mantissa : kMantissas) {
+      const double grid = exponent < 0 ? mantissa / std::pow(10, -exponent) : mantissa * std::pow(10, exponent);
+      if (grid < 0.1 * mean) return std::nullopt;
+      const auto is_off_grid = [&](double each) { return !IsMultiple(each - time()[0], grid); };
+      if (std::none_of(time().begin(), time().end(), is_off_grid)) return grid;
+    }
+  }
+  return std::nullopt;
+}
+
+/// How many steps differ from the median one by a step of the grid or more.
+Index ClockRepair::OddSteps(double grid) const {
+  std::vector<double> steps;
+  for (Index i = 1; i < size(); ++i) steps.push_back(std::round((time()[i] - time()[i - 1]) / grid));
+  const double usual = Median(steps);
+  return std::ranges::count_if(steps, [usual](double step) { return step != usual; });
+}
+
+/// The stamps less b i lie between these.
+struct Band {
+  double low;
+  double high;
+
+  double width() const { return high - low; }
+};
+
+Band BandAlong(const Eigen::VectorXd& time, double slope) {
+  Band band{time[0], time[0]};
+  for (Index i = 1; i < time.size(); ++i) {
+    const double offset = time[i] - slope * static_cast<double>(i);
+    band.low = std::min(band.low, offset);
+    band.high = std::max(band.high, offset);
+  }
+  return band;
+}
+
+/// The slope within `reach` of `middle` whose band is narrowest: the width is convex in the slope (golden section).
+double NarrowestBand(const Eigen::VectorXd& time, double middle, double reach) {
+  constexpr int kIterations = 40;
+  constexpr double kGolden = 0.6180339887498949;
+  double low = middle - reach, high = middle + reach;
+  double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+  double left_width = BandAlong(time, left).width(), right_width = BandAlong(time, right).width();
+  for (int i = 0; i < kIterations; ++i) {
+    if (left_width < right_width) {
+      high = std::exchange(right, left);
+      right_width = left_width;
+      left = high - kGolden * (high - low);
+      left_width = BandAlong(time, left).width();
+    } else {
+      low = std::exchange(left, right);
+      left_width = right_width;
+      right = low + kGolden * (high - low);
+      right_width = BandAlong(time, right).width();
+    }
+  }
+  return (low + high) / 2;
+}
+
+/// The slope of least squares.
+double MeanSlope(const Eigen::VectorXd& time) {
+  const double middle = static_cast<double>(time.size() - 1) / 2;
+  double products = 0, squares = 0;
+  for (Index i = 0; i < time.size(); ++i) {
+    const double centred = static_cast<double>(i) - middle;
+    products += centred * (time[i] - time[0]);
+    squares += centred * centred;
+  }
+  return products / squares;
+}
+
+/// Replaces stamps by the uniform clock a + b i that agrees with every one of them to half a step of the grid, and a
+/// twentieth of it for the sampling's own jitter: that of least squares, or the one that comes nearest to all. Stamps
+/// that were cut off instead of rounded differ by a constant.
+bool ClockRepair::MakeUniform(double grid) {
+  constexpr double kWidest = 1.1;
+  const double steps = static_cast<double>(size() - 1);
+  const double mean = (time()[size() - 1] - time()[0]) / steps;
+  double slope = MeanSlope(time());
+  Band band = BandAlong(time(), slope);
+  if (band.width() > kWidest * grid) {
+    slope = NarrowestBand(time(), mean, kWidest * grid / steps);
+    band = BandAlong(time(), slope);
+  }
+  if (band.width() > kWidest * grid || !(slope > 0)) return false;
+  const double per_second = samples_.time_unit == "s" ? 1 : samples_.time_unit == "ms" ? 1e3 : 1e6;
+  Warn("time_rounded", 0,
+       "the times are rounded to " + TimeText(grid) + ", coarse against the sampling interval; " +
+           "they were replaced by a uniform clock of " + NumberText(per_second / slope, 5) +
+           " Hz, which agrees with each of them: this assumes uniform sampling");
+  const double middle = (band.low + band.high) / 2;
+  samples_.time = Eigen::VectorXd::LinSpaced(size(), middle, middle + slope * steps);
+  return true;
+}
+
+/// Stamps that increase although rounded: with regular sampling and gaps every step but a few is the usual one.
+void ClockRepair::WarnOfScatter() {
+  constexpr double kOddShare = 0.1;
+  const std::optional<double> grid = Grid();
+  if (!grid || static_cast<double>(OddSteps(*grid)) <= kOddShare * static_cast<double>(size())) return;
+  Warn("time_rounded", 0,
+       "the times are rounded to " + TimeText(*grid) + ", coarse against the sampling interval, and no uniform clock " +
+           "agrees with them; they were kept, and rounding scatters them by " + NumberText(*grid / std::sqrt(12.0), 2) +
+           " " + samples_.time_unit);
+}
+
+// ---- Stamps that repeat ------------------------------------------------------------------------------------------
+
+/// The first row whose stamp the next row has too, or the number of rows.
+Index ClockRepair::FirstOfSharedStamp() const {
+  Index row = 0;
+  while (row + 1 < size() && time()[row + 1] != time()[row]) ++row;
+  return row + 1 < size() ? row : size();
+}
+
+/// How many rows go when of successive rows with one stamp only those stay whose values are equal, and of them one.
+Index ClockRepair::SharedRows(std::vector<bool>& keep) const {
+  keep.assign(size(), true);
+  Index gone = 0;
+  for (Index begin = 0, end = 0; begin < size(); begin = end) {
+    bool is_equal = true;
+    for (end = begin + 1; end < size() && time()[end] == time()[begin]; ++end) {
+      is_equal = is_equal && samples_.value[end] == samples_.value[begin];
+    }
+    if (end - begin == 1) continue;
+    std::fill(keep.begin() + begin + (is_equal ? 1 : 0), keep.begin() + end, false);
+    gone += end - begin - (is_equal ? 1 : 0);
+  }
+  return gone;
+}
+
+Check ClockRepair::LeaveOutShared() {
+  constexpr double kMostShare = 0.2;
+  const Index first = FirstOfSharedStamp();
+  if (first == size()) return {};
+  std::vector<bool> keep;
+  const Index gone = SharedRows(keep);
+  const std::string many = std::to_string(gone) + " of " + std::to_string(size()) + " rows";
+  if (static_cast<double>(gone) > kMostShare * static_cast<double>(size())) {
+    return Fault(first + 1, "time " + TimeText(time()[first]) + " stands on line " +
+                                std::to_string(samples_.lines.LineOf(first)) + " too, and " + many +
+                                " share a time in this way; no uniform clock agrees with all times: record them to "
+                                "a finer step, or give --sample_rate_hz with --time_column none");
+  }
+  Warn("time_repeated", first + 1,
+       many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
+           "; of rows that are equal one was kept");
+  Keep(keep);
+  return {};
+}
+
+void ClockRepair::Keep(const std::vector<bool>& keep) {
+  LineNumbers lines;
+  Index kept = 0;
+  for (Index i = 0; i < size(); ++i) {
+    if (!keep[i]) continue;
+    samples_.time[kept] = samples_.time[i];
+    samples_.value[kept] = samples_.value[i];
+    lines.Add(samples_.lines.LineOf(i));
+    ++kept;
+  }
+  samples_.time.conservativeResize(kept);
+  samples_.value.conservativeResize(kept);
+  samples_.lines = std::move(lines);
+}
+
+// ---- Stamps that go back -----------------------------------------------------------------------------------------
+
+Check ClockRepair::LeaveOutBackward() {
+  constexpr double kMostShare = 0.05;
+  const double reach = kMostStepsBack * MedianStep();
+  std::vector<bool> keep(size(), true);
+  Index gone = 0, first = 0;
+  double latest = time()[0];
+  for (Index i = 1; i < size(); ++i) {
+    if (latest - time()[i] > reach) {
+      return Fault(i, "time " + TimeText(time()[i]) + " follows " + TimeText(latest) +
+                          ", so the clock was set back: these are two recordings in one file; split it before this "
+                          "line");
+    }
+    if (first == 0 && time()[i] <= latest) first = i;
+    latest = std::max(latest, time()[i]);
+  }
+  for (const Tangle& tangle : FindTangles(time())) gone += LeaveOutFewest(time(), tangle, keep);
+  if (gone == 0) return {};
+  const std::string sentence = "time " + TimeText(time()[first]) + " does not follow " + TimeText(time()[first - 1]) +
+                               " of line " + std::to_string(samples_.lines.LineOf(first - 1));
+  const std::string many = std::to_string(gone) + " of " + std::to_string(size()) + " rows";
+  if (static_cast<double>(gone) > kMostShare * static_cast<double>(size())) {
+    return Fault(first,
+                 sentence + ", and " + many + " would have to go for times to increase; correct or sort the rows");
+  }
+  Warn("time_not_increasing", first, sentence + "; the fewest rows were left out for times to increase, " + many);
+  Keep(keep);
+  return {};
+}
+
+Result<RawSamples> ClockRepair::Repair() {
+  if (IsUniform()) return std::move(samples_);
+  Unwrap();
+  constexpr Index kTellingSteps = 8;  // So many lost rows are not spread evenly by chance (8!/8^8 = 0.2 %).
+  if (IsNotDecreasing()) {
+    const std::optional<double> grid = Grid();
+    std::vector<bool> keep;
+    const bool is_telling = grid && (OddSteps(*grid) >= kTellingSteps || 5 * SharedRows(keep) > size());
+    if (is_telling && MakeUniform(*grid)) return std::move(samples_);
+  }
+  if (Increases()) {
+    WarnOfScatter();
+    return std::move(samples_);
+  }
+  if (Check done = LeaveOutShared(); !done) return tl::unexpected(done.error());
+  if (Check done = LeaveOutBackward(); !done) return tl::unexpected(done.error());
+  return std::move(samples_);
+}
+
+}  // namespace
+
+std::size_t LineNumbers::LineOf(Index row) const {
+  const auto next = std::ranges::upper_bound(jumps_, row, {}, &std::pair<Index, std::size_t>::first);
+  const auto& [first_row, first_line] = *std::prev(next);
+  return first_line + static_cast<std::size_t>(row - first_row);
+}
+
+Result<RawSamples> RepairClock(RawSamples samples) { return ClockRepair(std::move(samples)).Repair(); }
+
+}  // namespace pendulum

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/line_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <openssl/evp.h>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+/// A line of the longest kind with its end just fits, so that a longer one fills it.
+constexpr std::size_t kBufferBytes = LineReader::kLongestLine + 2;
+
+/// The first such byte, or nullptr.
+const char* Find(const char* from, const char* end, char wanted) {
+  return from == end ? nullptr : static_cast<const char*>(std::memchr(from, wanted, end - from));
+}
+
+}  // namespace
+
+void LineReader::FreeDigest::operator()(evp_md_ctx_st* digest) const { EVP_MD_CTX_free(digest); }
+
+LineReader::LineReader(std::string_view text, std::string name)
+    : name_(std::move(name)), at_(text.data()), end_(text.data() + text.size()), digest_(EVP_MD_CTX_new()) {}
+
+LineReader::LineReader(InputFile file)
+    : name_(file.name()),
+      file_(std::make_unique<InputFile>(std::move(file))),
+      buffer_(std::make_unique_for_overwrite<char[]>(kBufferBytes)),
+      at_(buffer_.get()),
+      end_(buffer_.get()),
+      digest_(EVP_MD_CTX_new()) {}
+
+LineReader::LineReader(LineReader&& other) noexcept = default;
+LineReader::~LineReader() = default;
+
+Result<void> LineReader::Begin() {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  has_begun_ = true;
+  if (digest_ == nullptr || EVP_DigestInit_ex(digest_.get(), EVP_sha256(), nullptr) != 1) {
+    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
+  }
+  if (Result<void> taken = file_ == nullptr ? Take({at_, end_}) : Refill(); !taken) return taken;
+  is_empty_ = at_ == end_;
+  if (std::string_view(at_, end_).starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
+  return {};
+}
+
+/// Moves what is left of the block to its front and reads behind it.
+Result<void> LineReader::Refill() {
+  const std::size_t left = end_ - at_;
+  std::memmove(buffer_.get(), at_, left);
+  const Result<std::size_t> got = file_->Read({buffer_.get() + left, kBufferBytes - left});
+  if (!got) return tl::unexpected(got.error());
+  at_ = buffer_.get();
+  end_ = at_ + left + *got;
+  if (left + *got < kBufferBytes) file_.reset();
+  return Take({at_ + left, *got});
+}
+
+/// Hashes bytes that came into memory, and looks for what a logger leaves that lost its power, or an encoding of two
+/// bytes a character.
+Result<void> LineReader::Take(std::string_view bytes) {
+  if (!bytes.empty() && EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()) != 1) {
+    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
+  }
+  const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
+  if (nul == nullptr) return {};
+  const std::string_view before(at_, nul);
+  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the line that at_ begins.
+  return Error(
+      StatusCode::kDataLoss,
+      name_ + ":" + std::to_string(number_ + 1 + std::ranges::count(before, '\n')) + ":" +
+          std::to_string(before.size() - line_begin + 1) +
+          ": a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8");
+}
+
+tl::unexpected<Status> LineReader::TooLong() const {
+  return Error(StatusCode::kDataLoss, name_ + ":" + std::to_string(number_ + 1) +
+                                          ":1: this line is longer than 1 MiB and begins with " + Quoted({at_, end_}) +
+                                          ", so this is not CSV text; name a CSV file");
+}
+
+/// The next line when all of it is in memory.
+bool LineReader::GoOn() {
+  const char* line_end = Find(at_, end_, '\n');
+  if (line_end == nullptr || !has_begun_ || static_cast<std::size_t>(line_end - at_) > kLongestLine) return false;
+  is_terminated_ = true;
+  TakeLine(line_end);
+  at_ = line_end + 1;
+  return true;
+}
+
+void LineReader::TakeLine(const char* line_end) {
+  line_ = {at_, line_end};
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  ++number_;
+}
+
+/// The next line when more has to be read, or the last, or a fault.
+Result<bool> LineReader::NextBlock() {
+  if (!has_begun_) {
+    if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
+  }
+  while (!GoOn()) {
+    if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLong();
+    if (file_ == nullptr) {
+      if (at_ == end_) return false;
+      is_terminated_ = false;
+      TakeLine(end_);
+      at_ = end_;
+      return true;
+    }
+    if (const Result<void> filled = Refill(); !filled) return tl::unexpected(filled.error());
+  }
+  return true;
+}
+
+Result<std::string> LineReader::Sha256() {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  if (EVP_DigestFinal_ex(digest_.get(), digest.data(), &size) != 1) {
+    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
+  }
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i) text += {HexDigit(digest.at(i) >> 4), HexDigit(digest.at(i) & 15)};
+  return text;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/clock.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// Rows with these stamps from line 2 on; each value is its row unless values are given.
+RawSamples Rows(const std::vector<double>& time, const std::string& unit = "s", std::vector<double> value = {}) {
+  RawSamples samples;
+  samples.name = "run.csv";
+  samples.time_unit = unit;
+  const auto size = static_cast<Eigen::Index>(time.size());
+  samples.time = Eigen::Map<const Eigen::VectorXd>(time.data(), size);
+  samples.value = Eigen::VectorXd::LinSpaced(size, 0, static_cast<double>(size - 1));
+  if (!value.empty()) samples.value = Eigen::Map<const Eigen::VectorXd>(value.data(), size);
+  for (Eigen::Index i = 0; i < size; ++i) samples.lines.Add(i + 2);
+  return samples;
+}
+
+std::vector<double> Stamps(int count, const std::function<double(int)>& stamp) {
+  std::vector<double> time;
+  for (int i = 0; i < count; ++i) time.push_back(stamp(i));
+  return time;
+}
+
+/// i-th of `count` stamps at 100 Hz, to the digits a file would have.
+double Hundredth(int i) { return i / 100.0; }
+
+RawSamples Repaired(const RawSamples& samples) {
+  const Result<RawSamples> repaired = RepairClock(samples);
+  EXPECT_TRUE(repaired.has_value()) << (repaired ? "" : repaired.error().message);
+  return repaired.value_or(RawSamples());
+}
+
+/// The only warning, as "code: message".
+std::string WarningOf(const RawSamples& repaired) {
+  EXPECT_EQ(repaired.warnings.size(), 1);
+  return repaired.warnings.empty() ? "" : repaired.warnings[0].code + ": " + repaired.warnings[0].message;
+}
+
+std::string FaultOf(const RawSamples& samples) {
+  const Result<RawSamples> repaired = RepairClock(samples);
+  EXPECT_FALSE(repaired.has_value());
+  if (repaired) return "";
+  EXPECT_EQ(repaired.error().code, StatusCode::kDataLoss);
+  return repaired.error().message;
+}
+
+void ExpectUntouched(const RawSamples& samples) {
+  const RawSamples repaired = Repaired(samples);
+  EXPECT_EQ(repaired.time, samples.time);
+  EXPECT_EQ(repaired.value, samples.value);
+  EXPECT_THAT(repaired.warnings, IsEmpty());
+}
+
+std::vector<double> ValuesOf(const RawSamples& samples) { return {samples.value.begin(), samples.value.end()}; }
+
+TEST(LineNumbers, KnowsTheLineOfEachRow) {
+  LineNumbers lines;
+  for (const std::size_t line : {2, 3, 4, 7, 8, 20}) lines.Add(line);
+  EXPECT_EQ(lines.size(), 6);
+  for (const auto& [row, line] : {std::pair{0, 2}, {2, 4}, {3, 7}, {4, 8}, {5, 20}}) EXPECT_EQ(lines.LineOf(row), line);
+}
+
+// ---- What is ordinary --------------------------------------------------------------------------------------------
+
+TEST(RepairClock, LeavesUniformStampsAsTheyAre) {
+  ExpectUntouched(Rows(Stamps(2000, Hundredth)));
+  ExpectUntouched(Rows(Stamps(600, [](int i) { return std::round(i * 100.0 / 3); }), "ms"));  // 33, 67, 100
+}
+
+TEST(RepairClock, LeavesGapsAsTheyAre) {
+  ExpectUntouched(Rows(Stamps(2000, [](int i) { return Hundredth(i + (i > 700 ? 250 : 0) + (i > 701 ? 1 : 0)); })));
+}
+
+TEST(RepairClock, LeavesEventDrivenSamplingAsItIs) {
+  std::mt19937 random(7);
+  double time = 4;
+  ExpectUntouched(Rows(Stamps(3000, [&](int) {
+    // From 0.1 ms to 1.3 s, to a microsecond, as likely in each factor of e.
+    time += 1e-4 * std::exp(std::log(13000.0) * static_cast<double>(random()) / 4294967296.0);
+    return std::round(time * 1e6) / 1e6;
+  })));
+}
+
+// ---- Counters ----------------------------------------------------------------------------------------------------
+
+TEST(RepairClock, CountsOnWhenACounterOf32BitsBeginsAgain) {
+  for (const char* const unit : {"us", "ms"}) {
+    const double start = 4294967296.0 - 995;  // 2^32
+    const RawSamples repaired =
+        Repaired(Rows(Stamps(200, [&](int i) { return std::fmod(start + 10 * i, 4294967296.0); }), unit));
+    for (int i = 0; i < 200; ++i) EXPECT_EQ(repaired.time[i], start + 10 * i);
+    EXPECT_EQ(WarningOf(repaired), "time_wrapped: run.csv:102: the times begin again from 0 after 2^32 " +
+                                       std::string(unit) + ", 1 time in all; they were counted on");
+  }
+}
+
+TEST(RepairClock, CountsOnAsOftenAsTheCounterBegins) {
+  const double step = 1e9;
+  const RawSamples repaired =
+      Repaired(Rows(Stamps(20, [&](int i) { return std::fmod(step * i, 4294967296.0); }), "us"));
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(repaired.time[i], step * i);
+  EXPECT_THAT(WarningOf(repaired), testing::HasSubstr("run.csv:7: "));
+  EXPECT_THAT(WarningOf(repaired), testing::HasSubstr("4 times in all"));  // 19e9 / 2^32 = 4.4
+}
+
+TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
+  // The logger was started again: 2^32 us would lie between two steps of 10 ms.
+  EXPECT_EQ(
+      FaultOf(Rows(Stamps(200, [](int i) { return i < 100 ? 3e9 + 1e4 * i : 1e4 * i; }), "us")),
+      "run.csv:102: time 1000000 us follows 3000990000 us, so the clock was set back: these are two recordings in "
+      "one file; split it before this line");
+}
+
+// ---- Coarse stamps -----------------------------------------------------------------------------------------------
+
+struct Rounding {
+  double grid;
+  double rate_hz;
+  double start;
+  double freedom = 0.1;  // Of the grid: what the stamps leave open, over the whole of them.
+};
+
+/// The truth is the clock the stamps were rounded from; a common shift, which rounding hides, apart.
+void ExpectTheClockBack(const Rounding& rounding, const std::function<double(double)>& round) {
+  const auto truth = [&](int i) { return rounding.start + i / rounding.rate_hz; };
+  const auto stamp = [&](int i) { return std::round(round(truth(i) / rounding.grid) * rounding.grid * 1e9) / 1e9; };
+  const RawSamples repaired = Repaired(Rows(Stamps(900, stamp)));
+  ASSERT_EQ(repaired.time.size(), 900);
+  const double shift = repaired.time[0] - truth(0);
+  EXPECT_LE(std::abs(shift), rounding.grid);
+  const Eigen::VectorXd true_time = Eigen::VectorXd::LinSpaced(900, truth(0), truth(899)).array() + shift;
+  EXPECT_LE((repaired.time - true_time).cwiseAbs().maxCoeff(), rounding.freedom * rounding.grid)
+      << rounding.grid << " s at " << rounding.rate_hz << " Hz";
+  EXPECT_EQ(repaired.warnings.at(0).code, "time_rounded");
+}
+
+TEST(RepairClock, FindsTheUniformClockBehindCoarseStamps) {
+  // At 29.97 Hz three rows in a row share a stamp of 0.1 s, but for one slip in 1000 rows.
+  for (const Rounding& rounding : {Rounding{0.1, 30, 0.013}, Rounding{1, 30, 0.4}, Rounding{0.1, 29.97, 100, 0.34},
+                                   Rounding{0.01, 30, 3.3}, Rounding{0.1, 12, 0}, Rounding{0.01, 83.1, 0}}) {
+    ExpectTheClockBack(rounding, [](double x) { return std::round(x); });
+    ExpectTheClockBack(rounding, [](double x) { return std::floor(x); });
+  }
+}
+
+TEST(RepairClock, SaysWhatItMadeOfCoarseStamps) {
+  EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
+            "time_rounded: run.csv:2: the times are rounded to 0.1 s, coarse against the sampling interval; they were "
+            "replaced by a uniform clock of 30 Hz, which agrees with each of them: this assumes uniform sampling");
+}
+
+TEST(RepairClock, KeepsCoarseStampsOfUnevenSamplingThatIncrease) {
+  std::mt19937 random(3);
+  double time = 0;
+  const RawSamples samples =
+      Rows(Stamps(500, [&](int) { return time += static_cast<double>(1 + random() % 5); }), "ms");
+  const RawSamples repaired = Repaired(samples);
+  EXPECT_EQ(repaired.time, samples.time);
+  EXPECT_EQ(WarningOf(repaired),
+            "time_rounded: run.csv:2: the times are rounded to 1 ms, coarse against the sampling interval, and no "
+            "uniform clock agrees with them; they were kept, and rounding scatters them by 0.29 ms");  // 1 / sqrt(12)
+}
+
+TEST(RepairClock, RefusesCoarseStampsWithRowsLost) {
+  const auto stamp = [](int i) { return std::round((i < 300 ? i : i + 40) / 3.0) / 10; };
+  EXPECT_EQ(FaultOf(Rows(Stamps(600, stamp))),
+            "run.csv:3: time 0 s stands on line 2 too, and 598 of 600 rows share a time in this way; no uniform clock "
+            "agrees with all times: record them to a finer step, or give --sample_rate_hz with --time_column none");
+}
+
+// ---- Stamps that repeat ------------------------------------------------------------------------------------------
+
+TEST(RepairClock, LeavesOutRowsThatShareAStamp) {
+  std::vector<double> time = Stamps(100, Hundredth);
+  time[50] = time[49];
+  const RawSamples repaired = Repaired(Rows(time));
+  EXPECT_EQ(repaired.time.size(), 98);
+  EXPECT_EQ(repaired.value[48], 48);
+  EXPECT_EQ(repaired.value[49], 51);
+  EXPECT_EQ(repaired.lines.LineOf(49), 53);
+  EXPECT_EQ(WarningOf(repaired),
+            "time_repeated: run.csv:52: 2 of 100 rows were left out because they share their time with another row, "
+            "first 0.49 s; of rows that are equal one was kept");
+}
+
+TEST(RepairClock, KeepsOneOfRowsThatAreEqual) {
+  EXPECT_THAT(ValuesOf(Repaired(Rows({0, 1, 2, 2, 3, 4, 5, 6, 7, 8}, "s", {0, 1, 5, 5, 3, 4, 5, 6, 7, 8}))),
+              ElementsAre(0, 1, 5, 3, 4, 5, 6, 7, 8));
+}
+
+TEST(RepairClock, LeavesOutRowsOfAClockThatStoodStill) {
+  std::vector<double> time = Stamps(100, Hundredth);
+  for (int i = 61; i < 66; ++i) time[i] = time[60];
+  const RawSamples repaired = Repaired(Rows(time));
+  EXPECT_EQ(repaired.time.size(), 94);
+  EXPECT_EQ(repaired.value[60], 66);
+  EXPECT_EQ(repaired.warnings.at(0).code, "time_repeated");
+}
+
+TEST(RepairClock, RefusesWhenMoreThanAFifthOfTheRowsShareAStamp) {
+  std::mt19937 random(5);
+  double time = 0;
+  const std::vector<double> stamps = Stamps(100, [&](int i) {
+    if (i % 8 != 1) time += 1e-3 * static_cast<double>(1 + random() % 1000);
+    return time;
+  });
+  EXPECT_THAT(FaultOf(Rows(stamps)),
+              testing::HasSubstr(", and 26 of 100 rows share a time in this way; "));  // 1, 9, .., 97
+}
+
+// ---- Stamps that go back -----------------------------------------------------------------------------------------
+
+TEST(RepairClock, LeavesOutTheFewestRowsWhereAStampGoesBack) {
+  std::vector<double> time = Stamps(100, Hundredth);
+  time[40] = 0.375;  // Between rows 37 and 38: without row 40 the times increase.
+  time[80] = 0.835;  // Late, between rows 83 and 84.
+  const RawSamples repaired = Repaired(Rows(time));
+  EXPECT_EQ(repaired.time.size(), 98);
+  EXPECT_EQ(repaired.value[39], 39);
+  EXPECT_EQ(repaired.value[40], 41);
+  EXPECT_EQ(repaired.value[78], 79);
+  EXPECT_EQ(repaired.value[79], 81);
+  EXPECT_EQ(
+      WarningOf(repaired),
+      "time_not_increasing: run.csv:42: time 0.375 s does not follow 0.39 s of line 41; the fewest rows were left "
+      "out for times to increase, 2 of 100 rows");
+}
+
+TEST(RepairClock, SeesThatStampsAreOutOfOrderAcrossOthers) {
+  std::vector<double> time = Stamps(100, [](int i) { return i; });
+  for (const auto& [row, stamp] : {std::pair{11, 13.0}, {12, 12.0}, {13, 14.0}, {14, 12.5}}) time[row] = stamp;
+  // 10 13 12 14 12.5 15: 10 12 12.5 15 leaves out two rows, 10 13 14 15 too, nothing fewer.
+  EXPECT_EQ(Repaired(Rows(time)).time.size(), 98);
+}
+
+TEST(RepairClock, RefusesAClockThatWasSetBack) {
+  EXPECT_EQ(FaultOf(Rows(Stamps(400, [](int i) { return Hundredth(i % 200); }))),
+            "run.csv:202: time 0 s follows 1.99 s, so the clock was set back: these are two recordings in one file; "
+            "split it before this line");
+}
+
+TEST(RepairClock, RefusesWhenMoreThanATwentiethOfTheRowsGoBack) {
+  std::vector<double> time = Stamps(100, Hundredth);
+  for (int i = 4; i < 100; i += 15) time[i] -= 0.015;
+  EXPECT_EQ(FaultOf(Rows(time)),
+            "run.csv:6: time 0.025 s does not follow 0.03 s of line 5, and 7 of 100 rows would have to go for times to "
+            "increase; correct or sort the rows");
+}
+
+TEST(RepairClock, RepairsOneFaultAfterAnother) {
+  std::vector<double> time = Stamps(200, Hundredth);
+  time[50] = time[49];
+  time[120] = 1.175;
+  const RawSamples repaired = Repaired(Rows(time));
+  ASSERT_EQ(repaired.warnings.size(), 2);
+  EXPECT_EQ(repaired.warnings[1].message,
+            "run.csv:122: time 1.175 s does not follow 1.19 s of line 121; the fewest rows were left out for times to "
+            "increase, 1 of 198 rows");
+  EXPECT_EQ(repaired.time.size(), 197);
+}
+
+TEST(RepairClock, MakesAnyStampsIncreaseOrRefusesThem) {
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::vector<double> time = Stamps(20 + static_cast<int>(random() % 80), Hundredth);
+    for (auto edits = random() % 4; edits > 0; --edits) {
+      time[random() % time.size()] += 0.005 * (static_cast<double>(random() % 17) - 8);
+    }
+    const Result<RawSamples> repaired = RepairClock(Rows(time));
+    if (!repaired) continue;
+    for (Eigen::Index i = 1; i < repaired->time.size(); ++i) {
+      ASSERT_GT(repaired->time[i], repaired->time[i - 1]) << "trial " << trial << ", row " << i;
+    }
+    EXPECT_EQ(repaired->lines.size(), repaired->time.size());
+  }
+}
+
+}  // namespace
+}  // namespace pendulum
