@@ -191,6 +191,8 @@ ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& opt
   ParameterEstimate parameter;
   parameter.info = problem.infos[i];
   parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
+  const bool is_reading = parameter.unit.starts_with("rad");
+  if (is_reading && !recording.is_calibrated()) parameter.unit.replace(0, 3, recording.unit);
   const auto reported = [&](double internal) { return problem.si_per_internal[i] * internal + problem.offset[i]; };
   parameter.estimate = reported(solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];
@@ -265,6 +267,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.model = problem.model;
   report.start = problem.start.start;
   report.quantity = recording.quantity;
+  report.reading_unit = recording.value_unit();
   const std::optional<Optimum> optimum = Linearize(problem, cost, solution);
   report.solver = {solution.iterations, cost.traces(), solution.message};
   if (!optimum) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "pendulum/base/version.h"
+#include "pendulum/report/layout.h"
 
 namespace pendulum {
 namespace {
@@ -57,9 +58,12 @@ Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) :
 
 Json ResolutionJson(const DataSummary& data) { return data.resolution > 0 ? Json(data.resolution) : Json(nullptr); }
 
-std::string_view UnitSuffix(Quantity quantity) { return quantity == Quantity::kAngle ? "_rad" : "_rad_s"; }
+/// A key with its unit: sigma_rad_s.
+std::string Named(const std::string& name, const std::string& unit) { return name + "_" + KeySuffix(unit); }
 
-std::string Named(std::string_view name, Quantity quantity) { return std::string(name).append(UnitSuffix(quantity)); }
+std::string WindowReason(const DataSummary& data) {
+  return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
+}
 
 Json DataJson(const RunReport& report) {
   const DataSummary& data = report.data;
@@ -70,8 +74,11 @@ Json DataJson(const RunReport& report) {
       .Set("used_samples", Json(data.used_samples))
       .Set("duration_s", data.duration())
       .Set("sample_rate_hz", data.sample_rate())
-      .Set(Named("resolution", data.quantity), ResolutionJson(data))
+      .Set(Named("resolution", data.unit), ResolutionJson(data))
       .Set("window_s", Json::array({data.from, data.to}))
+      .Set("window_reason", TextOrNull(WindowReason(data)))
+      .Set("releases", Json(data.releases))
+      .Set("release", data.release > 0 ? Json(data.release) : Json(nullptr))
       .Set("start", report.fits.front().start == StartKind::kRelease ? "release" : "moving")
       .Done();
 }
@@ -138,8 +145,8 @@ Json CorrelationJson(const FitReport& fit) {
 Json NoiseJson(const FitReport& fit, const DataSummary& data) {
   return NumberObject()
       .Set("model", "gaussian")
-      .Set(Named("sigma", fit.quantity), fit.noise.sigma)
-      .Set(Named("resolution", fit.quantity), ResolutionJson(data))
+      .Set(Named("sigma", fit.reading_unit), fit.noise.sigma)
+      .Set(Named("resolution", fit.reading_unit), ResolutionJson(data))
       .Set("lag1_correlation", fit.noise.lag1_correlation)
       .Done();
 }
@@ -147,7 +154,7 @@ Json NoiseJson(const FitReport& fit, const DataSummary& data) {
 Json StatisticsJson(const FitReport& fit) {
   const FitStatistics& statistics = fit.statistics;
   return NumberObject()
-      .Set(Named("rms_residual", fit.quantity), statistics.rms_residual)
+      .Set(Named("rms_residual", fit.reading_unit), statistics.rms_residual)
       .Set("log_likelihood", statistics.log_likelihood)
       .Set("aic", statistics.aic)
       .Set("aicc", statistics.aicc)
@@ -192,7 +199,7 @@ nlohmann::ordered_json ToJson(const RunReport& report) {
   json["tool"] = {{"name", "fit_pendulum"}, {"version", kVersion}};
   json["data"] = DataJson(report);
   json["rig"] = report.rig ? report.rig->source : Json(nullptr);
-  json["calibration"] = nullptr;
+  json["calibration"] = report.calibration;
   json["fits"] = Json::array();
   for (const FitReport& fit : report.fits) json["fits"].push_back(FitJson(fit, report.data));
   json["warnings"] = WarningsJson(report);

@@ -78,4 +78,10 @@ std::string Paragraph(std::string_view text, std::string_view first, int width) 
   return paragraph + line + "\n";
 }
 
+std::string KeySuffix(std::string_view unit) {
+  std::string suffix(unit);
+  std::ranges::replace(suffix, '/', '_');
+  return suffix;
+}
+
 }  // namespace pendulum

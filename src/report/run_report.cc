@@ -22,12 +22,22 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   DataSummary data;
   data.path = recording.path;
   data.sha256 = recording.sha256;
-  data.quantity = used.quantity;
+  data.unit = used.value_unit();
   data.samples = recording.size();
   data.used_samples = used.size();
   data.from = used.time[0];
   data.to = used.time[used.size() - 1];
   data.resolution = used.resolution;
+  return data;
+}
+
+DataSummary SummarizeData(const Recording& recording, const SwingFit& fit, const ChosenSwings& swings, int release) {
+  DataSummary data = SummarizeData(recording, fit.used);
+  data.begins = fit.swing.begins;
+  data.ends = fit.swing.ends;
+  if (fit.swing.from_given && fit.swing.to_given) return data;
+  for (const FreeSwing& swing : swings.found) data.releases.push_back({swing.from, swing.to});
+  data.release = release;
   return data;
 }
 

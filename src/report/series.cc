@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "pendulum/base/format.h"
+#include "pendulum/report/layout.h"
 
 namespace pendulum {
 namespace {
@@ -17,7 +18,7 @@ void AppendNumber(double value, std::string& text) {
 
 std::string ToResidualCsv(const Recording& used, const FitReport& fit) {
   constexpr std::size_t kTypicalLine = 80;  // bytes
-  const std::string suffix = used.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
+  const std::string suffix = "_" + KeySuffix(used.value_unit());
   std::string text = "time_s,measured" + suffix + ",fitted" + suffix + ",residual" + suffix + "\n";
   text.reserve(kTypicalLine * static_cast<std::size_t>(used.size() + 1));
   const bool fitted = fit.fitted.size() == used.size() && fit.residual.size() == used.size();

@@ -44,13 +44,24 @@ std::optional<Conversion> Degrees(std::string_view unit) {
   return std::nullopt;
 }
 
-/// A number of residuals or noise, in rad or rad/s with degrees beside it.
-std::string ReadingText(double value, Quantity quantity) {
+/// A number of residuals or noise, with degrees beside radians.
+std::string ReadingText(double value, const std::string& unit) {
   constexpr int kReadingDigits = 3;
-  const std::string unit = quantity == Quantity::kAngle ? "rad" : "rad/s";
   const std::optional<Conversion> degrees = Degrees(unit);
+  if (!degrees) return NumberText(value, kReadingDigits) + " " + unit;
   return NumberText(value, kReadingDigits) + " " + unit + " (" + NumberText(value * degrees->factor, kReadingDigits) +
          " " + std::string(degrees->unit) + ")";
+}
+
+/// The free swings of the recording, the one that was fitted marked.
+std::string ReleasesText(const DataSummary& data) {
+  std::string text;
+  for (std::size_t i = 0; i < data.releases.size(); ++i) {
+    const auto [from, to] = data.releases[i];
+    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + ": " + NumberText(from, 4) + " s to " + NumberText(to, 4) +
+            " s" + (static_cast<int>(i) + 1 == data.release ? " (this one)" : "");
+  }
+  return text;
 }
 
 std::string DataText(const DataSummary& data) {
@@ -59,7 +70,12 @@ std::string DataText(const DataSummary& data) {
   rows.push_back({"samples", std::to_string(data.used_samples) + " used of " + std::to_string(data.samples)});
   rows.push_back({"window", NumberText(data.from, kDigits) + " s to " + NumberText(data.to, kDigits) + " s, " +
                                 NumberText(data.sample_rate(), kDigits) + " Hz on average"});
-  if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.quantity)});
+  if (!data.begins.empty()) {
+    rows.push_back({"begins", data.begins});
+    rows.push_back({"ends", data.ends});
+  }
+  if (data.releases.size() > 1) rows.push_back({"releases", ReleasesText(data)});
+  if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.unit)});
   return Heading("Data") + Facts(rows);
 }
 
@@ -225,8 +241,8 @@ std::string StatisticsText(const FitReport& fit) {
   const FitStatistics& statistics = fit.statistics;
   return Heading("Noise and statistics") +
          Facts(
-             {{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.quantity)},
-              {"rms residual", ReadingText(statistics.rms_residual, fit.quantity)},
+             {{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.reading_unit)},
+              {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
               {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
               {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
               {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
@@ -234,7 +250,7 @@ std::string StatisticsText(const FitReport& fit) {
                                      FixedText(statistics.bic, 2)},
               {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
                              std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
-                             NumberText(fit.trace_error, 1) + (fit.quantity == Quantity::kAngle ? " rad" : " rad/s")}});
+                             NumberText(fit.trace_error, 1) + " " + fit.reading_unit}});
 }
 
 std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {

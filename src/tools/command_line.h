@@ -40,4 +40,19 @@ Result<double> ParseNumber(std::string_view flag, std::string_view value, std::s
 Result<ParameterValues> ParseSettings(std::string_view flag, std::string_view text, std::string_view model,
                                       std::span<const ParameterInfo> parameters);
 
+/// The value of a flag that gives parameters bounds, "name=low:high,...", either of which may be left out; SI units.
+///
+/// kInvalidArgument: as ParseSettings, or low is not below high.
+Result<ParameterRanges> ParseRanges(std::string_view flag, std::string_view text, std::string_view model,
+                                    std::span<const ParameterInfo> parameters);
+
+/// The value of a flag that gives parameters priors, "name=mean:std_dev,..."; SI units.
+///
+/// kInvalidArgument: as ParseSettings, or a standard deviation that is not positive.
+Result<ParameterPriors> ParsePriors(std::string_view flag, std::string_view text, std::string_view model,
+                                    std::span<const ParameterInfo> parameters);
+
+/// The parts of a text between separators; none of an empty text.
+std::vector<std::string> Split(std::string_view text, char separator);
+
 }  // namespace pendulum

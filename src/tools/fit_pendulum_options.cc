@@ -2,6 +2,7 @@
 #include "tools/fit_pendulum_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -18,12 +19,23 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
   if (!flags.positional.empty()) {
     return Wrong("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
   }
-  if (flags.data.empty()) return Wrong("no recording was given; name its CSV file with --data");
-  if (flags.data == "-") return Wrong("--data - (standard input) is not supported; name a file");
-  if (flags.data.find(',') != std::string::npos) {
-    return Wrong("--data '" + flags.data + "' has a comma; it takes one file, whose name has none");
+  if (flags.data.empty() == flags.data_list.empty()) {
+    return Wrong(flags.data.empty() ? "no recording was given; name its CSV file with --data"
+                                    : "--data and --data_list both name recordings; give one of them");
+  }
+  for (const std::string& path : Split(flags.data, ',')) {
+    if (path.empty()) return Wrong("--data '" + flags.data + "' has an empty name between its commas");
   }
   return {};
+}
+
+Result<int> ParseRelease(const FitPendulumFlags& flags) {
+  if (flags.release.empty()) return SwingChoice::kLongest;
+  if (flags.release == "all") return SwingChoice::kAll;
+  const auto number = ParseNumber("--release", flags.release, "all, or the number of a release from 1 on");
+  if (!number) return tl::unexpected(number.error());
+  if (*number >= 1 && *number == std::floor(*number) && *number < 1e6) return static_cast<int>(*number);
+  return Wrong("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
 Result<MotionModel> ParseModel(const std::string& model) {
@@ -42,10 +54,11 @@ Result<StartChoice> ParseStart(const std::string& start) {
   return Wrong("--start is '" + start + "'; it must be auto, release or moving");
 }
 
-/// Every parameter that --fix may hold, whatever the start and the sensor turn out to be.
-std::vector<ParameterInfo> FixableParameters(const MotionModel& model) {
+/// Every parameter that a flag may name, whatever the start and the sensor turn out to be.
+std::vector<ParameterInfo> NameableParameters(const MotionModel& model) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);
-  infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias});
+  infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias,
+                             kZeroDrift, kBiasDrift});
   return infos;
 }
 
@@ -67,17 +80,39 @@ Result<void> ParseWindow(const FitPendulumFlags& flags, FitPendulumOptions& opti
   return {};
 }
 
+/// A parameter that is held cannot be bounded or have a prior.
+Result<void> CheckContradictions(const FitOptions& options) {
+  for (const auto& [name, value] : options.fixed) {
+    const std::string other = options.initial.contains(name)  ? "--init"
+                              : options.bounds.contains(name) ? "--bounds"
+                              : options.priors.contains(name) ? "--prior"
+                                                              : "";
+    if (!other.empty()) return Wrong("--fix holds " + name + ", and " + other + " names it too; leave one of them out");
+  }
+  return {};
+}
+
 Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options) {
   const auto model = ParseModel(flags.model);
   if (!model) return tl::unexpected(model.error());
   const auto start = ParseStart(flags.start);
   if (!start) return tl::unexpected(start.error());
-  auto fixed = ParseSettings("--fix", flags.fix, model->name, FixableParameters(*model));
+  const std::vector<ParameterInfo> parameters = NameableParameters(*model);
+  auto fixed = ParseSettings("--fix", flags.fix, model->name, parameters);
   if (!fixed) return tl::unexpected(fixed.error());
+  auto initial = ParseSettings("--init", flags.init, model->name, parameters);
+  if (!initial) return tl::unexpected(initial.error());
+  auto bounds = ParseRanges("--bounds", flags.bounds, model->name, parameters);
+  if (!bounds) return tl::unexpected(bounds.error());
+  auto priors = ParsePriors("--prior", flags.prior, model->name, parameters);
+  if (!priors) return tl::unexpected(priors.error());
   options.model = model->name;
   options.start = *start;
   options.fixed = *std::move(fixed);
-  return {};
+  options.initial = *std::move(initial);
+  options.bounds = *std::move(bounds);
+  options.priors = *std::move(priors);
+  return CheckContradictions(options);
 }
 
 }  // namespace
@@ -90,7 +125,9 @@ std::vector<NamedFile> FitPendulumOptions::Outputs() const {
 }
 
 std::vector<NamedFile> FitPendulumOptions::Inputs() const {
-  std::vector<NamedFile> inputs = {{"--data", data}};
+  std::vector<NamedFile> inputs;
+  for (const std::string& path : data) inputs.push_back({"--data", path});
+  if (!data_list.empty()) inputs.push_back({"--data_list", data_list});
   if (!rig.empty()) inputs.push_back({"--rig", rig});
   return inputs;
 }
@@ -100,7 +137,11 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
   if (const auto parsed = ParseFitOptions(flags, options.fit); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());
-  options.data = flags.data;
+  const auto release = ParseRelease(flags);
+  if (!release) return tl::unexpected(release.error());
+  options.swing.release = *release;
+  options.data = Split(flags.data, ',');
+  options.data_list = flags.data_list;
   options.rig = flags.rig;
   options.json = flags.json;
   options.residuals = flags.residuals;

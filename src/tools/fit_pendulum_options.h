@@ -13,12 +13,17 @@ namespace pendulum {
 /// The flags of fit_pendulum as they were given; empty, or the default, where they were not.
 struct FitPendulumFlags {
   std::string data;
+  std::string data_list;
   std::string rig;
   std::string model = "coulomb";
   std::string start = "auto";
+  std::string release;
   std::string from;
   std::string to;
   std::string fix;
+  std::string init;
+  std::string bounds;
+  std::string prior;
   std::string json;
   std::string residuals;
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
@@ -26,7 +31,8 @@ struct FitPendulumFlags {
 
 /// What fit_pendulum is asked to do.
 struct FitPendulumOptions {
-  std::string data;  ///< Path of the recording.
+  std::vector<std::string> data;  ///< Paths of the recordings; each is fitted by itself.
+  std::string data_list;          ///< Path of a file that lists more of them; empty for none.
   std::string rig;   ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
   SwingChoice swing;
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.

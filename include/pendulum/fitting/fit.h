@@ -51,7 +51,7 @@ int ExitCode(Termination termination);
 /// One parameter after the fit, in the unit given.
 struct ParameterEstimate {
   ParameterInfo info;
-  std::string_view unit;  ///< info.unit with a rig, info.relative_unit without.
+  std::string unit;  ///< info.unit with a rig, info.relative_unit without; counts and volts instead of rad.
   double estimate = 0;
   std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
   std::optional<double> lower95, upper95;  ///< Interval of 95 % (Student's t); one end is the bound when at_bound.
@@ -82,6 +82,7 @@ struct FitReport {
   std::string reason;  ///< A sentence, whatever the termination.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
+  std::string reading_unit = "rad";  ///< Of readings, residuals and noise: rad, rad/s, counts or volts.
   std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.

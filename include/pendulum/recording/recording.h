@@ -39,6 +39,11 @@ struct Recording {
   /// False when `value` is in counts or volts for want of a calibration: an angle in an unknown unit.
   bool is_calibrated() const { return calibration.has_value() || (unit != "counts" && unit != "volts"); }
 
+  /// The unit of `value`: rad, rad/s, counts or volts.
+  std::string value_unit() const {
+    return !is_calibrated() ? unit : quantity == Quantity::kAngle ? "rad" : "rad/s";
+  }
+
   Eigen::Index size() const { return time.size(); }
 };
 

@@ -26,4 +26,7 @@ std::string AlignedTable(const std::vector<Column>& columns, const std::vector<s
 /// `first`, the others with as many blanks. Ends with a line break.
 std::string Paragraph(std::string_view text, std::string_view first, int width);
 
+/// A unit as the end of a key or a column: rad_s for rad/s.
+std::string KeySuffix(std::string_view unit);
+
 }  // namespace pendulum

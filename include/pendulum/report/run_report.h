@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 
 #include "pendulum/base/status.h"
 #include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 
@@ -19,12 +22,15 @@ namespace pendulum {
 struct DataSummary {
   std::string path;                      ///< As the user named it; empty when it did not come from a file.
   std::string sha256;                    ///< Of the file's bytes; empty when it did not come from a file.
-  Quantity quantity = Quantity::kAngle;  ///< Decides the unit of resolution, residuals and noise: rad or rad/s.
+  std::string unit = "rad";              ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
   Eigen::Index samples = 0;              ///< In the file.
   Eigen::Index used_samples = 0;         ///< In the window that was fitted; at least kMinimumSamples.
   double from = 0;                       ///< Time of the first used sample [s, on the file's clock].
   double to = 0;                         ///< Time of the last used sample [s, on the file's clock].
-  double resolution = 0;                 ///< Spacing of the values, rad or rad/s; 0 when the file does not tell.
+  double resolution = 0;                 ///< Spacing of the values; 0 when the file does not tell.
+  std::string begins, ends;              ///< Why the window is what it is; empty where nothing was chosen.
+  std::vector<std::array<double, 2>> releases;  ///< From and to of each free swing that was found [s].
+  int release = 0;                              ///< The one that was fitted, from 1; 0: a window as it was asked for.
 
   double duration() const { return to - from; }                                              ///< s
   double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, the mean
@@ -33,10 +39,14 @@ struct DataSummary {
 /// The summary of a recording of which `used` was fitted.
 DataSummary SummarizeData(const Recording& recording, const Recording& used);
 
+/// The same, and why: swing number `release` of those that were found.
+DataSummary SummarizeData(const Recording& recording, const SwingFit& fit, const ChosenSwings& swings, int release);
+
 /// All that a run of fit_pendulum found: what every form of the report is made from.
 struct RunReport {
   DataSummary data;
   std::optional<Rig> rig;         ///< The rig all fits used.
+  nlohmann::ordered_json calibration;  ///< What turned counts or volts into angles, as it was given; null for none.
   std::vector<FitReport> fits;    ///< At least one, in the order asked for.
   std::vector<Warning> warnings;  ///< Of the recording; a fit's own stand in its FitReport.
 };
