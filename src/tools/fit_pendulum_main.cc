@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,19 @@
 
 const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() + "; default coulomb.";
 
-DEFINE_string(data, "", "Recording (CSV); its header names the columns and their units, such as time_s,angle_deg.");
+DEFINE_string(data, "",
+              "Recording (CSV); its header names the columns and their units, such as time_s,angle_deg; - is "
+              "standard input.");
+DEFINE_string(calibration, "",
+              "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
+DEFINE_string(time_column, "",
+              "Column of times, name or number from 1 on, with :s, :ms or :us where the name tells no "
+              "unit; none takes --sample_rate_hz instead; default by name.");
+DEFINE_string(value_column, "",
+              "Column of the angle or rate, name or number from 1 on; default by the unit in its name.");
+DEFINE_string(unit, "",
+              "Unit of the values: rad, deg, rad_s, deg_s, counts or volts; default that in the column's name.");
+DEFINE_string(sample_rate_hz, "", "Samples per second of a file without times; default its line # sample_rate_hz.");
 DEFINE_string(rig, "", "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.");
 DEFINE_string(model, "coulomb", kModelHelp.c_str());
 DEFINE_string(start, "auto", "How the recording begins: auto (the data tell), release or moving; default auto.");
@@ -42,12 +55,27 @@ constexpr const char* kUsage =
     "  fit_pendulum --data run.csv [--rig rig.json] [--model coulomb] [--json fit.json]\n"
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
-    "4 unreadable data or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
+    "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
-  return {FLAGS_data, FLAGS_rig, FLAGS_model, FLAGS_start,     FLAGS_from,
-          FLAGS_to,   FLAGS_fix, FLAGS_json,  FLAGS_residuals, positional};
+  FitPendulumFlags flags;
+  flags.data = FLAGS_data;
+  flags.rig = FLAGS_rig;
+  flags.model = FLAGS_model;
+  flags.start = FLAGS_start;
+  flags.from = FLAGS_from;
+  flags.to = FLAGS_to;
+  flags.fix = FLAGS_fix;
+  flags.json = FLAGS_json;
+  flags.residuals = FLAGS_residuals;
+  flags.calibration = FLAGS_calibration;
+  flags.time_column = FLAGS_time_column;
+  flags.value_column = FLAGS_value_column;
+  flags.unit = FLAGS_unit;
+  flags.sample_rate_hz = FLAGS_sample_rate_hz;
+  flags.positional = positional;
+  return flags;
 }
 
 /// Everything that is to be written, and how the fit ended.
@@ -73,16 +101,33 @@ RunResult Render(const FitPendulumOptions& options, const RunReport& report, con
   return result;
 }
 
+/// The recording through its calibration.
+Result<Recording> ReadData(FitPendulumOptions& options) {
+  if (!options.calibration.empty()) {
+    auto calibration = ReadCalibration(options.calibration);
+    if (!calibration) return tl::unexpected(calibration.error());
+    options.read.calibration = *std::move(calibration);
+  }
+  return ReadRecording(options.data, options.read);
+}
+
+/// The rig file, or without one what the recording says of its rig.
+Result<std::optional<Rig>> ReadRigOf(const std::string& path, const Recording& recording) {
+  if (path.empty() && recording.rig_json.empty()) return std::nullopt;
+  auto rig = path.empty() ? ParseRig(recording.rig_json, recording.path + ": # rig") : ReadRig(path);
+  if (!rig) return tl::unexpected(rig.error());
+  return *std::move(rig);
+}
+
 Result<RunResult> FitFile(FitPendulumOptions options) {
   RunReport report;
-  if (!options.rig.empty()) {
-    auto rig = ReadRig(options.rig);
-    if (!rig) return tl::unexpected(rig.error());
-    report.rig = *std::move(rig);
-    options.fit.rig = report.rig;
-  }
-  const auto recording = ReadRecording(options.data);
+  auto rig = ReadRigOf(options.rig, Recording());  // Its faults need no data.
+  if (!rig) return tl::unexpected(rig.error());
+  const auto recording = ReadData(options);
   if (!recording) return tl::unexpected(recording.error());
+  if (!*rig) rig = ReadRigOf("", *recording);
+  if (!rig) return tl::unexpected(rig.error());
+  options.fit.rig = report.rig = *std::move(rig);
   const auto used = SelectWindow(*recording, options.from, options.to);
   if (!used) return tl::unexpected(used.error());
   auto fit = FitRecording(*used, options.fit);

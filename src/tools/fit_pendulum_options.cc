@@ -2,9 +2,11 @@
 #include "tools/fit_pendulum_options.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 #include "tools/command_line.h"
@@ -19,7 +21,6 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
     return Wrong("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
   }
   if (flags.data.empty()) return Wrong("no recording was given; name its CSV file with --data");
-  if (flags.data == "-") return Wrong("--data - (standard input) is not supported; name a file");
   if (flags.data.find(',') != std::string::npos) {
     return Wrong("--data '" + flags.data + "' has a comma; it takes one file, whose name has none");
   }
@@ -80,6 +81,39 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
   return {};
 }
 
+/// Contradictions that the file could not settle.
+Result<void> CheckReadFlags(const FitPendulumFlags& flags) {
+  const bool is_time_chosen = !flags.time_column.empty() && flags.time_column != "none";
+  if (is_time_chosen && !flags.sample_rate_hz.empty()) {
+    return Wrong("--time_column and --sample_rate_hz both say what the times are; leave one of them out");
+  }
+  if (is_time_chosen && flags.time_column == flags.value_column) {
+    return Wrong("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
+  }
+  constexpr std::array<std::string_view, 6> kUnits = {"rad", "deg", "rad_s", "deg_s", "counts", "volts"};
+  if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
+    return Wrong("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
+  }
+  if (!flags.calibration.empty() && !flags.unit.empty() && flags.unit != "counts" && flags.unit != "volts") {
+    return Wrong("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
+                 flags.unit + "; leave one of them out");
+  }
+  return {};
+}
+
+Result<void> ParseReadOptions(const FitPendulumFlags& flags, ReadOptions& options) {
+  if (auto checked = CheckReadFlags(flags); !checked) return checked;
+  options.time_column = flags.time_column;
+  options.value_column = flags.value_column;
+  options.unit = flags.unit;
+  if (flags.sample_rate_hz.empty()) return {};
+  const auto rate = ParseNumber("--sample_rate_hz", flags.sample_rate_hz, "a positive number of samples per second");
+  if (!rate) return tl::unexpected(rate.error());
+  if (*rate <= 0) return Wrong("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
+  options.sample_rate_hz = *rate;
+  return {};
+}
+
 }  // namespace
 
 std::vector<NamedFile> FitPendulumOptions::Outputs() const {
@@ -90,7 +124,9 @@ std::vector<NamedFile> FitPendulumOptions::Outputs() const {
 }
 
 std::vector<NamedFile> FitPendulumOptions::Inputs() const {
-  std::vector<NamedFile> inputs = {{"--data", data}};
+  std::vector<NamedFile> inputs;
+  if (data != "-") inputs.push_back({"--data", data});
+  if (!calibration.empty()) inputs.push_back({"--calibration", calibration});
   if (!rig.empty()) inputs.push_back({"--rig", rig});
   return inputs;
 }
@@ -100,7 +136,9 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
   if (const auto parsed = ParseFitOptions(flags, options.fit); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());
+  if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
   options.data = flags.data;
+  options.calibration = flags.calibration;
   options.rig = flags.rig;
   options.json = flags.json;
   options.residuals = flags.residuals;
