@@ -51,6 +51,7 @@ class Reader {
   void WarnOfIncompleteRow(const Line& line);
   Check CheckEnd();
   void LeaveOutCutStamp();
+  void LeaveOutCutValue();
   void WarnOfClock();
   Check SetTimes();
   Result<Recording> Finish();
@@ -287,6 +288,19 @@ void Reader::LeaveOutCutStamp() {
   }
 }
 
+/// A last value without a line end may have lost digits and read as a number all the same: it leaps as no other does.
+void Reader::LeaveOutCutValue() {
+  constexpr double kLeap = 2;  // Times the largest step between other rows.
+  const Eigen::Index last = rows_ - 1;
+  if (lines_.is_terminated() || last < kMinimumSamples || samples_.lines.LineOf(last) != lines_.number()) return;
+  const Eigen::VectorXd& value = samples_.value;
+  const double leap = std::abs(value[last] - value[last - 1]);
+  const double usual = (value.segment(1, last - 1) - value.head(last - 1)).cwiseAbs().maxCoeff();
+  if (!(usual > 0) || leap <= kLeap * usual) return;
+  WarnOfIncompleteRow({lines_.name(), lines_.line(), lines_.number()});
+  --rows_;
+}
+
 void Reader::WarnOfClock() {
   if (is_host_time()) {
     Warn("host_time",
@@ -329,6 +343,7 @@ Check Reader::SetTimes() {
 
 Result<Recording> Reader::Finish() {
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
+  LeaveOutCutValue();
   LeaveOutCutStamp();
   WarnOfClock();
   samples_.time.conservativeResize(rows_);

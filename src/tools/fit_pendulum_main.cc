@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
+#include <algorithm>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,13 +10,13 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
-#include "pendulum/closed_form/free_swing.h"
-#include "pendulum/fitting/fit.h"
 #include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
+#include "pendulum/recording/data_list.h"
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/recording/repair_values.h"
+#include "pendulum/recording/sensor.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
 #include "pendulum/report/text.h"
@@ -23,13 +26,30 @@
 
 const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() + "; default coulomb.";
 
-DEFINE_string(data, "", "Recording (CSV); its header names the columns and their units, such as time_s,angle_deg.");
+DEFINE_string(data, "",
+              "Recording (CSV); its header names the columns and their units, such as time_s,angle_deg; - is "
+              "standard input.");
+DEFINE_string(calibration, "",
+              "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
+DEFINE_string(time_column, "",
+              "Column of times, name or number from 1 on, with :s, :ms or :us where the name tells no "
+              "unit; none takes --sample_rate_hz instead; default by name.");
+DEFINE_string(value_column, "",
+              "Column of the angle or rate, name or number from 1 on; default by the unit in its name.");
+DEFINE_string(unit, "",
+              "Unit of the values: rad, deg, rad_s, deg_s, counts or volts; default that in the column's name.");
+DEFINE_string(sample_rate_hz, "", "Samples per second of a file without times; default its line # sample_rate_hz.");
+DEFINE_string(data_list, "", "File that lists recordings, one path a line, each to be fitted by itself; default none.");
+DEFINE_string(release, "", "Which free swing of a recording to fit: a number from 1, or all; default the longest.");
 DEFINE_string(rig, "", "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.");
 DEFINE_string(model, "coulomb", kModelHelp.c_str());
 DEFINE_string(start, "auto", "How the recording begins: auto (the data tell), release or moving; default auto.");
-DEFINE_string(from, "", "Start of the window to fit, s on the file's clock; default the first sample.");
-DEFINE_string(to, "", "End of the window to fit, s on the file's clock; default the last sample.");
+DEFINE_string(from, "", "Start of the window to fit, s on the file's clock; default where the free swing begins.");
+DEFINE_string(to, "", "End of the window to fit, s on the file's clock; default where the free swing ends.");
 DEFINE_string(fix, "", "Parameters to hold, name=value,... in SI (rad, s; torques as in the report); default none.");
+DEFINE_string(init, "", "Where parameters begin, name=value,... as in --fix; default where the data say.");
+DEFINE_string(bounds, "", "Bounds of parameters, name=low:high,... as in --fix, either may be left out; default none.");
+DEFINE_string(prior, "", "What is known beforehand, name=mean:std_dev,... as in --fix; default nothing.");
 DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
 
@@ -44,68 +64,159 @@ constexpr const char* kUsage =
     "  fit_pendulum --data run.csv [--rig rig.json] [--model coulomb] [--json fit.json]\n"
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
-    "4 unreadable data or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
+    "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
-  return {FLAGS_data, FLAGS_rig, FLAGS_model, FLAGS_start,     FLAGS_from,
-          FLAGS_to,   FLAGS_fix, FLAGS_json,  FLAGS_residuals, positional};
+  FitPendulumFlags flags;
+  flags.data = FLAGS_data;
+  flags.data_list = FLAGS_data_list;
+  flags.release = FLAGS_release;
+  flags.init = FLAGS_init;
+  flags.bounds = FLAGS_bounds;
+  flags.prior = FLAGS_prior;
+  flags.rig = FLAGS_rig;
+  flags.model = FLAGS_model;
+  flags.start = FLAGS_start;
+  flags.from = FLAGS_from;
+  flags.to = FLAGS_to;
+  flags.fix = FLAGS_fix;
+  flags.json = FLAGS_json;
+  flags.residuals = FLAGS_residuals;
+  flags.calibration = FLAGS_calibration;
+  flags.time_column = FLAGS_time_column;
+  flags.value_column = FLAGS_value_column;
+  flags.unit = FLAGS_unit;
+  flags.sample_rate_hz = FLAGS_sample_rate_hz;
+  flags.positional = positional;
+  return flags;
 }
 
-/// Everything that is to be written, and how the fit ended.
-struct RunResult {
-  std::vector<Output> outputs;
-  Termination termination = Termination::kFailed;
+/// One free swing of one recording, fitted.
+struct Run {
+  RunReport report;
+  Recording used;
 };
 
-RunResult Render(const FitPendulumOptions& options, const RunReport& report, const Recording& used) {
-  const FitReport& fit = report.fits.front();
-  RunResult result;
-  result.termination = fit.termination;
-  if (!options.json.empty()) result.outputs.push_back({options.json, ToJsonText(report)});
-  if (!options.residuals.empty()) result.outputs.push_back({options.residuals, ToResidualCsv(used, fit)});
-  if (IsStandardOutput(options.json) || IsStandardOutput(options.residuals)) {
-    for (const Warning& warning : AllWarnings(report)) Say(kName, "warning: " + warning.message);
-  } else {
-    result.outputs.push_back({"-", ToText(report)});
-  }
-  if (fit.termination != Termination::kConverged) {
-    Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
-  }
-  return result;
-}
+/// What the runs need beside their recordings.
+struct Setup {
+  std::vector<std::string> paths;
+  std::optional<Rig> rig;
+};
 
-Result<RunResult> FitFile(FitPendulumOptions options) {
-  RunReport report;
+Result<Setup> ReadSetup(FitPendulumOptions& options) {
+  Setup setup{options.data, std::nullopt};
   if (!options.rig.empty()) {
     auto rig = ReadRig(options.rig);
     if (!rig) return tl::unexpected(rig.error());
-    report.rig = *std::move(rig);
-    options.fit.rig = report.rig;
+    setup.rig = *std::move(rig);
   }
-  const auto recording = ReadRecording(options.data);
-  if (!recording) return tl::unexpected(recording.error());
-  const Recording repaired = RepairValues(*recording);
-  const auto swings = ChooseSwings(repaired, options.swing);
+  if (!options.calibration.empty()) {
+    auto calibration = ReadCalibration(options.calibration);
+    if (!calibration) return tl::unexpected(calibration.error());
+    options.read.calibration = *std::move(calibration);
+  }
+  if (options.data_list.empty()) return setup;
+  const auto listed = ReadDataList(options.data_list);
+  if (!listed) return tl::unexpected(listed.error());
+  for (const ListedFile& file : *listed) setup.paths.push_back(file.path.string());
+  return setup;
+}
+
+/// The swings that are asked for in one recording, fitted one by one; `rig` wins over what the recording says of its rig.
+Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
+  auto read = ReadRecording(path, options.read);
+  if (!read) return tl::unexpected(read.error());
+  if (!rig && !read->rig_json.empty()) {
+    auto own = ParseRig(read->rig_json, read->path + ": # rig");
+    if (!own) return tl::unexpected(own.error());
+    rig = *std::move(own);
+  }
+  FitOptions fit_options = options.fit;
+  fit_options.rig = rig;
+  const Eigen::Index samples = read->size();
+  const Recording recording = RepairValues(*std::move(read));
+  const auto swings = ChooseSwings(recording, options.swing);
   if (!swings) return tl::unexpected(swings.error());
-  auto fit = FitSwing(repaired, swings->found[swings->chosen.front() - 1], options.fit);
-  if (!fit) return tl::unexpected(fit.error());
-  report.data = SummarizeData(*recording, fit->used);
-  report.warnings = repaired.warnings;
-  report.fits.push_back(fit->fit);
-  return Render(options, report, fit->used);
+  std::vector<Run> runs;
+  for (const int release : swings->chosen) {
+    auto fit = FitSwing(recording, swings->found[static_cast<std::size_t>(release - 1)], fit_options);
+    if (!fit) return tl::unexpected(fit.error());
+    Run run;
+    run.report.data = SummarizeData(recording, *fit, *swings, release);
+    run.report.data.samples = samples;
+    run.report.rig = rig;
+    if (recording.calibration) run.report.calibration = recording.calibration->source;
+    run.report.warnings = recording.warnings;
+    run.report.fits.push_back(std::move(fit->fit));
+    run.used = std::move(fit->used);
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+/// What is to be written of all runs; tables for people are joined on standard output unless data go there.
+std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Run>& runs) {
+  const bool data_on_stdout = IsStandardOutput(options.json) || IsStandardOutput(options.residuals);
+  const auto count = static_cast<int>(runs.size());
+  std::vector<Output> outputs;
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const Run& run = runs[static_cast<std::size_t>(i)];
+    const FitReport& fit = run.report.fits.front();
+    if (!options.json.empty()) {
+      outputs.push_back({NumberedPath(options.json, i, count), ToJsonText(run.report)});
+    }
+    if (!options.residuals.empty()) {
+      outputs.push_back({NumberedPath(options.residuals, i, count), ToResidualCsv(run.used, fit)});
+    }
+    text += (i == 0 ? "" : "\n") + ToText(run.report);
+    if (data_on_stdout) {
+      for (const Warning& warning : AllWarnings(run.report)) Say(kName, "warning: " + warning.message);
+    }
+    if (fit.termination != Termination::kConverged) {
+      Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
+    }
+  }
+  if (!data_on_stdout) outputs.push_back({"-", text});
+  return outputs;
+}
+
+/// Numbered outputs are other files than those that were checked before; data of several fits have no place on one stream.
+Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, int count) {
+  if (count == 1) return {};
+  for (const NamedFile& output : options.Outputs()) {
+    if (!IsStandardOutput(output.path)) continue;
+    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
+                                                   std::to_string(count) + "; name a file, and they are numbered");
+  }
+  for (int i = 0; i < count; ++i) {
+    if (const auto checked = CheckOutputs(options.Outputs(i, count), options.Inputs()); !checked) return checked;
+  }
+  return {};
 }
 
 Result<int> Work(const std::vector<std::string>& positional) {
-  const auto options = MakeFitPendulumOptions(CurrentFlags(positional));
+  auto options = MakeFitPendulumOptions(CurrentFlags(positional));
   if (!options) return tl::unexpected(options.error());
   if (const auto checked = CheckOutputs(options->Outputs(), options->Inputs()); !checked) {
     return tl::unexpected(checked.error());
   }
-  const auto result = FitFile(*options);
-  if (!result) return tl::unexpected(result.error());
-  if (const auto written = WriteOutputs(result->outputs); !written) return tl::unexpected(written.error());
-  return ExitCode(result->termination);
+  const auto setup = ReadSetup(*options);
+  if (!setup) return tl::unexpected(setup.error());
+  std::vector<Run> runs;
+  for (const std::string& path : setup->paths) {
+    auto fitted = FitFile(*options, path, setup->rig);
+    if (!fitted) return tl::unexpected(fitted.error());
+    std::ranges::move(*fitted, std::back_inserter(runs));
+  }
+  if (const auto checked = CheckNumberedOutputs(*options, static_cast<int>(runs.size())); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (const auto written = WriteOutputs(Render(*options, runs)); !written) return tl::unexpected(written.error());
+  const auto worst = std::ranges::max(
+      runs, {}, [](const Run& run) { return ExitCode(run.report.fits.front().termination); });
+  return ExitCode(worst.report.fits.front().termination);
 }
 
 }  // namespace

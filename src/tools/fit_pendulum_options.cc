@@ -2,10 +2,12 @@
 #include "tools/fit_pendulum_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 #include "tools/command_line.h"
@@ -115,19 +117,55 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
   return CheckContradictions(options);
 }
 
+/// Contradictions that the file could not settle.
+Result<void> CheckReadFlags(const FitPendulumFlags& flags) {
+  const bool is_time_chosen = !flags.time_column.empty() && flags.time_column != "none";
+  if (is_time_chosen && !flags.sample_rate_hz.empty()) {
+    return Wrong("--time_column and --sample_rate_hz both say what the times are; leave one of them out");
+  }
+  if (is_time_chosen && flags.time_column == flags.value_column) {
+    return Wrong("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
+  }
+  constexpr std::array<std::string_view, 6> kUnits = {"rad", "deg", "rad_s", "deg_s", "counts", "volts"};
+  if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
+    return Wrong("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
+  }
+  if (!flags.calibration.empty() && !flags.unit.empty() && flags.unit != "counts" && flags.unit != "volts") {
+    return Wrong("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
+                 flags.unit + "; leave one of them out");
+  }
+  return {};
+}
+
+Result<void> ParseReadOptions(const FitPendulumFlags& flags, ReadOptions& options) {
+  if (auto checked = CheckReadFlags(flags); !checked) return checked;
+  options.time_column = flags.time_column;
+  options.value_column = flags.value_column;
+  options.unit = flags.unit;
+  if (flags.sample_rate_hz.empty()) return {};
+  const auto rate = ParseNumber("--sample_rate_hz", flags.sample_rate_hz, "a positive number of samples per second");
+  if (!rate) return tl::unexpected(rate.error());
+  if (*rate <= 0) return Wrong("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
+  options.sample_rate_hz = *rate;
+  return {};
+}
+
 }  // namespace
 
-std::vector<NamedFile> FitPendulumOptions::Outputs() const {
+std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
   std::vector<NamedFile> outputs;
-  if (!json.empty()) outputs.push_back({"--json", json});
-  if (!residuals.empty()) outputs.push_back({"--residuals", residuals});
+  if (!json.empty()) outputs.push_back({"--json", NumberedPath(json, index, count)});
+  if (!residuals.empty()) outputs.push_back({"--residuals", NumberedPath(residuals, index, count)});
   return outputs;
 }
 
 std::vector<NamedFile> FitPendulumOptions::Inputs() const {
   std::vector<NamedFile> inputs;
-  for (const std::string& path : data) inputs.push_back({"--data", path});
-  if (!data_list.empty()) inputs.push_back({"--data_list", data_list});
+  for (const std::string& path : data) {
+    if (path != "-") inputs.push_back({"--data", path});
+  }
+  if (!data_list.empty() && data_list != "-") inputs.push_back({"--data_list", data_list});
+  if (!calibration.empty()) inputs.push_back({"--calibration", calibration});
   if (!rig.empty()) inputs.push_back({"--rig", rig});
   return inputs;
 }
@@ -142,6 +180,8 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.swing.release = *release;
   options.data = Split(flags.data, ',');
   options.data_list = flags.data_list;
+  if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
+  options.calibration = flags.calibration;
   options.rig = flags.rig;
   options.json = flags.json;
   options.residuals = flags.residuals;

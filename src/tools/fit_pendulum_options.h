@@ -6,6 +6,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/fitting/fit_swing.h"
+#include "pendulum/recording/read_recording.h"
 #include "tools/output.h"
 
 namespace pendulum {
@@ -26,21 +27,30 @@ struct FitPendulumFlags {
   std::string prior;
   std::string json;
   std::string residuals;
+  std::string calibration;
+  std::string time_column;
+  std::string value_column;
+  std::string unit;
+  std::string sample_rate_hz;
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
 };
 
 /// What fit_pendulum is asked to do.
 struct FitPendulumOptions {
-  std::vector<std::string> data;  ///< Paths of the recordings; each is fitted by itself.
-  std::string data_list;          ///< Path of a file that lists more of them; empty for none.
-  std::string rig;   ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
+  std::vector<std::string> data;  ///< Paths of the recordings, each fitted by itself; "-" is standard input.
+  std::string data_list;          ///< Path of a file that lists them instead; empty for none.
+  std::string calibration;        ///< Path; empty for none. ReadOptions::calibration is for the caller to read from it.
+  ReadOptions read;
+  std::string rig;  ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
   SwingChoice swing;
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.
   std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
   FitOptions fit;
 
-  /// The files to be written and read, with their flags.
-  std::vector<NamedFile> Outputs() const;
+  /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
+  std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;
+
+  /// The files to be read, with their flags.
   std::vector<NamedFile> Inputs() const;
 };
 

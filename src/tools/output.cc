@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/output.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
@@ -158,6 +159,17 @@ Result<void> WriteStream(const Output& output) {
 }  // namespace
 
 bool IsStandardOutput(const std::string& path) { return path == "-" || path == "/dev/stdout" || path == "/dev/fd/1"; }
+
+std::string NumberedPath(const std::string& path, int index, int count) {
+  if (count == 1 || IsStandardOutput(path)) return path;
+  constexpr std::size_t kDigits = 3;
+  const std::size_t digits = std::max(kDigits, std::to_string(count).size());
+  std::string number = std::to_string(index + 1);
+  number.insert(0, digits - number.size(), '0');
+  std::filesystem::path numbered(path);
+  numbered.replace_filename(numbered.stem().string() + "_" + number + numbered.extension().string());
+  return numbered.string();
+}
 
 Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {

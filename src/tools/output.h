@@ -20,6 +20,9 @@ struct Output {
   std::string text;
 };
 
+/// The path of output `index` (0-based) of `count`: the path itself when there is one, else run_001.csv for run.csv.
+std::string NumberedPath(const std::string& path, int index, int count);
+
 /// True for "-" and its other names, /dev/stdout and /dev/fd/1.
 bool IsStandardOutput(const std::string& path);
 

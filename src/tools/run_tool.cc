@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/run_tool.h"
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -25,6 +26,7 @@ Result<int> Run(const Tool& tool, int argc, char** argv) {
 void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
 
 int RunTool(const Tool& tool, int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // So that a limit to the size of files is an error of writing as any other.
   try {
     const Result<int> code = Run(tool, argc, argv);
     if (code) return *code;

@@ -210,15 +210,4 @@ std::vector<NamedFile> SimulateOptions::Outputs(int index) const {
   return outputs;
 }
 
-std::string NumberedPath(const std::string& path, int index, int count) {
-  if (count == 1) return path;
-  constexpr std::size_t kDigits = 3;
-  const std::size_t digits = std::max(kDigits, std::to_string(count).size());
-  std::string number = std::to_string(index + 1);
-  number.insert(0, digits - number.size(), '0');
-  std::filesystem::path numbered(path);
-  numbered.replace_filename(numbered.stem().string() + "_" + number + numbered.extension().string());
-  return numbered.string();
-}
-
 }  // namespace pendulum

@@ -67,7 +67,4 @@ struct SimulateOptions {
 /// no inertia, no start or two; the message names the flag.
 Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const std::optional<Rig>& rig);
 
-/// The path of recording `index` (0-based) of `count`: the path itself when there is one, else run_001.csv for run.csv.
-std::string NumberedPath(const std::string& path, int index, int count);
-
 }  // namespace pendulum

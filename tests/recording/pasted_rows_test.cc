@@ -84,6 +84,16 @@ TEST(PastedRows, LeaveOutACutLastRow) {
   EXPECT_EQ(RecordingOf(text + "80,108").size(), 9);
 }
 
+TEST(PastedRows, LeaveOutALastValueThatLostDigits) {
+  const std::string text = "time_ms,adc_counts\n" + Rows("{t},{v}") + "80,107\n";
+  const Recording recording = RecordingOf(text + "90,10");
+  EXPECT_EQ(recording.size(), 9);
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].message, "run.csv:11: the row \"90,10\" is cut off; it was left out");
+  EXPECT_EQ(RecordingOf(text + "90,10\n").size(), 10);  // Its line end says that it is whole.
+  EXPECT_EQ(RecordingOf(text + "90,105").size(), 10);
+}
+
 TEST(PastedRows, RefuseAnIncompleteRowInTheMiddle) {
   const std::string text = "time_ms,angle_deg\n" + Rows("{t},{v}");
   EXPECT_EQ(

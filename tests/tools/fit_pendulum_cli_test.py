@@ -127,9 +127,6 @@ class BadFlags(CliTest):
     def test_positional_argument(self):
         self.assert_flags_refused("'run.csv' belongs to no flag; .*--data", "run.csv")
 
-    def test_standard_input(self):
-        self.assert_flags_refused("standard input", "--data", "-")
-
     def test_unknown_model_lists_those_there_are(self):
         self.assert_flags_refused("linear, viscous, coulomb, drag", "--data", "run.csv", "--model", "columb")
 
@@ -282,7 +279,8 @@ class Answers(CliTest):
     def test_help_shows_our_flags_only(self):
         run = self.run_tool("--help")
         self.assertEqual(run.returncode, 0)
-        for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "help", "version"):
+        for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "calibration",
+                     "time_column", "value_column", "unit", "sample_rate_hz", "help", "version"):
             self.assertRegex(run.stdout, rf"(?m)^  --{flag} ")
         self.assertNotIn("logtostderr", run.stdout)
 

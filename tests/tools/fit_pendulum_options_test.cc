@@ -72,8 +72,6 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
 TEST(MakeFitPendulumOptions, NeedsOneRecordingInAFile) {
   FitPendulumFlags flags;
   EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
-  flags.data = "-";
-  EXPECT_EQ(Refusal(flags), "--data - (standard input) is not supported; name a file");
   flags.data = "a.csv,b.csv";
   EXPECT_EQ(Refusal(flags), "--data 'a.csv,b.csv' has a comma; it takes one file, whose name has none");
   flags.positional = {"run.csv"};
@@ -116,6 +114,52 @@ TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
   EXPECT_EQ(RefusalOfFix("drag=0.1"),
             "--fix: model coulomb has no parameter 'drag'; its parameters are inertia, viscous, coulomb, "
             "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias");
+}
+
+TEST(MakeFitPendulumOptions, SaysOfTheFileWhatItDoesNotSayItself) {
+  FitPendulumFlags flags = WithData();
+  flags.data = "-";
+  flags.calibration = "cal.json";
+  flags.time_column = "none";
+  flags.value_column = "2";
+  flags.unit = "counts";
+  flags.sample_rate_hz = "1e2";
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->calibration, "cal.json");
+  EXPECT_EQ(options->read.time_column, "none");
+  EXPECT_EQ(options->read.value_column, "2");
+  EXPECT_EQ(options->read.unit, "counts");
+  EXPECT_EQ(options->read.sample_rate_hz, 100);
+  EXPECT_THAT(options->Inputs(), ElementsAre(testing::FieldsAre("--calibration", "cal.json")));
+}
+
+TEST(MakeFitPendulumOptions, RefusesFlagsThatContradictEachOther) {
+  FitPendulumFlags flags = WithData();
+  flags.time_column = "t";
+  flags.value_column = "t";
+  EXPECT_EQ(Refusal(flags), "--time_column and --value_column are both 't'; choose two columns");
+  flags.sample_rate_hz = "100";
+  EXPECT_EQ(Refusal(flags), "--time_column and --sample_rate_hz both say what the times are; leave one of them out");
+  flags = WithData();
+  flags.calibration = "cal.json";
+  flags.unit = "deg";
+  EXPECT_EQ(
+      Refusal(flags),
+      "--calibration turns counts or volts into an angle, and --unit says that the values are in deg; leave one of "
+      "them out");
+  flags.unit = "grad";
+  EXPECT_EQ(Refusal(flags), "--unit is 'grad'; it must be one of rad, deg, rad_s, deg_s, counts, volts");
+}
+
+TEST(MakeFitPendulumOptions, WantsAPositiveSampleRate) {
+  FitPendulumFlags flags = WithData();
+  for (const char* const rate : {"0", "-5"}) {
+    flags.sample_rate_hz = rate;
+    EXPECT_EQ(Refusal(flags), "--sample_rate_hz is '" + std::string(rate) + "'; it must be positive");
+  }
+  flags.sample_rate_hz = "fast";
+  EXPECT_EQ(Refusal(flags), "--sample_rate_hz is 'fast'; it must be a positive number of samples per second");
 }
 
 }  // namespace

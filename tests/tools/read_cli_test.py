@@ -1,0 +1,265 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs fit_pendulum on other people's files: what is read, what is refused, with which sentence and exit code.
+
+  read_cli_test.py PATH/TO/fit_pendulum
+"""
+
+import json
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import swing
+
+TOOL = ""  # path of the binary, from the command line
+ROWS = [line.split(",") for line in swing.angle_csv().splitlines()[1:]]  # time [s], angle [deg]
+CALIBRATION = {"input": "counts", "angle_unit": "deg", "coefficients": [-49.6077, 0.1985], "input_range": [0, 1023]}
+
+
+def table(header, row, rows=None):
+    """A file of the swing: `row` makes the text of a row from time [s] and angle [deg]."""
+    return header + "".join(row(float(t), float(a)) + "\n" for t, a in rows or ROWS)
+
+
+def counts(angle_deg):
+    return round((angle_deg + 49.6077) / 0.1985)
+
+
+class ReadTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("run.csv", swing.angle_csv())
+        self.write("rig.json", json.dumps(swing.RIG))
+        self.write("cal.json", json.dumps(CALIBRATION))
+
+    def write(self, name, content):
+        content = content if isinstance(content, bytes) else content.encode("utf-8")
+        (self.folder / name).write_bytes(content)
+        return name
+
+    def run_tool(self, *flags, **options):
+        options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, **options}
+        return subprocess.run([TOOL, *flags], cwd=self.folder, stderr=subprocess.PIPE, text=True, encoding="utf-8",
+                              timeout=120, check=False, **options)
+
+    def names(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def assert_refused(self, code, sentence, *flags, **options):
+        """The tool stops with the code and one sentence, and writes nothing."""
+        before = self.names()
+        run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "res.csv", **options)
+        self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
+        self.assertEqual(run.returncode, code)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(self.names(), before)
+
+    def assert_data_refused(self, code, sentence, content, *flags):
+        self.assert_refused(code, sentence, "--data", self.write("bad.csv", content), *flags)
+
+    def assert_finds_the_truth(self, *flags, **options):
+        """The fit converges on the swing's own values; gives the codes of its warnings."""
+        run = self.run_tool("--rig", "rig.json", "--json", "-", *flags, **options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        result = json.loads(run.stdout)
+        for name in ("inertia", "coulomb"):
+            parameter = result["fits"][0]["parameters"][name]
+            self.assertLess(abs(parameter["estimate"] - swing.TRUTH[name]), 5 * parameter["std_error"], name)
+        return [warning["code"] for warning in result["warnings"]]
+
+
+class WhatIsRead(ReadTest):
+    def test_counts_through_a_calibration(self):
+        self.write("counts.csv", table("time_s,adc_counts\n", lambda t, a: f"{t},{counts(a)}"))
+        self.assert_finds_the_truth("--data", "counts.csv", "--calibration", "cal.json")
+
+    def test_counts_with_calibration_and_rig_in_the_file(self):
+        head = f"# calibration: {json.dumps(CALIBRATION)}\n# rig: {json.dumps(swing.RIG)}\n# sample_rate_hz: 100\n"
+        self.write("counts.csv", table(head + "adc_counts\n", lambda t, a: str(counts(a))))
+        run = self.run_tool("--data", "counts.csv", "--json", "-")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertAlmostEqual(json.loads(run.stdout)["fits"][0]["parameters"]["inertia"]["estimate"], 0.079, places=3)
+
+    def test_a_spreadsheets_export(self):
+        rows = table("Time (s);Angle [deg]\n", lambda t, a: f"{t};{a}".replace(".", ","))
+        self.write("excel.csv", "\ufeffsep=;\r\n" + rows.replace("\n", "\r\n"))
+        self.assertEqual(self.assert_finds_the_truth("--data", "excel.csv"), [])
+
+    def test_a_paste_of_a_serial_monitor(self):
+        stamp = lambda t: f"14:03:{22 + t:06.3f} -> " if t < 38 else ""
+        rows = table("", lambda t, a: f"{stamp(t)}{round(1000 * t) + 7},{counts(a)}")
+        codes = self.assert_finds_the_truth("--data", self.write("paste.txt", rows[9:-2]), "--time_column", "1:ms",
+                                            "--unit", "counts", "--calibration", "cal.json")
+        self.assertNotIn("time_repeated", codes)
+
+    def test_columns_by_number(self):
+        self.write("plain.txt", table("", lambda t, a: f"x {t} {a}".replace("x", "7")))
+        self.assert_finds_the_truth("--data", "plain.txt", "--time_column", "2:s", "--value_column", "3", "--unit", "deg")
+
+    def test_a_single_column_with_a_sample_rate(self):
+        self.write("plain.txt", table("", lambda t, a: f"{a}"))
+        self.assert_finds_the_truth("--data", "plain.txt", "--unit", "deg", "--sample_rate_hz", "100")
+
+    def test_a_counter_that_wraps_and_rows_that_repeat(self):
+        start = 2**32 - 5_000_000
+        rows = table("time_us,angle_deg\n", lambda t, a: f"{(start + round(1e6 * t)) % 2**32},{a}").splitlines()
+        rows.insert(300, rows[299])
+        codes = self.assert_finds_the_truth("--data", self.write("wrap.csv", "\n".join(rows) + "\n"))
+        self.assertEqual(codes[:2], ["time_wrapped", "time_repeated"])
+
+    def test_standard_input(self):
+        with open(self.folder / "run.csv", encoding="utf-8") as data:
+            self.assert_finds_the_truth("--data", "-", stdin=data)
+
+    def test_a_fifo_that_is_written_slowly(self):
+        os.mkfifo(self.folder / "fifo")
+        text = swing.angle_csv().encode()
+
+        def write():
+            with open(self.folder / "fifo", "wb", buffering=0) as fifo:
+                for begin in range(0, len(text), 3000):
+                    fifo.write(text[begin:begin + 3000])
+                    time.sleep(0.01)
+
+        writer = threading.Thread(target=write)
+        writer.start()
+        self.assert_finds_the_truth("--data", "fifo")
+        writer.join()
+
+
+class WhatIsRefused(ReadTest):
+    def test_two_candidates(self):
+        self.assert_data_refused(
+            4, 'bad.csv:1:18: columns "angle_deg" and "gyro_rad_s" could both be the quantity; choose one with '
+            "--value_column", "time_s,angle_deg,gyro_rad_s\n0,1,2\n")
+
+    def test_a_unit_in_a_cell(self):
+        self.assert_data_refused(
+            4, 'bad.csv:3:5: column "angle_deg" holds "12 deg", a number followed by " deg"; correct the field or delete '
+            "the row", "time_s,angle_deg\n0,1\n0.1,12 deg\n0.2,3\n")
+
+    def test_a_header_with_two_units(self):
+        self.assert_data_refused(
+            4, 'bad.csv:1:8: column "angle_deg [rad]" tells two units, deg and rad; name it by the one its values are in',
+            "time_s,angle_deg [rad]\n0,1\n")
+
+    def test_times_that_go_back(self):
+        text = table("time_s,angle_deg\n", lambda t, a: f"{t},{a}")
+        self.assert_data_refused(
+            4, f"bad.csv:{len(ROWS) + 2}: time 0 s follows 12 s, so the clock was set back: these are two recordings in "
+            "one file; split it before this line", text + text.split("\n", 1)[1])
+
+    def test_binary_files(self):
+        nul = "a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8"
+        self.assert_data_refused(4, f"bad.csv:2:4: {nul}", b"time_s,angle_deg\n0,1\0\n")
+        self.assert_data_refused(4, f"bad.csv:1:4: {nul}", "time_s,angle_deg\n".encode("utf-16"))
+        self.assert_data_refused(4, f"bad.csv:3:1: {nul}", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+
+    def test_an_endless_line_from_standard_input(self):
+        """2 GB of the letter a: refused after the first MiB of it, in little memory."""
+        producer = subprocess.Popen("head -c 2000000000 /dev/zero | tr '\\0' a", shell=True, stdout=subprocess.PIPE,
+                                    stderr=subprocess.DEVNULL)
+        self.addCleanup(producer.wait)
+        self.addCleanup(producer.stdout.close)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_DATA, (100_000_000, 100_000_000))
+        began = time.monotonic()
+        self.assert_refused(4, 'standard input:1:1: this line is longer than 1 MiB and begins with "' + 40 * "a" +
+                            '...", so this is not CSV text; name a CSV file', "--data", "-", stdin=producer.stdout,
+                            preexec_fn=limit)
+        self.assertLess(time.monotonic() - began, 30)  # Reading all of it would take as long as its producer.
+
+    def test_a_calibration_of_another_sensor(self):
+        self.write("cal.json", json.dumps({**CALIBRATION, "input": "volts"}))
+        self.assert_data_refused(
+            4, 'bad.csv:1:1: column "adc_counts" is in counts, and the calibration is one of volts; give that of this '
+            "sensor", table("time_s,adc_counts\n", lambda t, a: f"{t},{counts(a)}"), "--calibration", "cal.json")
+
+    def test_a_calibration_of_an_angle(self):
+        self.assert_refused(
+            4, 'run.csv:1:1: column "angle_deg" is in deg, and the calibration is one of counts; leave --calibration out',
+            "--data", "run.csv", "--calibration", "cal.json")
+
+    def test_files_that_are_no_calibration(self):
+        self.write("bad.json", json.dumps({**CALIBRATION, "coefficients": [1, 0]}))
+        self.assert_refused(4, 'bad.json: "coefficients" has no slope, so that every reading would be the same angle; '
+                            "give [offset, slope]", "--data", "run.csv", "--calibration", "bad.json")
+        self.assert_refused(3, "no.json: there is no such file; check the path", "--data", "run.csv", "--calibration",
+                            "no.json")
+
+    def test_contradictory_flags(self):
+        for sentence, flags in (
+                ("--time_column and --sample_rate_hz both say what the times are; leave one of them out",
+                 ("--time_column", "1", "--sample_rate_hz", "100")),
+                ("--calibration turns counts or volts into an angle, and --unit says that the values are in deg; leave "
+                 "one of them out", ("--calibration", "cal.json", "--unit", "deg")),
+                ('run.csv:1:8: column "angle_deg" is in deg, so --unit rad contradicts it; leave the flag out, or choose '
+                 "another column with --value_column", ("--unit", "rad")),
+                ('run.csv:1:1: column "time_s" holds the times, so --sample_rate_hz 100 contradicts it; leave the flag '
+                 "out, or add --time_column none to ignore the column", ("--sample_rate_hz", "100")),
+                ('run.csv:1:1: --value_column is "x", which is none of the 2 columns "time_s", "angle_deg"; give a name, '
+                 "or a number from 1 on", ("--value_column", "x"))):
+            with self.subTest(flags=flags):
+                self.assert_refused(2, sentence, "--data", "run.csv", *flags)
+
+    def test_a_rig_in_the_file_that_is_none(self):
+        text = '# rig: {"bob_mass": -1}\n' + swing.angle_csv()
+        run = self.run_tool("--data", self.write("bad.csv", text))
+        self.assertEqual(run.returncode, 4)
+        self.assertIn("fit_pendulum: bad.csv: # rig: ", run.stderr)
+
+    def test_a_closed_standard_input(self):
+        run = subprocess.run(f'"{TOOL}" --data - <&-', shell=True, capture_output=True, text=True, check=False)
+        self.assertEqual((run.returncode, run.stderr), (4, "fit_pendulum: standard input: the file cannot be read; check "
+                                                           "its permissions\n"))
+
+
+class OutputsThatFail(ReadTest):
+    def test_a_closed_standard_output(self):
+        run = subprocess.run(f'"{TOOL}" --data run.csv >&-', shell=True, cwd=self.folder, stderr=subprocess.PIPE, text=True,
+                             check=False)
+        self.assertEqual(run.returncode, 73)
+        self.assertEqual(run.stderr, "fit_pendulum: cannot write standard output: Bad file descriptor\n")
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_a_full_device(self):
+        run = self.run_tool("--data", "run.csv", "--json", "/dev/full")
+        self.assertEqual(run.returncode, 73)
+        self.assertEqual(run.stderr, "fit_pendulum: cannot write /dev/full: No space left on device\n")
+
+    def assert_old_result_stays(self, folder, **options):
+        (self.folder / folder).mkdir(exist_ok=True)
+        old = self.folder / folder / "fit.json"
+        old.write_text("old", encoding="utf-8")
+        run = self.run_tool("--data", "run.csv", "--json", f"{folder}/fit.json", "--residuals", f"{folder}/res.csv",
+                            **options)
+        self.assertEqual(run.returncode, 73, run.stderr)
+        self.assertRegex(run.stderr, rf"\Afit_pendulum: cannot write {folder}/(fit.json|res.csv): [^\n]+\n\Z")
+        self.assertEqual(list(old.parent.iterdir()), [old])
+        self.assertEqual(old.read_text(encoding="utf-8"), "old")
+
+    def test_a_limit_to_the_size_of_files(self):
+        self.assert_old_result_stays("out", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)))
+
+    def test_a_full_disk(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mount = ["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", str(disk)]
+        if shutil.which("mount") is None or subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+            self.skipTest("mounting is not allowed")
+        self.addCleanup(subprocess.run, ["umount", str(disk)], check=True)
+        self.assert_old_result_stays("disk")
+
+
+if __name__ == "__main__":
+    TOOL = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
