@@ -240,17 +240,16 @@ std::string StatisticsText(const FitReport& fit) {
   if (fit.termination == Termination::kFailed) return "";
   const FitStatistics& statistics = fit.statistics;
   return Heading("Noise and statistics") +
-         Facts(
-             {{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.reading_unit)},
-              {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
-              {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
-              {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
-              {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
-              {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
-                                     FixedText(statistics.bic, 2)},
-              {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
-                             std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
-                             NumberText(fit.trace_error, 1) + " " + fit.reading_unit}});
+         Facts({{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.reading_unit)},
+                {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
+                {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
+                {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+                {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
+                {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
+                                       FixedText(statistics.bic, 2)},
+                {"solver", std::to_string(fit.solver.iterations) + " iterations, " +
+                               std::to_string(fit.solver.evaluations) + " trajectories, accurate to " +
+                               NumberText(fit.trace_error, 1) + " " + fit.reading_unit}});
 }
 
 std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {

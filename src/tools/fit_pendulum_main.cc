@@ -123,7 +123,8 @@ Result<Setup> ReadSetup(FitPendulumOptions& options) {
   return setup;
 }
 
-/// The swings that are asked for in one recording, fitted one by one; `rig` wins over what the recording says of its rig.
+/// The swings that are asked for in one recording, fitted one by one; `rig` wins over what the recording says of its
+/// rig.
 Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
   auto read = ReadRecording(path, options.read);
   if (!read) return tl::unexpected(read.error());
@@ -182,7 +183,8 @@ std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<
   return outputs;
 }
 
-/// Numbered outputs are other files than those that were checked before; data of several fits have no place on one stream.
+/// Numbered outputs are other files than those that were checked before; data of several fits have no place on one
+/// stream.
 Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, int count) {
   if (count == 1) return {};
   for (const NamedFile& output : options.Outputs()) {
@@ -214,8 +216,8 @@ Result<int> Work(const std::vector<std::string>& positional) {
     return tl::unexpected(checked.error());
   }
   if (const auto written = WriteOutputs(Render(*options, runs)); !written) return tl::unexpected(written.error());
-  const auto worst = std::ranges::max(
-      runs, {}, [](const Run& run) { return ExitCode(run.report.fits.front().termination); });
+  const auto worst =
+      std::ranges::max(runs, {}, [](const Run& run) { return ExitCode(run.report.fits.front().termination); });
   return ExitCode(worst.report.fits.front().termination);
 }
 

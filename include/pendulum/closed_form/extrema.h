@@ -23,15 +23,16 @@ double SuccessiveDifferenceNoise(const Recording& recording);
 /// deviations of it, two resolutions and 3 % of the range.
 double TurningThreshold(const Recording& recording, double noise);
 
-/// Turning points as FindExtrema, and before them the first candidate, which may be the start of the recording or lie in
-/// a hold. May be empty.
+/// Turning points as FindExtrema, and before them the first candidate, which may be the start of the recording or lie
+/// in a hold. May be empty.
 std::vector<Extremum> FindTurns(const Recording& recording, double threshold);
 
 /// Turning points in time order, maxima and minima in turn.
 ///
-/// A turning point counts once the reading has moved back from it by more than TurningThreshold; it is located by a parabola through the samples within 0.15 of
-/// the typical spacing of turning points, to O(h³), not to a sample. A hold, or a start in the middle of a swing, is
-/// not a turning point. kFailedPrecondition: fewer than three; the message says how many there were.
+/// A turning point counts once the reading has moved back from it by more than TurningThreshold; it is located by a
+/// parabola through the samples within 0.15 of the typical spacing of turning points, to O(h³), not to a sample. A
+/// hold, or a start in the middle of a swing, is not a turning point. kFailedPrecondition: fewer than three; the
+/// message says how many there were.
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording);
 
 }  // namespace pendulum

@@ -82,7 +82,7 @@ struct FitReport {
   std::string reason;  ///< A sentence, whatever the termination.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
-  std::string reading_unit = "rad";  ///< Of readings, residuals and noise: rad, rad/s, counts or volts.
+  std::string reading_unit = "rad";           ///< Of readings, residuals and noise: rad, rad/s, counts or volts.
   std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.

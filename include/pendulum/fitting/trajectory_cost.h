@@ -38,9 +38,8 @@ struct PriorTerm {
 /// Samples, sensitivities and the least squares of one trajectory: the part of a fit that is repeated.
 ///
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
-/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of the
-/// reading per s] where the data ask for it. Residual r_i = value_i -
-/// model_i(p).
+/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
+/// the reading per s] where the data ask for it. Residual r_i = value_i - model_i(p).
 ///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
 /// J'J, R^-T J' r, and what is left of |r|. Cost, gradient and Gauss-Newton matrix are exactly those of the N residuals

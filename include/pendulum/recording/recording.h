@@ -40,9 +40,7 @@ struct Recording {
   bool is_calibrated() const { return calibration.has_value() || (unit != "counts" && unit != "volts"); }
 
   /// The unit of `value`: rad, rad/s, counts or volts.
-  std::string value_unit() const {
-    return !is_calibrated() ? unit : quantity == Quantity::kAngle ? "rad" : "rad/s";
-  }
+  std::string value_unit() const { return !is_calibrated() ? unit : quantity == Quantity::kAngle ? "rad" : "rad/s"; }
 
   Eigen::Index size() const { return time.size(); }
 };
