@@ -25,9 +25,6 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
-/// Trajectories of a fit: good recordings need tens, hopeless ones would take for ever.
-constexpr int kMostTraces = 3000;
-
 /// s², in units of G; ω0 = 1/sqrt(I) must be of a size that can be traced.
 constexpr double kSmallestInertia = 1e-30;
 
@@ -206,7 +203,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.solve.max_iterations = options.max_iterations;
-  problem.solve.max_traces = kMostTraces;
+  problem.solve.max_traces = options.max_traces;
   if (const Result<void> applied = ApplyOptions(options, problem); !applied) return tl::unexpected(applied.error());
   return problem;
 }

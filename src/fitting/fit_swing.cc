@@ -17,7 +17,8 @@ namespace pendulum {
 namespace {
 
 /// So many samples are enough to compare windows.
-constexpr Eigen::Index kMostSamples = 5000;
+constexpr Eigen::Index kMostSamples = 3000;
+constexpr int kMostTraces = 60;
 
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
@@ -25,6 +26,7 @@ class WindowTrials {
   WindowTrials(const Recording& recording, const FitOptions& options) : recording_(Thinned(recording, kMostSamples)) {
     options_.model = options.model == "linear" ? "linear" : "drag";
     options_.start = options.start;
+    options_.max_traces = kMostTraces;
   }
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
@@ -138,13 +140,19 @@ Result<SwingFit> FitBetween(const Recording& recording, const FreeSwing& swing, 
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
 Result<SwingFit> EndEarlier(const Recording& recording, SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurns(result.swing);
+  const Recording thinned = Thinned(recording, kMostSamples);
+  FitOptions quick = options;
+  quick.max_traces = 5 * kMostTraces;
+  const auto converges = [](const Result<SwingFit>& trial) {
+    return trial && trial->fit.termination == Termination::kConverged;
+  };
   for (const std::size_t k : Steps(turns.size())) {
     if (k == 0) continue;
     FreeSwing shorter = result.swing;
     shorter.to = turns[turns.size() - k];
     shorter.ends = "with what follows it the fit does not converge";
-    Result<SwingFit> trial = FitBetween(recording, shorter, options);
-    if (trial && trial->fit.termination == Termination::kConverged) return trial;
+    if (!converges(FitBetween(thinned, shorter, quick))) continue;
+    if (Result<SwingFit> trial = FitBetween(recording, shorter, options); converges(trial)) return trial;
   }
   return result;
 }

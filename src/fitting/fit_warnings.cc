@@ -72,11 +72,14 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(y);
   const double scatter = (y - basis * line).norm() / std::sqrt(static_cast<double>(count - 2));
   const double spread = (basis.col(1).array() - basis.col(1).mean()).matrix().norm();
+  constexpr double kMatters = 0.5;  // of the residuals
+  const double drift = line[1] * (when.back() - when.front());
   if (!(std::abs(line[1]) * spread > kSure * scatter)) return;
+  if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
   const bool angle = recording.quantity == Quantity::kAngle;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
   warnings.push_back({"zero_drift", "the reading's zero drifts, by about " +
-                                        NumberText(line[1] * (when.back() - when.front()), 2) +
+                                        NumberText(drift, 2) +
                                         (angle ? " rad" : " rad/s") + " over the window; --init " + name +
                                         "=0 makes the drift a parameter of the fit"});
 }

@@ -14,13 +14,14 @@ namespace pendulum {
 namespace {
 
 /// So many samples are enough to tell what moves.
-constexpr Eigen::Index kMostSamples = 5000;
+constexpr Eigen::Index kMostSamples = 3000;
 
 /// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
 std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity) {
   FitOptions options;
   options.model = "drag";
   options.gravity = gravity;
+  options.max_traces = 200;
   Result<FitReport> fit = FitRecording(recording, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
   return *std::move(fit);

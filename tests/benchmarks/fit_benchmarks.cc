@@ -8,6 +8,7 @@
 
 #include "pendulum/fitting/start_values.h"
 #include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/repair_values.h"
 #include "pendulum/report/json.h"
 #include "pendulum_benchmarks.h"
 #include "reference_run.h"
@@ -38,6 +39,18 @@ void FindStartValues(benchmark::State& state) {
     if (!values) return state.SkipWithError(values.error().message.c_str());
     benchmark::DoNotOptimize(values);
   }
+}
+
+/// Repairs of values, and the free swing.
+void FindWindow(benchmark::State& state) {
+  const Recording recording = ReferenceRecording();
+  for (auto _ : state) {
+    const Recording repaired = RepairValues(recording);
+    Result<ChosenSwings> swings = ChooseSwings(repaired, {});
+    if (!swings) return state.SkipWithError(swings.error().message.c_str());
+    benchmark::DoNotOptimize(swings);
+  }
+  state.counters["samples"] = kSamples;
 }
 
 /// From raw samples to estimates, sigma and covariance.
@@ -89,12 +102,19 @@ class TemporaryFile {
 
 /// What fit_pendulum does between its flags and its output.
 Result<std::string> FitFile(const std::filesystem::path& path, const FitOptions& options, RunReport& report) {
-  const Result<Recording> recording = ReadRecording(path);
+  Result<Recording> recording = ReadRecording(path);
   if (!recording) return tl::unexpected(recording.error());
-  Result<FitReport> fit = FitRecording(*recording, options);
+  const Recording repaired = RepairValues(*std::move(recording));
+  const Result<ChosenSwings> swings = ChooseSwings(repaired, {});
+  if (!swings) return tl::unexpected(swings.error());
+  const int release = swings->chosen.front();
+  Result<SwingFit> fit = FitSwing(repaired, swings->found[static_cast<std::size_t>(release - 1)], options);
   if (!fit) return tl::unexpected(fit.error());
-  report = {SummarizeData(*recording, *recording), options.rig, {}, recording->warnings};
-  report.fits.push_back(*std::move(fit));
+  report = {};
+  report.data = SummarizeData(repaired, *fit, *swings, release);
+  report.rig = options.rig;
+  report.warnings = repaired.warnings;
+  report.fits.push_back(std::move(fit->fit));
   return ToJsonText(report);
 }
 
@@ -114,6 +134,7 @@ void FileToJson(benchmark::State& state) {
 
 void RegisterFitBenchmarks() {
   benchmark::RegisterBenchmark("start_values", FindStartValues)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("find_window", FindWindow)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("fit", Fit, kSamples)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("parse_csv", ParseCsv)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("file_to_json", FileToJson)->Unit(benchmark::kMicrosecond);

@@ -63,7 +63,17 @@ inline FitReport ExampleFit() {
 /// A run with a rig whose masses are uncertain, and one warning of the recording.
 inline RunReport ExampleReport() {
   RunReport report;
-  report.data = {"swing.csv", std::string(64, 'a'), Quantity::kAngle, 2000, 1801, 1.5, 19.5, kRadFromDeg / 4};
+  report.data.path = "swing.csv";
+  report.data.sha256 = std::string(64, 'a');
+  report.data.samples = 2000;
+  report.data.used_samples = 1801;
+  report.data.from = 1.5;
+  report.data.to = 19.5;
+  report.data.resolution = kRadFromDeg / 4;
+  report.data.begins = "held, then released";
+  report.data.ends = "the end of the recording";
+  report.data.releases = {{1.5, 19.5}};
+  report.data.release = 1;
   report.rig = Rig{{1.8, 0.01}, RigValue{0.076, 0.0005}, {}};
   report.rig->source = {{"gravity_torque", {{"value", 1.8}, {"std_dev", 0.01}}},
                         {"inertia", {{"value", 0.076}, {"std_dev", 0.0005}}}};
@@ -76,10 +86,11 @@ inline RunReport ExampleReport() {
 inline RunReport ExampleRateReport() {
   RunReport report = ExampleReport();
   report.rig.reset();
-  report.data.quantity = Quantity::kRate;
+  report.data.unit = "rad/s";
   report.data.resolution = 0;
   FitReport& fit = report.fits.front();
   fit.quantity = Quantity::kRate;
+  fit.reading_unit = "rad/s";
   fit.termination = Termination::kNotConverged;
   fit.reason = "100 iterations were not enough";
   fit.start = StartKind::kMoving;

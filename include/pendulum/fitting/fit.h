@@ -31,6 +31,7 @@ struct FitOptions {
   ParameterPriors priors;         ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
   double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.
+  int max_traces = 3000;          ///< Trajectories of a fit: good recordings need tens, hopeless ones go on for ever.
 };
 
 /// How a fit ended, and what of its report means something:

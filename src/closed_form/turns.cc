@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/turns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pendulum/base/median.h"
+#include "pendulum/closed_form/period.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The zero near each turn: the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over four turns to either side, so that it
+/// may drift.
+std::vector<double> LocalZeros(const std::vector<Extremum>& turns) {
+  constexpr std::ptrdiff_t kNeighbours = 4;
+  const auto last = static_cast<std::ptrdiff_t>(turns.size()) - 2;
+  std::vector<double> zeros;
+  for (std::ptrdiff_t i = 0; i <= last + 1; ++i) {
+    const std::ptrdiff_t centre =
+        std::clamp<std::ptrdiff_t>(i, std::min(1 + kNeighbours, last), std::max<std::ptrdiff_t>(last - kNeighbours, 1));
+    std::vector<double> near;
+    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(centre - kNeighbours, 1);
+         j <= std::min(centre + kNeighbours, last); ++j) {
+      near.push_back(0.25 * (turns[j - 1].value + 2 * turns[j].value + turns[j + 1].value));
+    }
+    zeros.push_back(Median(std::move(near)));
+  }
+  return zeros;
+}
+
+/// Whether the samples leave out so much of a half swing that turning points may be missing in it.
+bool HasGap(const TurnTable& table, std::size_t i) {
+  constexpr double kLongest = 0.4;
+  const Eigen::VectorXd& time = table.recording.time;
+  for (Index k = table.turns[i].sample; k < table.turns[i + 1].sample; ++k) {
+    if (time[k + 1] - time[k] > kLongest * table.half_period) return true;
+  }
+  return false;
+}
+
+/// Duration of half swing i over that of a small one.
+double RelativeDuration(const TurnTable& table, std::size_t i) {
+  const double stretch = 0.5 * (table.Stretch(i) + table.Stretch(i + 1));
+  return (table.turns[i + 1].time - table.turns[i].time) / (table.half_period * stretch);
+}
+
+/// How much longer half swing i is than the median of its neighbours, and what it may be by their scatter.
+struct Slip {
+  double deviation = 0;
+  double limit = kUnlimited;
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+};
+
+Slip SlipOf(const TurnTable& table, std::size_t i) {
+  constexpr std::size_t kNeighbours = 6;
+  constexpr double kLeast = 0.025;
+  constexpr double kDeviations = 10;
+  std::vector<double> near;
+  for (std::size_t j = i - std::min(i, kNeighbours); j < std::min(i + kNeighbours + 1, table.half_swings()); ++j) {
+    if (j != i) near.push_back(RelativeDuration(table, j));
+  }
+  if (near.size() < kNeighbours) return {};
+  const double typical = Median(near);
+  for (double& duration : near) duration = std::abs(duration - typical);
+  return {RelativeDuration(table, i) - typical, std::max(kLeast, kDeviations * Median(std::move(near)))};
+}
+
+/// Whether time slips in half swing i: samples were lost, or the pendulum was touched. A turning point that is found a
+/// little late makes the next half swing as much shorter, and is none.
+bool Slips(const TurnTable& table, std::size_t i) {
+  const Slip slip = SlipOf(table, i);
+  const auto stays = [&](double neighbour) { return std::abs(slip.deviation + neighbour) > slip.limit; };
+  return stays(0) && (i == 0 || stays(SlipOf(table, i - 1).deviation)) &&
+         (i + 1 == table.half_swings() || stays(SlipOf(table, i + 1).deviation));
+}
+
+/// Whether the amplitude grows in half swing i and stays so: one turning point alone may be an outlier, and at the
+/// edges of a gap there are two that are none.
+bool Gains(const TurnTable& table, std::size_t i, bool near_gap) {
+  const auto amplitude = table.amplitude.begin();
+  const auto at = static_cast<std::ptrdiff_t>(i);
+  const auto turns = static_cast<std::ptrdiff_t>(table.turns.size());
+  const std::ptrdiff_t follow = near_gap ? 4 : 3;
+  const double before = *std::max_element(amplitude + std::max<std::ptrdiff_t>(at - 1, 0), amplitude + at + 1);
+  const double after = *std::min_element(amplitude + at + 1, amplitude + std::min(at + follow, turns));
+  return after > before + table.Tolerance(i);
+}
+
+/// Whether half swing i loses far more amplitude than those around it: it was braked.
+bool IsBraked(const TurnTable& table, std::size_t i) {
+  constexpr std::size_t kNeighbours = 4;
+  constexpr double kFarMore = 2.5;
+  std::vector<double> losses;
+  for (std::size_t j = i - std::min(i, kNeighbours); j < std::min(i + kNeighbours + 1, table.half_swings()); ++j) {
+    if (j != i) losses.push_back(table.amplitude[j] - table.amplitude[j + 1]);
+  }
+  if (losses.size() < kNeighbours) return false;
+  const double typical = std::max(Median(std::move(losses)), 0.0);
+  // One turning point alone may be an outlier.
+  const double after =
+      i + 2 < table.turns.size() ? std::max(table.amplitude[i + 1], table.amplitude[i + 2]) : table.amplitude[i + 1];
+  return table.amplitude[i] - after > kFarMore * typical + table.Tolerance(i);
+}
+
+Verdict Judge(const TurnTable& table, std::size_t i) {
+  const bool near_gap =
+      HasGap(table, i) || (i > 0 && HasGap(table, i - 1)) || (i + 1 < table.half_swings() && HasGap(table, i + 1));
+  if (near_gap) return Gains(table, i, true) ? Verdict::kGains : Verdict::kFree;
+  const double zero = 0.5 * (table.zero[i] + table.zero[i + 1]);
+  if ((table.turns[i].value > zero) == (table.turns[i + 1].value > zero)) return Verdict::kIrregular;
+  if (Gains(table, i, false)) return Verdict::kGains;
+  constexpr double kShortest = 0.5;
+  constexpr double kLongest = 1.5;
+  const double duration = RelativeDuration(table, i);
+  if (duration > kLongest) return Verdict::kFreeAfterHold;
+  const bool irregular = duration < kShortest || (i > 0 && (Slips(table, i) || IsBraked(table, i)));
+  return irregular ? Verdict::kIrregular : Verdict::kFree;
+}
+
+}  // namespace
+
+double TurnTable::Stretch(std::size_t turn) const {
+  constexpr double kNearTop = 3.0;
+  if (recording.quantity == Quantity::kRate) return 1;
+  return PeriodRatio(std::min(amplitude[turn], kNearTop));
+}
+
+double TurnTable::Tolerance(std::size_t turn) const {
+  return 0.05 * amplitude[turn] + 3 * noise + 2 * recording.resolution;
+}
+
+TurnTable TabulateTurns(const Recording& recording) {
+  TurnTable table{recording};
+  table.noise = SuccessiveDifferenceNoise(recording);
+  table.threshold = TurningThreshold(recording, table.noise);
+  table.turns = FindTurns(recording, table.threshold);
+  if (table.turns.size() < 3) return table;
+  table.zero = LocalZeros(table.turns);
+  std::vector<double> durations;
+  for (std::size_t i = 0; i < table.turns.size(); ++i) {
+    table.amplitude.push_back(std::abs(table.turns[i].value - table.zero[i]));
+  }
+  for (std::size_t i = 0; i < table.half_swings(); ++i) {
+    durations.push_back((table.turns[i + 1].time - table.turns[i].time) / table.Stretch(i));
+  }
+  table.half_period = Median(std::move(durations));
+  return table;
+}
+
+std::vector<Verdict> JudgeHalfSwings(const TurnTable& table) {
+  std::vector<Verdict> verdicts;
+  for (std::size_t i = 0; i < table.half_swings(); ++i) verdicts.push_back(Judge(table, i));
+  return verdicts;
+}
+
+}  // namespace pendulum

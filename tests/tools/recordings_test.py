@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Other people's recordings, each fitted as a user would who knows nothing of it: with --model alone.
+
+PENDULUM_RECORDINGS names their folder; without it the test is skipped. Expected are an independent program's fits of windows
+that a person chose (Runge-Kutta, tanh for the sign of the rate, SciPy least squares), and what the recordings' makers
+published. The residuals are compared where both windows overlap. Prints the table with -v.
+"""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+from typing import NamedTuple, Optional
+
+FIT_PENDULUM = pathlib.Path(sys.argv.pop(1)).resolve()
+END = math.inf
+
+
+class Reference(NamedTuple):
+    """An independent fit: window [s], then G / I [1/s^2] and rms residual [rad or rad/s] of two models."""
+
+    start: float
+    end: float
+    coulomb: tuple[float, float]
+    drag: tuple[float, float]
+    published: Optional[float] = None  # G / I
+
+
+REFERENCES = {
+    "bookip_adip": Reference(4, 115, (40.273, 0.00806), (40.291, 0.00235), 40.304),
+    "cubli_PRINT_00": Reference(2, 12, (88.625, 0.0165), (88.625, 0.0165)),
+    "cubli_PRINT_01": Reference(3.2, 12.5, (88.782, 0.0165), (88.783, 0.0165)),
+    "davidw_wood": Reference(0.3, END, (29.534, 0.0117), (29.524, 0.011)),
+    "ferrucci_1525": Reference(0.3, END, (21.471, 0.014), (21.468, 0.0023), 21.419),
+    "ganesh_gyro": Reference(30, END, (22.055, 0.0317), (22.055, 0.0317), 22.145),
+    "hasi_newpend": Reference(3, 150, (14.001, 0.01), (14.001, 0.01)),
+    "jensen_01": Reference(1, END, (120.26, 0.00595), (120.26, 0.00595)),
+    "jensen_03": Reference(0.4, END, (120.41, 0.00379), (120.41, 0.00379)),
+    "jiarui_8047": Reference(0.3, END, (6.7736, 0.0028), (6.773, 0.000952), 6.7355),
+    "jiarui_8053": Reference(0.3, END, (13.06, 0.00234), (13.059, 0.00104), 12.935),
+    "macstepien_osc": Reference(1, 28, (87.209, 0.0043), (87.211, 0.0043)),
+    "multiarm_freeswing1": Reference(0.4, 5.6, (65.302, 0.00107), (65.302, 0.00107)),
+    "nielsskov_pend1": Reference(3, 68, (30.777, 0.0157), (30.858, 0.00259), 30.986),
+    "pendulepi_A": Reference(0, END, (21.573, 0.0558), (21.771, 0.00358), 21.759),
+    "sonyneto_0312": Reference(1, END, (53.413, 0.0289), (53.41, 0.0287)),
+    "stienen_Ea45": Reference(1.75, 28.5, (10.716, 0.00476), (10.716, 0.00476)),
+    "stienen_Ef_R01": Reference(1.5, 14.5, (10.884, 0.00335), (10.884, 0.00335)),
+    "tylertian_lab1": Reference(0.3, END, (14.796, 0.0151), (14.787, 0.00804)),
+    "yfysiks_data2_25": Reference(10, END, (43.635, 0.00643), (43.634, 0.00641)),
+    "yfysiks_data32": Reference(11.5, END, (37.166, 0.0162), (37.222, 0.00592)),
+}
+
+# The potentiometer's line as its owners give it: angle = (V - 0.6945) 1.5769 / (0.9513 - 0.4708) rad.
+SLOPE = 1.5769 / (0.9513 - 0.4708)
+CALIBRATION = {"schema_version": 1, "input": "volts", "angle_unit": "rad", "coefficients": [-0.6945 * SLOPE, SLOPE]}
+
+
+class Fit(NamedTuple):
+    """What a run gave: the first fit of its result, its window, and rms over the reference's window."""
+
+    exit_code: int
+    result: dict
+    rms: float
+
+    @property
+    def gravity_over_inertia(self) -> float:
+        return 1 / self.result["fits"][0]["parameters"]["inertia"]["estimate"]
+
+
+def rms_between(path: pathlib.Path, start: float, end: float) -> float:
+    """rms of the residuals whose times lie in [start, end]."""
+    with path.open(encoding="utf-8") as file:
+        rows = csv.DictReader(file)
+        column = next(name for name in rows.fieldnames if name.startswith("residual"))
+        squares = [float(row[column]) ** 2 for row in rows if start <= float(row["time_s"]) <= end]
+    return math.sqrt(sum(squares) / len(squares))
+
+
+def fit(recording: pathlib.Path, model: str, reference: Reference, folder: pathlib.Path) -> Fit:
+    command = [FIT_PENDULUM, "--data", recording, "--model", model]
+    command += ["--json", folder / "fit.json", "--residuals", folder / "residuals.csv"]
+    if recording.name.startswith("cubli"):
+        (folder / "calibration.json").write_text(json.dumps(CALIBRATION))
+        command += ["--calibration", folder / "calibration.json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if not (folder / "fit.json").exists():
+        raise AssertionError(f"{recording.name}: exit code {done.returncode}: {done.stderr}")
+    rms = rms_between(folder / "residuals.csv", reference.start, reference.end)
+    return Fit(done.returncode, json.loads((folder / "fit.json").read_text()), rms)
+
+
+@unittest.skipUnless("PENDULUM_RECORDINGS" in os.environ, "PENDULUM_RECORDINGS is not set")
+class Recordings(unittest.TestCase):
+    def check(self, name: str, model: str) -> str:
+        """Checks one fit; gives its line of the table."""
+        reference = REFERENCES[name]
+        expected, rms = getattr(reference, model)
+        with tempfile.TemporaryDirectory() as folder:
+            recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
+            found = fit(recording, model, reference, pathlib.Path(folder))
+        start, end = found.result["data"]["window_s"]
+        warnings = {warning["code"] for warning in found.result["warnings"]}
+        self.assertEqual(found.exit_code, 0, name)
+        self.assertAlmostEqual(found.gravity_over_inertia / expected, 1, delta=0.01, msg=name)
+        self.assertLessEqual(found.rms, 1.1 * rms, name)
+        if reference.published:
+            self.assertAlmostEqual(found.gravity_over_inertia / reference.published, 1, delta=0.01, msg=name)
+        # Most of what the person took is in the window.
+        overlap = min(end, reference.end) - max(start, reference.start)
+        self.assertGreater(overlap, 0.8 * (min(reference.end, end) - reference.start), name)
+        percent = 100 * (found.gravity_over_inertia / expected - 1)
+        return (
+            f"| {name} | {model} | {start:.2f}..{end:.2f} | {found.gravity_over_inertia:.4f} | {percent:+.3f} % "
+            f"| {found.rms / rms:.3f} | {', '.join(sorted(warnings))} |"
+        )
+
+    def check_all(self, model: str) -> None:
+        lines = []
+        for name in REFERENCES:
+            with self.subTest(recording=name):
+                lines.append(self.check(name, model))
+        print("\n" + "\n".join(lines))
+
+    def test_coulomb_finds_window_period_and_residuals_of_the_reference(self):
+        self.check_all("coulomb")
+
+    def test_drag_finds_window_period_and_residuals_of_the_reference(self):
+        self.check_all("drag")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[1:]])
