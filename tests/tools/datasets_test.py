@@ -16,6 +16,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATASETS = ROOT / "datasets"
 RECORDINGS = ["coulomb", "textbook_rig", "to_rest"]
+FOREIGN = ["excel_export.csv", "excel_export_truth.json", "potentiometer_calibration.json", "serial_monitor.txt",
+           "serial_monitor_truth.json"]
 BINARY = pathlib.Path()
 
 
@@ -27,16 +29,17 @@ def samples(name):
 
 
 class DatasetsTest(unittest.TestCase):
-    def check_reproduced(self, folder):
+    def check_reproduced(self, folder, foreign):
         names = sorted(path.name for path in pathlib.Path(folder).iterdir())
-        self.assertEqual(names, sorted(f"{name}{end}" for name in RECORDINGS for end in (".csv", "_truth.json")))
+        ours = [f"{name}{end}" for name in RECORDINGS for end in (".csv", "_truth.json")]
+        self.assertEqual(names, sorted(ours + foreign))
         for name in names:
             self.assertEqual((pathlib.Path(folder) / name).read_bytes(), (DATASETS / name).read_bytes(), name)
 
     def test_script_reproduces_them_byte_for_byte(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([ROOT / "scripts/make_datasets", BINARY.parent, folder], check=True)
-            self.check_reproduced(folder)
+            self.check_reproduced(folder, FOREIGN)
 
     def test_script_refuses_a_third_argument(self):
         done = subprocess.run([ROOT / "scripts/make_datasets", "a", "b", "c"], capture_output=True, text=True)
@@ -50,7 +53,7 @@ class DatasetsTest(unittest.TestCase):
             environment = {**os.environ, "PATH": f"{BINARY.parent}:{os.environ['PATH']}"}
             subprocess.run(["bash", "-e", "-c", commands], cwd=folder, env=environment, check=True)
             (pathlib.Path(folder) / "textbook_rig.json").unlink()
-            self.check_reproduced(folder)
+            self.check_reproduced(folder, [])
 
     def test_readme_tells_of_every_file(self):
         readme = (DATASETS / "README.md").read_text()
@@ -58,6 +61,40 @@ class DatasetsTest(unittest.TestCase):
             if path.name != "README.md":
                 known = "*_truth.json" if path.name.endswith("_truth.json") else path.name
                 self.assertIn(f"`{known}`", readme)
+
+    def test_foreign_files_are_what_people_hand_over(self):
+        excel = (DATASETS / "excel_export.csv").read_bytes()
+        self.assertTrue(excel.startswith(b"\xef\xbb\xbfTime (s);Angle (deg)\r\n0;"))
+        self.assertEqual(excel.count(b"\n"), excel.count(b"\r\n"))
+        self.assertNotIn(b".", excel)
+        paste = (DATASETS / "serial_monitor.txt").read_text().splitlines()
+        for line in paste[1:]:
+            self.assertRegex(line, r"\A14:01:\d\d\.\d{3} -> \d+,\d{1,4}\Z")
+        self.assertNotIn("->", paste[0])
+
+    def fit(self, *flags):
+        """The result of the command of the README, but as JSON."""
+        tool = BINARY.parent / "fit_pendulum"
+        if not tool.exists():
+            self.skipTest("fit_pendulum is not built")
+        run = subprocess.run([tool, *flags, "--rig", "textbook_rig.json", "--json", "-"], cwd=DATASETS, check=True,
+                             capture_output=True, text=True)
+        return json.loads(run.stdout)
+
+    def check_fit(self, result, name, parameters):
+        truth = json.loads((DATASETS / f"{name}_truth.json").read_text())
+        for parameter in parameters:
+            found = result["fits"][0]["parameters"][parameter]
+            self.assertLess(abs(found["estimate"] - truth[parameter]), 4 * found["std_error"], parameter)
+
+    def test_foreign_files_are_fitted_by_the_commands_of_the_readme(self):
+        readme = (DATASETS / "README.md").read_text()
+        commands = {line.split()[2]: line.split()[1:] for line in readme.replace("\\\n", "").splitlines()
+                    if line.startswith("fit_pendulum --data")}
+        paste = self.fit(*commands["serial_monitor.txt"])
+        self.check_fit(paste, "serial_monitor", ("inertia", "viscous", "coulomb", "release_angle"))
+        self.assertEqual(paste["warnings"][0]["code"], "incomplete_row")
+        self.check_fit(self.fit(*commands["excel_export.csv"]), "excel_export", ("inertia", "viscous", "release_angle"))
 
     def test_recording_of_the_textbook_rig_has_the_published_frequency(self):
         times, values = samples("textbook_rig")
