@@ -136,7 +136,7 @@ Result<FitReport> FitRecording(const Recording& recording, const FitOptions& opt
     if (Result<Attempt> other = TryFit(recording, moving); other && IsBetter(*other, *attempt))
       attempt = std::move(other);
   }
-  return Judge(recording, options, *attempt->problem, *attempt->cost, attempt->solution);
+  return Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
 }
 
 }  // namespace pendulum

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
@@ -136,9 +137,7 @@ TrajectoryData MakeData(const Recording& recording, const StartValues& start) {
 /// The recording with seconds that last a second.
 Recording TrueTime(Recording recording) {
   const double first = recording.time[0];
-  if (recording.clock_scale != 1) {
-    recording.time = first + recording.clock_scale * (recording.time.array() - first);
-  }
+  recording.time = first + recording.clock_scale * (recording.time.array() - first);
   return recording;
 }
 
@@ -174,7 +173,9 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   if (!model) return tl::unexpected(model.error());
   model->gravity = options.gravity.value_or(model->gravity);
   if (!recording.is_calibrated() && model->gravity == Gravity::kSine) return NeedsCalibration(recording, *model);
-  const Recording timed = TrueTime(recording);
+  std::optional<Recording> scaled;
+  if (recording.clock_scale != 1) scaled = TrueTime(recording);
+  const Recording& timed = scaled ? *scaled : recording;
   const Result<StartValues> start = EstimateStartValues(timed, *model, options.start);
   if (!start)
     return Error(start.error().code,

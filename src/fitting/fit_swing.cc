@@ -128,8 +128,8 @@ bool HasWarning(const FitReport& fit, std::string_view code) {
   return std::ranges::any_of(fit.warnings, [&](const Warning& warning) { return warning.code == code; });
 }
 
-Result<SwingFit> FitBetween(const Recording& recording, const FreeSwing& swing, const FitOptions& options) {
-  Result<Recording> used = SelectWindow(recording, swing.from, swing.to);
+Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const FitOptions& options) {
+  Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
   Result<FitReport> fit = FitRecording(*used, options);
@@ -138,9 +138,9 @@ Result<SwingFit> FitBetween(const Recording& recording, const FreeSwing& swing, 
 }
 
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
-Result<SwingFit> EndEarlier(const Recording& recording, SwingFit result, const FitOptions& options) {
+Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurns(result.swing);
-  const Recording thinned = Thinned(recording, kMostSamples);
+  const Recording thinned = Thinned(result.used, kMostSamples);
   FitOptions quick = options;
   quick.max_traces = 5 * kMostTraces;
   const auto converges = [](const Result<SwingFit>& trial) {
@@ -152,7 +152,7 @@ Result<SwingFit> EndEarlier(const Recording& recording, SwingFit result, const F
     shorter.to = turns[turns.size() - k];
     shorter.ends = "with what follows it the fit does not converge";
     if (!converges(FitBetween(thinned, shorter, quick))) continue;
-    if (Result<SwingFit> trial = FitBetween(recording, shorter, options); converges(trial)) return trial;
+    if (Result<SwingFit> trial = FitBetween(result.used, shorter, options); converges(trial)) return trial;
   }
   return result;
 }
@@ -189,10 +189,15 @@ FreeSwing GivenSwing(const Recording& part) {
 }  // namespace
 
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice) {
-  const Result<Recording> part = SelectWindow(recording, choice.from, choice.to);
-  if (!part) return tl::unexpected(part.error());
   const bool from_given = !std::isnan(choice.from);
   const bool to_given = !std::isnan(choice.to);
+  std::optional<Recording> selected;
+  if (from_given || to_given) {
+    Result<Recording> part = SelectWindow(recording, choice.from, choice.to);
+    if (!part) return tl::unexpected(part.error());
+    selected = *std::move(part);
+  }
+  const Recording* const part = selected ? &*selected : &recording;
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
   if (!found) {
@@ -229,8 +234,8 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   return swings;
 }
 
-Result<SwingFit> FitSwing(const Recording& recording, FreeSwing swing, const FitOptions& options) {
-  Result<SwingFit> result = FitBetween(recording, swing, options);
+Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+  Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
   if (!result) return result;
   const auto lacks = [&] {
     return result->fit.termination != Termination::kConverged || HasWarning(result->fit, "lack_of_fit") ||
@@ -243,10 +248,10 @@ Result<SwingFit> FitSwing(const Recording& recording, FreeSwing swing, const Fit
   }
   Trim(result->used, options, swing);
   const bool disturbed = swing.from != result->swing.from || swing.to != result->swing.to;
-  if (disturbed) result = FitBetween(recording, swing, options);
+  if (disturbed) result = FitBetween(std::move(result->used), swing, options);
   if (!result) return result;
   if (result->fit.termination != Termination::kConverged && !swing.to_given) {
-    result = EndEarlier(recording, *std::move(result), options);
+    result = EndEarlier(*std::move(result), options);
   }
   if (disturbed) {
     result->fit.warnings.push_back(

@@ -29,7 +29,8 @@ void WarnOfSaturation(const Recording& recording, std::vector<Warning>& warnings
 void WarnOfCorrelation(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kRatio = 1.3;
   constexpr double kLargestSaid = 99;
-  Recording residuals = recording;
+  Recording residuals;
+  residuals.time = recording.time;
   residuals.value = report.residual;
   const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
   const std::string consequence =
@@ -78,8 +79,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
   const bool angle = recording.quantity == Quantity::kAngle;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
-  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " +
-                                        NumberText(drift, 2) +
+  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) +
                                         (angle ? " rad" : " rad/s") + " over the window; --init " + name +
                                         "=0 makes the drift a parameter of the fit"});
 }

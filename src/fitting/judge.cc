@@ -106,8 +106,10 @@ bool IsRounding(const Recording& recording, const FitReport& report) {
 /// Samples in a period, as a number of lags.
 int PeriodLags(const FitProblem& problem) {
   const std::vector<double>& time = problem.data.time;
-  std::vector<double> intervals(time.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
+  constexpr std::size_t kEnough = 100'000;
+  const std::size_t stride = time.size() / kEnough + 1;
+  std::vector<double> intervals;
+  for (std::size_t i = 0; i + 1 < time.size(); i += stride) intervals.push_back(time[i + 1] - time[i]);
   const double lags = 2 * kPi / problem.start.natural_frequency / Median(std::move(intervals));
   return static_cast<int>(std::min(lags, static_cast<double>(time.size())));
 }
@@ -262,7 +264,7 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Solutio
 }  // namespace
 
 FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                const TrajectoryCost& cost, const Solution& solution) {
+                const TrajectoryCost& cost, Solution solution) {
   FitReport report;
   report.model = problem.model;
   report.start = problem.start.start;
@@ -278,7 +280,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
     SetParameters(recording, options, problem, Optimum{}, solution, report);
     return report;
   }
-  report.fitted = solution.readings;
+  report.fitted = std::move(solution.readings);
   report.residual = recording.value - report.fitted;
   report.trace_error = solution.trace_error;
   report.noise = {problem.data.scale * std::sqrt(optimum->variance), Lag1Correlation(report.residual)};

@@ -66,6 +66,7 @@ void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
 /// The least step that readings make: their resolution, or what a share of the changes stays below.
 double LeastStep(const Recording& recording, double share) {
   std::vector<double> steps;
+  steps.reserve(static_cast<std::size_t>(recording.size()));
   for (Index i = 1; i < recording.size(); ++i) {
     const double step = std::abs(recording.value[i] - recording.value[i - 1]);
     if (step > 0) steps.push_back(step);
@@ -85,6 +86,7 @@ void NoticeEvents(double least_step, Recording& recording) {
   double single = 0;
   double none = 0;
   std::vector<double> intervals;
+  intervals.reserve(static_cast<std::size_t>(recording.size()));
   for (Index i = 1; i < recording.size(); ++i) {
     const double step = std::abs(recording.value[i] - recording.value[i - 1]);
     single += std::abs(step - least_step) < kSame * least_step ? 1 : 0;
@@ -197,36 +199,44 @@ double Extrapolated(const Recording& recording, Index a, Index b, Index i) {
 
 /// Leaves out readings that neither the two before nor the two after lead to: a kick or a release is led to by one
 /// side.
-Index LeaveOutSpikesOnce(double least_step, Recording& recording) {
-  constexpr double kFar = 8;  // medians; of noise, seven of its standard deviations
+struct Spikes {
+  std::vector<bool> kept;
+  Index count = 0;
+};
+
+Spikes FindSpikes(double least_step, const Recording& recording) {
+  constexpr double kSigmaPerMedian = 1.21;  // of the distance of Gaussian noise to the line through its neighbours
   constexpr double kSteps = 2.5;
+  const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 0.5;
+  const double far_in_medians = kSigmaPerMedian * deviations;
   const LocalScale scale(recording);
   const Eigen::VectorXd& value = recording.value;
   std::vector<bool> kept(static_cast<std::size_t>(recording.size()), true);
   Index left_out = 0;
   for (Index i = 2; i + 2 < recording.size(); ++i) {
-    const double far = kFar * scale.At(i) + kSteps * least_step;
+    const double far = far_in_medians * scale.At(i) + kSteps * least_step;
     const auto is_far = [&](double predicted) { return std::abs(value[i] - predicted) > far; };
     if (!is_far(Extrapolated(recording, i - 2, i - 1, i)) || !is_far(Extrapolated(recording, i + 2, i + 1, i)))
       continue;
     kept[static_cast<std::size_t>(i)] = false;
     ++left_out;
   }
-  if (left_out > 0 && recording.size() - left_out >= kMinimumSamples) KeepOnly(kept, recording);
-  return left_out;
+  return {std::move(kept), left_out};
 }
 
 void LeaveOutSpikes(double least_step, Recording& recording) {
   constexpr int kMostPasses = 4;  // what stands next to a spike is judged without it
   constexpr Index kMostOf = 10;
+  Spikes spikes = FindSpikes(least_step, recording);
+  if (spikes.count == 0) return;
   Recording without = recording;
   Index left_out = 0;
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    const Index more = LeaveOutSpikesOnce(least_step, without);
-    left_out += more;
-    if (more == 0) break;
+  for (int pass = 0; pass < kMostPasses && spikes.count > 0; ++pass) {
+    if (without.size() - spikes.count < kMinimumSamples) break;
+    KeepOnly(spikes.kept, without);
+    left_out += spikes.count;
+    spikes = FindSpikes(least_step, without);
   }
-  if (left_out == 0) return;
   if (left_out * kMostOf > recording.size()) {
     recording.warnings.push_back({"many_spikes", std::to_string(left_out) + " readings stand far from their "
                                                                             "neighbours, too many to leave out"});

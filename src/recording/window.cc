@@ -28,7 +28,7 @@ tl::unexpected<Status> TooFew(const Recording& recording, Eigen::Index count, do
 
 }  // namespace
 
-Result<Recording> SelectWindow(const Recording& recording, double from, double to) {
+Result<Recording> SelectWindow(Recording recording, double from, double to) {
   constexpr double kOpen = std::numeric_limits<double>::infinity();
   if (std::isnan(from)) from = -kOpen;
   if (std::isnan(to)) to = kOpen;
@@ -42,16 +42,38 @@ Result<Recording> SelectWindow(const Recording& recording, double from, double t
   const Eigen::Index count = std::upper_bound(begin, end, to) - begin - first;
   if (count < kMinimumSamples) return TooFew(recording, count, from, to);
 
-  Recording window = recording;
-  window.time = recording.time.segment(first, count);
-  window.value = recording.value.segment(first, count);
-  return window;
+  for (Eigen::VectorXd* const samples : {&recording.time, &recording.value}) {
+    std::copy_n(samples->data() + first, count, samples->data());
+    samples->conservativeResize(count);
+  }
+  return recording;
 }
+
+namespace {
+
+/// All but the samples, of which there may be many.
+Recording WithoutSamples(const Recording& recording) {
+  Recording copy;
+  copy.path = recording.path;
+  copy.sha256 = recording.sha256;
+  copy.quantity = recording.quantity;
+  copy.unit = recording.unit;
+  copy.resolution = recording.resolution;
+  copy.range = recording.range;
+  copy.clock_scale = recording.clock_scale;
+  copy.clock_scale_std_dev = recording.clock_scale_std_dev;
+  copy.calibration = recording.calibration;
+  copy.rig_json = recording.rig_json;
+  copy.warnings = recording.warnings;
+  return copy;
+}
+
+}  // namespace
 
 Recording Thinned(const Recording& recording, Eigen::Index most) {
   const Eigen::Index stride = std::max<Eigen::Index>((recording.size() + most - 1) / most, 1);
   const Eigen::Index count = (recording.size() + stride - 1) / stride;
-  Recording thinned = recording;
+  Recording thinned = WithoutSamples(recording);
   thinned.time = recording.time(Eigen::seqN(0, count, stride));
   thinned.value = recording.value(Eigen::seqN(0, count, stride));
   return thinned;

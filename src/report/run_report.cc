@@ -31,8 +31,9 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   return data;
 }
 
-DataSummary SummarizeData(const Recording& recording, const SwingFit& fit, const ChosenSwings& swings, int release) {
-  DataSummary data = SummarizeData(recording, fit.used);
+DataSummary SummarizeData(const SwingFit& fit, const ChosenSwings& swings, int release, Eigen::Index samples) {
+  DataSummary data = SummarizeData(fit.used, fit.used);
+  data.samples = samples;
   data.begins = fit.swing.begins;
   data.ends = fit.swing.ends;
   if (fit.swing.from_given && fit.swing.to_given) return data;

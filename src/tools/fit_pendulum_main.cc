@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gflags/gflags.h>
@@ -136,22 +137,24 @@ Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::s
   FitOptions fit_options = options.fit;
   fit_options.rig = rig;
   const Eigen::Index samples = read->size();
-  const Recording recording = RepairValues(*std::move(read));
+  Recording recording = RepairValues(*std::move(read));
   const auto swings = ChooseSwings(recording, options.swing);
   if (!swings) return tl::unexpected(swings.error());
+  Run common;
+  common.report.rig = rig;
+  common.report.warnings = std::exchange(recording.warnings, {});
+  if (recording.calibration) common.report.calibration = recording.calibration->source;
   std::vector<Run> runs;
   for (const int release : swings->chosen) {
-    auto fit = FitSwing(recording, swings->found[static_cast<std::size_t>(release - 1)], fit_options);
+    // The last one needs no copy: a long recording fills the memory.
+    const bool last = release == swings->chosen.back();
+    auto fit = FitSwing(last ? std::move(recording) : recording, swings->found[static_cast<std::size_t>(release - 1)],
+                        fit_options);
     if (!fit) return tl::unexpected(fit.error());
-    Run run;
-    run.report.data = SummarizeData(recording, *fit, *swings, release);
-    run.report.data.samples = samples;
-    run.report.rig = rig;
-    if (recording.calibration) run.report.calibration = recording.calibration->source;
-    run.report.warnings = recording.warnings;
+    Run& run = runs.emplace_back(common);
+    run.report.data = SummarizeData(*fit, *swings, release, samples);
     run.report.fits.push_back(std::move(fit->fit));
     run.used = std::move(fit->used);
-    runs.push_back(std::move(run));
   }
   return runs;
 }
@@ -216,9 +219,9 @@ Result<int> Work(const std::vector<std::string>& positional) {
     return tl::unexpected(checked.error());
   }
   if (const auto written = WriteOutputs(Render(*options, runs)); !written) return tl::unexpected(written.error());
-  const auto worst =
-      std::ranges::max(runs, {}, [](const Run& run) { return ExitCode(run.report.fits.front().termination); });
-  return ExitCode(worst.report.fits.front().termination);
+  int worst = 0;
+  for (const Run& run : runs) worst = std::max(worst, ExitCode(run.report.fits.front().termination));
+  return worst;
 }
 
 }  // namespace

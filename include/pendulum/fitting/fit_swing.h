@@ -45,6 +45,6 @@ struct SwingFit {
 ///
 /// Errors as FitRecording. Cost: that of FitRecording; where something is wrong, up to ten fits of a few thousand
 /// samples more.
-Result<SwingFit> FitSwing(const Recording& recording, FreeSwing swing, const FitOptions& options);
+Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

@@ -13,6 +13,6 @@ namespace pendulum {
 /// it leaves the covariance, which is sigma² (J'J)^-1 of the others (MODEL.md eq. (18)). `recording` is the one the
 /// problem was made from.
 FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                const TrajectoryCost& cost, const Solution& solution);
+                const TrajectoryCost& cost, Solution solution);
 
 }  // namespace pendulum

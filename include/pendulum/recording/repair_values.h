@@ -11,9 +11,9 @@ namespace pendulum {
 ///   stale_values    a reading that only repeats the one before while the pendulum moves on is left out
 ///   spikes          a reading far from what its neighbours on both sides agree on is left out
 ///
-/// Neighbours are four samples before and after; "far" is 12 of their robust standard deviations about a line, and more
-/// than four resolutions. At most one reading in ten is left out as a spike; where there are more, none is, and the
-/// warning `many_spikes` says so. Cost: a few passes.
+/// "Far" is 2 sqrt(2 ln N) + 0.5 standard deviations of the noise there, and two and a half resolutions, from the lines
+/// through the two readings before and the two after. At most one reading in ten is left out as a spike; where there
+/// are more, none is, and the warning `many_spikes` says so. Cost: a few passes.
 Recording RepairValues(Recording recording);
 
 }  // namespace pendulum

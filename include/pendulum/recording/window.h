@@ -9,7 +9,7 @@ namespace pendulum {
 ///
 /// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples samples are left; the message gives
 /// the window and the span of the recording.
-Result<Recording> SelectWindow(const Recording& recording, double from, double to);
+Result<Recording> SelectWindow(Recording recording, double from, double to);
 
 /// Every so many-th sample, so that at most `most` remain.
 Recording Thinned(const Recording& recording, Eigen::Index most);

@@ -39,8 +39,8 @@ struct DataSummary {
 /// The summary of a recording of which `used` was fitted.
 DataSummary SummarizeData(const Recording& recording, const Recording& used);
 
-/// The same, and why: swing number `release` of those that were found.
-DataSummary SummarizeData(const Recording& recording, const SwingFit& fit, const ChosenSwings& swings, int release);
+/// The same, and why: swing number `release` of those that were found in a recording of so many samples.
+DataSummary SummarizeData(const SwingFit& fit, const ChosenSwings& swings, int release, Eigen::Index samples);
 
 /// All that a run of fit_pendulum found: what every form of the report is made from.
 struct RunReport {
