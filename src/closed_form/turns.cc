@@ -103,7 +103,8 @@ bool IsBraked(const TurnTable& table, std::size_t i) {
   // One turning point alone may be an outlier.
   const double after =
       i + 2 < table.turns.size() ? std::max(table.amplitude[i + 1], table.amplitude[i + 2]) : table.amplitude[i + 1];
-  return table.amplitude[i] - after > kFarMore * typical + table.Tolerance(i);
+  const double before = i > 0 ? std::min(table.amplitude[i - 1], table.amplitude[i]) : table.amplitude[i];
+  return before - after > kFarMore * typical + table.Tolerance(i);
 }
 
 Verdict Judge(const TurnTable& table, std::size_t i) {
