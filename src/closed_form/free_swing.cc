@@ -230,8 +230,10 @@ double Decay(const TurnTable& table, std::size_t first, std::size_t last) {
   return MedianOf(table.amplitude, last + 1 - third, third) / MedianOf(table.amplitude, first, third);
 }
 
-/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors.
+/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors. Where the
+/// recording begins is no turning point.
 bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
+  first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
   constexpr Index kFewest = 6;
   const auto count = static_cast<Index>(last - first + 1);
@@ -247,17 +249,18 @@ bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
   return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
 }
 
-/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more.
+/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more. Where
+/// the recording begins is no turning point.
 double ShareOfClimbs(const TurnTable& table) {
   constexpr std::size_t kFewest = 3;
   std::size_t climbing = 0;
-  std::size_t low = 0;
-  std::size_t high = 0;
+  std::size_t low = 1;
+  std::size_t high = 1;
   const auto close = [&] {
     const bool climbs = table.amplitude[high] > 1.1 * table.amplitude[low] + table.Tolerance(low);
     if (climbs && high >= low + kFewest) climbing += high - low;
   };
-  for (std::size_t i = 1; i < table.turns.size(); ++i) {
+  for (std::size_t i = 2; i < table.turns.size(); ++i) {
     if (table.amplitude[i] >= table.amplitude[high]) {
       high = i;
     } else if (table.amplitude[i] < 0.95 * table.amplitude[high] || table.amplitude[i] < table.amplitude[low]) {

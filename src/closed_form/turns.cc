@@ -118,7 +118,9 @@ Verdict Judge(const TurnTable& table, std::size_t i) {
   constexpr double kLongest = 1.5;
   const double duration = RelativeDuration(table, i);
   if (duration > kLongest) return Verdict::kFreeAfterHold;
-  const bool irregular = duration < kShortest || (i > 0 && (Slips(table, i) || IsBraked(table, i)));
+  // Where a hand has raised it the half swing may begin with a hold, and is longer by the end of that.
+  const bool may_be_held = i == 0 || Gains(table, i - 1, false);
+  const bool irregular = duration < kShortest || (!may_be_held && Slips(table, i)) || (i > 0 && IsBraked(table, i));
   return irregular ? Verdict::kIrregular : Verdict::kFree;
 }
 
