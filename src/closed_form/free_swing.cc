@@ -187,6 +187,9 @@ Ending End(const TurnTable& table, const Run& run) {
       return {turn, "the last turning point before the pendulum is moved otherwise"};
     }
     limit = LastWithin(recording, rest, recording.value[rest], band);
+    // What lifts it slowly begins within the noise.
+    const double surely = recording.time[limit] - 2 * table.half_period;
+    while (limit > turn && recording.time[limit] > surely) --limit;
   }
   if (IsStopped(table, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};
   const Index end = EndOfMotion(table, turn, limit);
@@ -300,6 +303,16 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   return swing;
 }
 
+/// The largest amplitude of turns that belong to no run.
+double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
+  double largest = 0;
+  for (std::size_t i = 1; i < table.turns.size(); ++i) {
+    const bool inside = std::ranges::any_of(runs, [&](const Run& run) { return i >= run.first && i <= run.last; });
+    if (!inside) largest = std::max(largest, table.amplitude[i]);
+  }
+  return largest;
+}
+
 }  // namespace
 
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
@@ -314,7 +327,10 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
   if (!unfree) return tl::unexpected(unfree.error());
   if (*unfree) return std::vector<FreeSwing>{**unfree};
   std::vector<FreeSwing> swings;
-  for (const Run& run : runs) swings.push_back(MakeSwing(table, run));
+  for (const Run& run : runs) {
+    swings.push_back(MakeSwing(table, run));
+    swings.back().amplitude_outside = LargestOutside(table, runs);
+  }
   if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude and cross the zero");
   return swings;
 }

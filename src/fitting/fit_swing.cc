@@ -157,6 +157,16 @@ Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
   return result;
 }
 
+/// A swing smaller than what was left out may be the quiet end of something else.
+void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
+  constexpr double kLarger = 1.3;
+  if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
+  fit.warnings.push_back(
+      {"left_out", "outside the window the reading turns " + NumberText(swing.amplitude_outside / swing.amplitude, 2) +
+                       " times as far out as in it, but not as a free swing does; look at the "
+                       "recording, and choose with --from and --to if this is not the part you want"});
+}
+
 /// A pendulum's errors are none of something else.
 void Withdraw(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
@@ -241,7 +251,10 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
     return result->fit.termination != Termination::kConverged || HasWarning(result->fit, "lack_of_fit") ||
            HasWarning(result->fit, "correlated_residuals");
   };
-  if (!lacks()) return result;
+  if (!lacks()) {
+    WarnOfLargerMotion(swing, result->fit);
+    return result;
+  }
   if (const auto why = WhyNoPendulum(*result)) {
     Withdraw(*why, result->fit);
     return result;
@@ -259,6 +272,7 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
                           " s and ends at " + NumberText(result->swing.to, 4) +
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
+  WarnOfLargerMotion(swing, result->fit);
   if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit) : std::nullopt) Withdraw(*why, result->fit);
   return result;
 }

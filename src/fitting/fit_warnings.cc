@@ -17,8 +17,11 @@ namespace {
 /// A reading at an end of the sensor's range only says that the angle is there or beyond.
 void WarnOfSaturation(const Recording& recording, std::vector<Warning>& warnings) {
   if (!recording.range) return;
-  const double low = recording.range->low + 0.5 * recording.resolution;
-  const double high = recording.range->high - 0.5 * recording.resolution;
+  // Files round their numbers, those of the range too.
+  const auto [lowest, highest] = *recording.range;
+  const double near = std::max(0.5 * recording.resolution, 1e-6 * (highest - lowest));
+  const double low = lowest + near;
+  const double high = highest - near;
   const auto saturated = (recording.value.array() <= low || recording.value.array() >= high).count();
   if (saturated == 0) return;
   warnings.push_back({"saturated", std::to_string(saturated) +

@@ -18,6 +18,8 @@ TEST(ToText, GivesTheWholeReport) {
     file        swing.csv
     samples     1801 used of 2000
     window      1.5 s to 19.5 s, 100 Hz on average
+    begins      held, then released
+    ends        the end of the recording
     resolution  0.00436 rad (0.25 deg)
 [[Fit]]
     model  coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0

@@ -50,7 +50,7 @@ MOST_BEYOND = 1e-3  # of the judged parameters
 # A warning counts when whoever reads it no longer takes the error bars at their word. One that only tells of a repair
 # or of the choice of a window does not: the result after it is claimed to be right.
 COUNTING_WARNINGS = {
-    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "many_spikes",
+    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "left_out", "many_spikes",
     "not_a_pendulum", "quiet_sensor", "saturated", "stale_values", "stop_is_a_kink", "time_rounded", "trace_accuracy",
     "zero_drift",
 }

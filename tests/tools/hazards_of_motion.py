@@ -41,13 +41,19 @@ def _hand_contact(lab: Lab, percent: float) -> Recording:
     return lab.recording(rows + lab.trace({"initial_angle": far, "initial_rate": 0}, len(rows)), [])
 
 
-@hazard("knock", -20, -5, 5, 20, unit=" %")
+@hazard("knock", -40, -20, 20, 40, unit=" %")
 def _knock(lab: Lab, percent: float) -> Recording:
-    """In mid swing the rate changes by a share of its peak: less than 0 takes energy away."""
+    """In mid swing the rate changes by a share of its peak: less than 0 takes energy away.
+
+    While the swing still stands well out of the noise: what a knock changes after that no residual can show. For the same
+    reason there are no weaker ones: at 5 % some leave no trace, and friction moves by 8 of its standard errors.
+    """
     first = lab.swing()
     sample = int(lab.rng.uniform(0.3, 0.6) * len(first.rows))
+    while math.degrees(lab.peak_rate(sample) / lab.frequency) < 20 * lab.noise:
+        sample = int(0.8 * sample)
     angle, rate = lab.state(sample)
-    peak = math.sqrt(rate**2 + 2 * lab.frequency**2 * (1 - math.cos(angle)))
+    peak = lab.peak_rate(sample)
     rate += math.copysign(peak * percent / 100, rate)
     rest = lab.trace({"initial_angle": angle, "initial_rate": rate}, sample, lab.seconds - sample / lab.rate)
     return lab.recording(first.rows[:sample] + rest, first.releases)

@@ -128,6 +128,11 @@ class Lab:
         angles, rates = (self.trace(self.start, clean_unit=unit) for unit in ("rad", "rad_s"))
         return angles[sample][1], rates[sample][1]
 
+    def peak_rate(self, sample: int) -> float:
+        """The rate [rad/s] with which it would pass its zero next, by its energy at a sample."""
+        angle, rate = self.state(sample)
+        return math.sqrt(rate**2 + 2 * self.frequency**2 * (1 - math.cos(angle)))
+
     def by_hand(self, begin: int, angle: float, moves: list[Row]) -> list[Row]:
         """Readings from sample `begin` on while a hand leads the pendulum from the angle [rad] on: each move is
         (seconds, angle at its end)."""

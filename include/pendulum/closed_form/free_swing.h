@@ -10,16 +10,17 @@ namespace pendulum {
 
 /// A stretch of a recording in which nothing but gravity and friction moves the pendulum.
 struct FreeSwing {
-  double from = 0;            ///< s, on the file's clock: where its hold begins, or its first sample in motion.
-  double to = 0;              ///< s, on the file's clock
-  double half_period = 0;     ///< s, typical
-  double amplitude = 0;       ///< rad or rad/s: the largest distance of a turning point from its zero
-  std::vector<double> turns;  ///< s, its turning points
-  std::string begins;         ///< Why it begins there, to follow "begins: ".
-  std::string ends;           ///< Why it ends there, to follow "ends: ".
-  bool from_given = false;    ///< The user chose `from`.
-  bool to_given = false;      ///< The user chose `to`.
-  bool beats = false;         ///< The amplitude rises again and again, though it decays: no single pendulum does that.
+  double from = 0;               ///< s, on the file's clock: where its hold begins, or its first sample in motion.
+  double to = 0;                 ///< s, on the file's clock
+  double half_period = 0;        ///< s, typical
+  double amplitude = 0;          ///< rad or rad/s: the largest distance of a turning point from its zero
+  double amplitude_outside = 0;  ///< rad or rad/s: the same of what belongs to no free swing of the recording
+  std::vector<double> turns;     ///< s, its turning points
+  std::string begins;            ///< Why it begins there, to follow "begins: ".
+  std::string ends;              ///< Why it ends there, to follow "ends: ".
+  bool from_given = false;       ///< The user chose `from`.
+  bool to_given = false;         ///< The user chose `to`.
+  bool beats = false;  ///< The amplitude rises again and again, though it decays: no single pendulum does that.
 };
 
 /// The free swings of a recording in time order, found from its turning points alone.

@@ -40,8 +40,8 @@ struct SwingFit {
 
 /// Fits a free swing. Where the fit leaves more than noise, the swing's ends are looked at again by the richest law:
 /// turning points at an end are left out while that makes the rest fit clearly better (warning `disturbed`), or until
-/// the fit converges; ends that the user chose stay. A swing that is no pendulum's ends kNotConverged with the warning
-/// `not_a_pendulum` and numbers that say so.
+/// the fit converges; ends that the user chose stay. A swing that is smaller than what lies outside gets the warning
+/// `left_out`. One that is no pendulum's ends kNotConverged with the warning `not_a_pendulum` and numbers that say so.
 ///
 /// Errors as FitRecording. Cost: that of FitRecording; where something is wrong, up to ten fits of a few thousand
 /// samples more.
