@@ -221,7 +221,7 @@ double MeanSlope(const Eigen::VectorXd& time) {
 /// that were cut off instead of rounded differ by a constant.
 bool ClockRepair::MakeUniform(double grid) {
   constexpr double kWidest = 1.1;
-  const double steps = static_cast<double>(size() - 1);
+  const auto steps = static_cast<double>(size() - 1);
   const double mean = (time()[size() - 1] - time()[0]) / steps;
   double slope = MeanSlope(time());
   Band band = BandAlong(time(), slope);

@@ -13,9 +13,6 @@
 namespace pendulum {
 namespace {
 
-/// A line of the longest kind with its end just fits, so that a longer one fills it.
-constexpr std::size_t kBufferBytes = LineReader::kLongestLine + 2;
-
 /// The first such byte, or nullptr.
 const char* Find(const char* from, const char* end, char wanted) {
   return from == end ? nullptr : static_cast<const char*>(std::memchr(from, wanted, end - from));
@@ -31,9 +28,9 @@ LineReader::LineReader(std::string_view text, std::string name)
 LineReader::LineReader(InputFile file)
     : name_(file.name()),
       file_(std::make_unique<InputFile>(std::move(file))),
-      buffer_(std::make_unique_for_overwrite<char[]>(kBufferBytes)),
-      at_(buffer_.get()),
-      end_(buffer_.get()),
+      block_(std::make_unique_for_overwrite<Block>()),
+      at_(block_->data()),
+      end_(block_->data()),
       digest_(EVP_MD_CTX_new()) {}
 
 LineReader::LineReader(LineReader&& other) noexcept = default;
@@ -54,12 +51,12 @@ Result<void> LineReader::Begin() {
 /// Moves what is left of the block to its front and reads behind it.
 Result<void> LineReader::Refill() {
   const std::size_t left = end_ - at_;
-  std::memmove(buffer_.get(), at_, left);
-  const Result<std::size_t> got = file_->Read({buffer_.get() + left, kBufferBytes - left});
+  std::memmove(block_->data(), at_, left);
+  const Result<std::size_t> got = file_->Read({block_->data() + left, block_->size() - left});
   if (!got) return tl::unexpected(got.error());
-  at_ = buffer_.get();
+  at_ = block_->data();
   end_ = at_ + left + *got;
-  if (left + *got < kBufferBytes) file_.reset();
+  if (left + *got < block_->size()) file_.reset();
   return Take({at_ + left, *got});
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -49,6 +50,9 @@ class LineReader {
   Result<std::string> Sha256();
 
  private:
+  /// A line of the longest kind with its end just fits, so that a longer one fills it.
+  using Block = std::array<char, kLongestLine + 2>;
+
   struct FreeDigest {
     void operator()(evp_md_ctx_st* digest) const;
   };
@@ -63,9 +67,9 @@ class LineReader {
 
   std::string name_;
   std::unique_ptr<InputFile> file_;  // Null when all bytes are in memory.
-  std::unique_ptr<char[]> buffer_;
-  const char* at_ = nullptr;   // Of the bytes in memory, the first that is not yet in a line.
-  const char* end_ = nullptr;  // Their end.
+  std::unique_ptr<Block> block_;     // Null when all bytes were in memory from the start.
+  const char* at_ = nullptr;         // Of the bytes in memory, the first that is not yet in a line.
+  const char* end_ = nullptr;        // Their end.
   std::unique_ptr<evp_md_ctx_st, FreeDigest> digest_;
   std::string_view line_;
   std::size_t number_ = 0;
