@@ -151,9 +151,10 @@ bool IsBraked(const HalfSwings& halves, std::size_t i) {
   if (losses.size() < kNeighbours) return false;
   const double typical = std::max(Median(std::move(losses)), 0.0);
   // One turning point alone may be an outlier.
+  const double before = i > 0 ? std::min(halves.amplitude[i - 1], halves.amplitude[i]) : halves.amplitude[i];
   const double after = i + 2 < halves.turns.size() ? std::max(halves.amplitude[i + 1], halves.amplitude[i + 2])
                                                    : halves.amplitude[i + 1];
-  return halves.amplitude[i] - after > kFarMore * typical + halves.Tolerance(i);
+  return before - after > kFarMore * typical + halves.Tolerance(i);
 }
 
 Verdict Judge(const HalfSwings& halves, std::size_t i) {
@@ -167,7 +168,9 @@ Verdict Judge(const HalfSwings& halves, std::size_t i) {
   constexpr double kLongest = 1.5;
   const double duration = RelativeDuration(halves, i);
   if (duration > kLongest) return Verdict::kFreeAfterHold;
-  const bool irregular = duration < kShortest || (i > 0 && (Slips(halves, i) || IsBraked(halves, i)));
+  // Where a hand has raised it the half swing may begin with a hold, and is longer by the end of that.
+  const bool may_be_held = i == 0 || Gains(halves, i - 1, false);
+  const bool irregular = duration < kShortest || (!may_be_held && Slips(halves, i)) || (i > 0 && IsBraked(halves, i));
   return irregular ? Verdict::kIrregular : Verdict::kFree;
 }
 
@@ -382,8 +385,10 @@ double Decay(const HalfSwings& halves, std::size_t first, std::size_t last) {
   return MedianOf(halves.amplitude, last + 1 - third, third) / MedianOf(halves.amplitude, first, third);
 }
 
-/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors.
+/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors. Where the
+/// recording begins is no turning point.
 bool Decays(const HalfSwings& halves, std::size_t first, std::size_t last) {
+  first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
   constexpr Index kFewest = 6;
   const auto count = static_cast<Index>(last - first + 1);
@@ -399,17 +404,18 @@ bool Decays(const HalfSwings& halves, std::size_t first, std::size_t last) {
   return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
 }
 
-/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more.
+/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more. Where
+/// the recording begins is no turning point.
 double ShareOfClimbs(const HalfSwings& halves) {
   constexpr std::size_t kFewest = 3;
   std::size_t climbing = 0;
-  std::size_t low = 0;
-  std::size_t high = 0;
+  std::size_t low = 1;
+  std::size_t high = 1;
   const auto close = [&] {
     const bool climbs = halves.amplitude[high] > 1.1 * halves.amplitude[low] + halves.Tolerance(low);
     if (climbs && high >= low + kFewest) climbing += high - low;
   };
-  for (std::size_t i = 1; i < halves.turns.size(); ++i) {
+  for (std::size_t i = 2; i < halves.turns.size(); ++i) {
     if (halves.amplitude[i] >= halves.amplitude[high]) {
       high = i;
     } else if (halves.amplitude[i] < 0.95 * halves.amplitude[high] || halves.amplitude[i] < halves.amplitude[low]) {
