@@ -286,8 +286,10 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   const bool climbs = ShareOfClimbs(table) > kMostClimbs;
   if (!climbs && 2 * free >= turns) {
     if (Decays(table, longest->first, longest->last)) return std::nullopt;
-    return NoSwing("the amplitude does not decay over " + std::to_string(free - 1) +
-                   " half swings: the pendulum is driven, or its friction is too small to see");
+    return Error(StatusCode::kFailedPrecondition,
+                 "the amplitude does not decay over " + std::to_string(free - 1) +
+                     " half swings: the pendulum is driven, or its friction is too small to see; what lies between "
+                     "--from and --to is fitted as it is");
   }
   const double largest = *std::ranges::max_element(table.amplitude);
   const bool scattered = 3 * free < turns && (free < kFewest || table.amplitude[longest->first] < 0.5 * largest);

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include <pendulum/base/version.h>
-#include <pendulum/fitting/fit.h>
+#include <pendulum/fitting/fit_swing.h>
 #include <pendulum/model/motion_model.h>
 #include <pendulum/report/text.h>
 #include <pendulum/trajectory/synthetic.h>
@@ -22,8 +22,13 @@ int main() {
   const auto recording = pendulum::SimulateRecording(truth);
   if (!recording) return 1;
 
-  const auto fit = pendulum::FitRecording(*recording, {});
-  if (!fit || fit->termination != pendulum::Termination::kConverged) return 1;
-  std::cout << pendulum::ToText({pendulum::SummarizeData(*recording, *recording), {}, {*fit}, {}});
-  return std::abs(fit->Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;
+  const auto swings = pendulum::ChooseSwings(*recording, {});
+  if (!swings) return 1;
+  const auto result = pendulum::FitSwing(*recording, swings->found.front(), {});
+  if (!result || result->fit.termination != pendulum::Termination::kConverged) return 1;
+  pendulum::RunReport report;
+  report.data = pendulum::SummarizeData(*result, *swings, 1, recording->size());
+  report.fits = {result->fit};
+  std::cout << pendulum::ToText(report);
+  return std::abs(result->fit.Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;
 }

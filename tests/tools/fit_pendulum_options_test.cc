@@ -36,12 +36,12 @@ std::string RefusalOfFix(const std::string& fix) {
 TEST(MakeFitPendulumOptions, HasDefaultsForAllButTheData) {
   const auto options = MakeFitPendulumOptions(WithData());
   ASSERT_TRUE(options);
-  EXPECT_EQ(options->data, "run.csv");
+  EXPECT_THAT(options->data, ElementsAre("run.csv"));
   EXPECT_EQ(options->fit.model, "coulomb");
   EXPECT_EQ(options->fit.start, StartChoice::kAuto);
   EXPECT_THAT(options->fit.fixed, IsEmpty());
-  EXPECT_TRUE(std::isnan(options->from));
-  EXPECT_TRUE(std::isnan(options->to));
+  EXPECT_TRUE(std::isnan(options->swing.from));
+  EXPECT_TRUE(std::isnan(options->swing.to));
   EXPECT_THAT(options->Outputs(), IsEmpty());
   EXPECT_EQ(options->Inputs().size(), 1);
 }
@@ -60,8 +60,8 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
   ASSERT_TRUE(options);
   EXPECT_EQ(options->fit.model, "drag");
   EXPECT_EQ(options->fit.start, StartChoice::kMoving);
-  EXPECT_EQ(options->from, -1.5);
-  EXPECT_EQ(options->to, 20);
+  EXPECT_EQ(options->swing.from, -1.5);
+  EXPECT_EQ(options->swing.to, 20);
   EXPECT_THAT(options->fit.fixed, ElementsAre(Pair("drag", 0.001), Pair("initial_angle", -0.25)));
   EXPECT_THAT(options->Outputs(),
               ElementsAre(testing::FieldsAre("--json", "-"), testing::FieldsAre("--residuals", "r.csv")));
@@ -72,8 +72,8 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
 TEST(MakeFitPendulumOptions, NeedsOneRecordingInAFile) {
   FitPendulumFlags flags;
   EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
-  flags.data = "a.csv,b.csv";
-  EXPECT_EQ(Refusal(flags), "--data 'a.csv,b.csv' has a comma; it takes one file, whose name has none");
+  flags.data = "a.csv,,b.csv";
+  EXPECT_EQ(Refusal(flags), "--data 'a.csv,,b.csv' has an empty name between its commas");
   flags.positional = {"run.csv"};
   EXPECT_EQ(Refusal(flags), "'run.csv' belongs to no flag; the recording is given with --data");
 }
@@ -113,7 +113,7 @@ TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
 TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
   EXPECT_EQ(RefusalOfFix("drag=0.1"),
             "--fix: model coulomb has no parameter 'drag'; its parameters are inertia, viscous, coulomb, "
-            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias");
+            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, zero_drift, bias_drift");
 }
 
 TEST(MakeFitPendulumOptions, SaysOfTheFileWhatItDoesNotSayItself) {

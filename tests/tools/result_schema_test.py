@@ -97,7 +97,8 @@ class Results(unittest.TestCase):
 
     def test_fixed_parameters_and_one_at_its_bound(self):
         frictionless = {**swing.TRUTH, "viscous": 0.0, "coulomb": 0.0}
-        self.assert_valid(swing.angle_csv(truth=frictionless), "--model", "drag", "--fix", "zero_angle=0.01")
+        self.assert_valid(swing.angle_csv(truth=frictionless), "--model", "drag", "--fix", "zero_angle=0.01",
+                          "--from", "0", "--to", "12")
 
 
 if __name__ == "__main__":

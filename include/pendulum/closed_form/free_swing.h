@@ -23,16 +23,13 @@ struct FreeSwing {
   bool beats = false;  ///< The amplitude rises again and again, though it decays: no single pendulum does that.
 };
 
-/// The free swings of a recording in time order, found from its turning points alone.
+/// The free swings of a recording in time order: runs of two half swings and more that JudgeHalfSwings calls free.
 ///
-/// A half swing is free when it crosses the zero, does not gain amplitude, and takes about as long as a pendulum's of
-/// its amplitude; a run of two or more is a swing. It begins with the hold before it, or where the motion towards its
-/// first turning point begins if that is no longer than a half swing, and after the fall when it was held within 20 deg
-/// of the upright, where a trajectory tells nothing about its release. It ends one period after the last motion that
-/// stands out of the noise, or before the amplitude grows again.
+/// A swing begins with the steady part of the hold before it, or where the motion towards its first turn begins if that
+/// takes no longer than a half swing; held within 15 deg of the upright, where its fall tells nothing of the release,
+/// at the next turn. It ends one period after the last motion that stands out of the noise, or before it is touched.
 ///
-/// kFailedPrecondition: no free swing; the message says what the recording looks like instead: constant, no turning
-/// points, driven, or held at one angle after another.
+/// kFailedPrecondition: none; the message says whether it is constant, does not turn, is driven, or was moved by hand.
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
 
 }  // namespace pendulum

@@ -38,8 +38,8 @@ enum class Verdict {
   kIrregular       ///< Neither: braked, too short, or samples were lost in it.
 };
 
-/// One verdict for each half swing of a table of at least three turns. A turn that alone stands out is an outlier, and
-/// no reason to call the half swings beside it disturbed; next to a gap in the samples only a gain counts.
+/// One verdict for each half swing of three turns or more. A turn that stands out alone is an outlier and disturbs
+/// nothing; next to a gap in the samples only a gain counts.
 std::vector<Verdict> JudgeHalfSwings(const TurnTable& table);
 
 }  // namespace pendulum

@@ -25,8 +25,8 @@ struct ChosenSwings {
   std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
 };
 
-/// Finds the free swings between `from` and `to` and chooses. An end that the user gave is the end of the window; with
-/// both given nothing is looked for, and the window is what lies between.
+/// Finds the free swings and chooses. An end that the user gave is the end of the window; with both nothing is looked
+/// for.
 ///
 /// kInvalidArgument: no swing of that number, or an empty window. kFailedPrecondition: as FindFreeSwings.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice);
@@ -38,13 +38,11 @@ struct SwingFit {
   FitReport fit;
 };
 
-/// Fits a free swing. Where the fit leaves more than noise, the swing's ends are looked at again by the richest law:
-/// turning points at an end are left out while that makes the rest fit clearly better (warning `disturbed`), or until
-/// the fit converges; ends that the user chose stay. A swing that is smaller than what lies outside gets the warning
-/// `left_out`. One that is no pendulum's ends kNotConverged with the warning `not_a_pendulum` and numbers that say so.
+/// Fits a free swing. Where more than noise is left, turning points at its ends are left out as long as the rest then
+/// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
+/// stay. Warns `left_out` of larger motion outside. What is no pendulum's swing ends kNotConverged, `not_a_pendulum`.
 ///
-/// Errors as FitRecording. Cost: that of FitRecording; where something is wrong, up to ten fits of a few thousand
-/// samples more.
+/// Errors as FitRecording. Cost: that of FitRecording, and where something is wrong up to ten small fits more.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

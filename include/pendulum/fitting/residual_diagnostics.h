@@ -25,11 +25,9 @@ double Lag1Correlation(const Eigen::VectorXd& residual);
 /// lags, a misfit that swings with the pendulum at some lag within one period.
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 
-/// Whether residuals swing along with the pendulum, against independence. In each period they are projected on the
-/// reading's own rate and on its distance from the mean, which gives the model's errors of phase and of amplitude
-/// there; the squares of these, and of their six slowest cosines over the recording, are sums of chi-square variables,
-/// and one of them exceeds what independent residuals do in 1e-4 of all cases. A kick of a percent shows here long
-/// before it shows in FollowEachOther. time: N, s; fitted: N, rad or rad/s; period: s.
+/// Whether residuals swing along with the pendulum, against independence (MODEL.md eq. (25)): the model's errors of
+/// phase and amplitude from period to period [s] exceed what independent residuals give in 1e-4 of all cases. N
+/// samples.
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 

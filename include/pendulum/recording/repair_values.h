@@ -6,14 +6,10 @@
 namespace pendulum {
 
 /// Repairs what can be repaired without a model, each with a warning that says how many readings it concerns:
-///
-///   unwrapped       an angle that jumps by a whole turn where its sensor begins again is continued
-///   stale_values    a reading that only repeats the one before while the pendulum moves on is left out
-///   spikes          a reading far from what its neighbours on both sides agree on is left out
-///
-/// "Far" is 2 sqrt(2 ln N) + 0.5 standard deviations of the noise there, and two and a half resolutions, from the lines
-/// through the two readings before and the two after. At most one reading in ten is left out as a spike; where there
-/// are more, none is, and the warning `many_spikes` says so. Cost: a few passes.
+/// `unwrapped` (an angle's jumps by a whole turn), `stale_values` (repeats while the pendulum moves on), `spikes`
+/// (readings that lie 2 sqrt(2 ln N) + 0.5 standard deviations of the noise there, and 2.5 resolutions, from the lines
+/// through the two before and the two after; more than a tenth are `many_spikes` and stay). `event_driven`: a row only
+/// where the value changes.
 Recording RepairValues(Recording recording);
 
 }  // namespace pendulum
