@@ -15,7 +15,6 @@ namespace pendulum {
 inline constexpr std::size_t kMostJsonBytes = 65536;
 
 /// A JSON object from text, each key of every object once. `kind` is what it should be, "rig"; `form` shows one.
-///
 /// kDataLoss: not JSON (line and column), no object, longer than kMostJsonBytes, a repeated key, or a number beyond
 /// that of a double; the message begins with `name`.
 Result<nlohmann::ordered_json> ParseJsonObject(std::string_view text, const std::string& name, std::string_view kind,

@@ -26,7 +26,6 @@ struct HalfSwingTable {
 };
 
 /// Tabulates the half swings. A gap in the data longer than 0.6 of the typical half swing breaks the sequence.
-///
 /// kFailedPrecondition: fewer than three turning points, or no two half swings without a gap.
 Result<HalfSwingTable> TabulateHalfSwings(const Recording& recording);
 

@@ -65,15 +65,15 @@ struct ParameterEstimate {
 
 /// The noise of the samples about the trajectory.
 struct NoiseEstimate {
-  double sigma = 0;             ///< Standard deviation, rad or rad/s: RSS / (N - free parameters), square root.
-  double lag1_correlation = 0;  ///< Of successive residuals.
+  double sigma = 0;  ///< Standard deviation, rad or rad/s: RSS / (N - free parameters), square root.
+  double lag1_correlation = 0;
 };
 
 /// What the solver did, over all its runs.
 struct SolverSummary {
   int iterations = 0;
-  int evaluations = 0;      ///< Trajectories of the start that was kept, with and without sensitivities.
-  std::string termination;  ///< Ceres' own words for the last run.
+  int evaluations = 0;  ///< Trajectories of the start that was kept, with and without sensitivities.
+  std::string termination;
 };
 
 /// One model fitted to one recording.
@@ -105,16 +105,13 @@ struct FitReport {
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
                                          bool drifts = false);
 
-/// Fits one model to the whole of a recording: start values from the data, least squares over the whole trajectory,
-/// judgement. With StartChoice::kAuto a release after a short hold, or one that explains little, is compared with a
-/// start in motion. Times are those of the recording's clock times its clock_scale, except release_time, which is on
-/// the file's own clock. zero_drift (bias_drift of a rate) is a parameter of the fit when the options name it, and 0
-/// otherwise.
+/// Fits one model to the whole of a recording. With StartChoice::kAuto a release after a short hold, or one that
+/// explains little, is compared with a start in motion. Seconds are true ones (clock_scale), but release_time is on the
+/// file's own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
 ///
-/// kInvalidArgument: no such model, or a name in the options that the model does not have with this start, or a value
-/// outside its bounds. kDataLoss: counts or volts without a calibration, for a model that needs an angle.
-/// kFailedPrecondition: there is no swing in the data, or too little of one. Cost: about a millisecond for 2000
-/// samples, tens of milliseconds where the pendulum comes to rest.
+/// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
+/// bounds. kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or too little of one. Cost:
+/// about a millisecond for 2000 samples, tens where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

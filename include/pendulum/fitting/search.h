@@ -11,15 +11,12 @@ namespace pendulum {
 /// Where a search begins when these parameters (P) are fixed, their values included.
 using StartGuess = std::function<std::vector<double>(const std::vector<bool>& fixed)>;
 
-/// Looks for the lowest of several minima over a whole recording, from start values that may be rough.
-///
-/// A start that explains the data goes straight to Solve. One that does not is refined over the first three cycles,
-/// then over twice as many, and so on. Recordings that reach rest have one minimum per number of half swings before the
-/// stop, so they are fitted over 30, 60 and 85 % of the motion first; then dry friction is shifted to either side, the
-/// other parameters following along its profile, until the number of reversals changes, and the fit goes on from there
-/// as long as the cost is lower. Where the pendulum comes to rest, or the result explains less than nine tenths
-/// of the variance, each friction parameter in turn is also held at its bound in a search and then let go, for a law
-/// should end no higher than the simpler laws within it. No promise: each stage ends after so many trajectories.
+/// Looks for the lowest of several minima over a whole recording, from start values that may be rough: over the first
+/// three cycles, then twice as many and so on, unless the start explains the data. A recording that reaches rest has a
+/// minimum per number of half swings before the stop: it is fitted over 30, 60 and 85 % of the motion first, then dry
+/// friction is shifted along its profile to either side as long as that lowers the cost, and each friction parameter is
+/// held at its bound in a search and let go, so that a law ends no higher than the simpler ones within it. No promise:
+/// budgets end it.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, const SolveOptions& options);
 
 /// Whether a solution leaves at most a tenth of the readings' variance.

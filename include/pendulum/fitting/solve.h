@@ -34,7 +34,7 @@ struct Solution {
   double sum = 0;                  ///< |r|², in units of the cost's scale².
   bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
-  std::string message;                ///< Ceres' own words.
+  std::string message;
   Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
   double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.
   std::vector<Minimum> other_minima;  ///< Found by Search beside this one, none lower; this one may be among them.
@@ -45,10 +45,9 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
 /// Levenberg-Marquardt (Ceres) from `start` over all samples the cost uses; parameters stay within their bounds.
 ///
-/// An active-set method: a parameter whose step lands on its bound, or would carry it there, is held there while the
-/// others go on, and let go again when the cost pulls it inwards at their optimum, at most 4 P times. Each run stops
-/// when the cost changes by less than 1e-10 of itself, which leaves the estimates within sqrt(1e-10 N) standard errors.
-/// `cost` is not owned.
+/// An active-set method: a parameter whose step lands on its bound, or would, is held there, and let go when the cost
+/// pulls it inwards at the others' optimum, at most 4 P times. A run stops when the cost changes by less than 1e-10 of
+/// itself, which leaves the estimates within sqrt(1e-10 N) standard errors. `cost` is not owned.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.

@@ -17,7 +17,6 @@ struct ListedFile {
 
 /// Reads a list of recordings: one path a line, blank lines and those that begin with # left out; "-" is standard
 /// input, whose paths begin at the current folder.
-///
 /// kNotFound: there is no such list, or none of a file that it names (list:line). kDataLoss: it cannot be read, is no
 /// text, names a directory or one file twice (list:line). kFailedPrecondition: it names no file.
 Result<std::vector<ListedFile>> ReadDataList(const std::filesystem::path& path);

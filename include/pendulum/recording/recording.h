@@ -46,7 +46,6 @@ struct Recording {
 };
 
 /// Checks the invariant of Recording.
-///
 /// kFailedPrecondition: fewer than kMinimumSamples samples. kDataLoss: lengths differ, a number is not finite, time
 /// does not increase, or the resolution is negative; the message begins with the path if there is one, and names the
 /// first offending sample (0-based).

@@ -40,7 +40,6 @@ struct Calibration {
 /// Reads a calibration from JSON text, {"input": "counts"|"volts", "angle_unit": "deg"|"rad", "coefficients": [c0, c1,
 /// ...]} with optional "schema_version": 1, "covariance": [[...]], "residual_std_dev" and "input_range": [low, high];
 /// an optional one may be null.
-///
 /// kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or repeated key, a value of another
 /// type, another schema_version, a curve without slope, a covariance that is not symmetric and K x K; the message
 /// begins with `name` and names the key.

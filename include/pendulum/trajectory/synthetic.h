@@ -43,17 +43,12 @@ struct SyntheticOptions {
 /// to the range.
 double SensorReading(double x, double resolution, const std::optional<SensorRange>& range);
 
-/// Simulates the recording of a free swing.
-///
-/// The trajectory is within 1e-12 rad of the truth over 46 periods for swings up to 120 deg (TraceTolerance); beyond,
-/// rounding near the top leaves more, 1e-10 rad at 177 deg. A jittered sample is taken at the
-/// instant its stamp says, and stamps increase strictly; the first is always start_time. Noise comes from mt19937_64
-/// and Boost's normal distribution, whose algorithms are fixed: a seed gives the same recording everywhere. The noise
-/// of a seed does not depend on the jitter.
+/// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
+/// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. Noise comes from
+/// mt19937_64 and Boost's normal distribution: a seed gives the same everywhere, whatever the jitter.
 ///
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
-/// pendulum where it starts, the release comes after the last sample, fewer than kMinimumSamples samples, or the motion
-/// cannot be traced.
+/// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);
 
 }  // namespace pendulum
