@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit_swing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/format.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+using testing::Lt;
+using testing::Not;
+using testing::SizeIs;
+
+// ---- Which swing --------------------------------------------------------------------------------------------------
+
+/// One recording after another on one clock of 100 Hz; between them a hand takes the pendulum over in 4 s.
+Recording OneAfterTheOther(const Recording& first, const Recording& second) {
+  constexpr Eigen::Index kMove = 400;
+  const Eigen::ArrayXd share = Eigen::ArrayXd::LinSpaced(kMove, 1, kMove) / (kMove + 1);
+  const double from = first.value[first.size() - 1];
+  const Eigen::ArrayXd move = from + (second.value[0] - from) * share.square() * (3 - 2 * share);
+  Recording both = first;
+  both.value.resize(first.size() + kMove + second.size());
+  both.value << first.value, move.matrix(), second.value;
+  both.time = Eigen::ArrayXd::LinSpaced(both.value.size(), 0, static_cast<double>(both.value.size() - 1)) / 100;
+  return both;
+}
+
+/// Released at 1.9 s for 9 s; from 13 s on held again, released at 14.9 s, recorded to 28 s.
+Recording TwoReleases() {
+  SyntheticOptions second = NoisyRun("coulomb", 2);
+  second.release_angle = 0.6;
+  second.duration = 15;
+  SyntheticOptions first = NoisyRun("coulomb", 1);
+  first.duration = 9;
+  return OneAfterTheOther(Must(SimulateRecording(first)), Must(SimulateRecording(second)));
+}
+
+ChosenSwings Choose(const SwingChoice& choice) { return Must(ChooseSwings(TwoReleases(), choice)); }
+
+FreeSwing ChosenOne(const SwingChoice& choice) {
+  const ChosenSwings swings = Choose(choice);
+  EXPECT_THAT(swings.chosen, SizeIs(1));
+  return swings.found.at(static_cast<std::size_t>(swings.chosen.front() - 1));
+}
+
+SwingChoice Between(double from, double to) { return {.from = from, .to = to}; }
+
+constexpr double kOpen = std::numeric_limits<double>::quiet_NaN();
+
+TEST(ChooseSwings, TakesTheLongestUnlessAsked) {
+  const ChosenSwings swings = Choose({});
+  EXPECT_THAT(swings.found, SizeIs(2));
+  EXPECT_THAT(swings.chosen, ElementsAre(2));
+}
+
+TEST(ChooseSwings, TakesTheNumberAskedForOrAll) {
+  EXPECT_THAT(Choose({.release = 1}).chosen, ElementsAre(1));
+  EXPECT_THAT(Choose({.release = 2}).chosen, ElementsAre(2));
+  EXPECT_THAT(Choose({.release = SwingChoice::kAll}).chosen, ElementsAre(1, 2));
+}
+
+TEST(ChooseSwings, RefusesANumberThatThereIsNot) {
+  const auto swings = ChooseSwings(TwoReleases(), {.release = 3});
+  ASSERT_FALSE(swings);
+  EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(swings.error().message, "there is no free swing 3 in the recording; it has 2");
+}
+
+TEST(ChooseSwings, AnEndThatIsGivenIsTheEndOfTheSwingNextToIt) {
+  const FreeSwing from = ChosenOne(Between(2.5, kOpen));
+  EXPECT_THAT(from.from, AllOf(Ge(2.5), Lt(2.511)));
+  EXPECT_THAT(from.to, Le(9.0));
+  EXPECT_TRUE(from.from_given && !from.to_given);
+  EXPECT_EQ(from.begins, "as asked");
+  const FreeSwing to = ChosenOne(Between(kOpen, 25));
+  EXPECT_THAT(to.from, Ge(12.9));
+  EXPECT_THAT(to.to, DoubleNear(25, 0.01));
+  EXPECT_TRUE(!to.from_given && to.to_given);
+  EXPECT_EQ(to.ends, "as asked");
+}
+
+TEST(ChooseSwings, CountsReleasesWithinTheWindow) {
+  EXPECT_THAT(Choose({.from = 11, .release = 1}).found, SizeIs(1));
+  const FreeSwing second = ChosenOne({.from = 11, .release = 1});
+  EXPECT_THAT(second.from, Ge(12.9));
+  EXPECT_FALSE(second.from_given);
+}
+
+TEST(ChooseSwings, LooksForNothingWhereBothEndsAreGiven) {
+  // A hand and a second hold lie between, and it is not this tool's affair.
+  const ChosenSwings swings = Choose(Between(3, 20));
+  ASSERT_THAT(swings.found, SizeIs(1));
+  EXPECT_THAT(swings.chosen, ElementsAre(1));
+  EXPECT_THAT(swings.found[0].from, AllOf(Ge(3.0), Lt(3.011)));
+  EXPECT_THAT(swings.found[0].to, DoubleNear(20, 0.01));
+  EXPECT_TRUE(swings.found[0].from_given && swings.found[0].to_given);
+  EXPECT_EQ(swings.found[0].begins, "as asked");
+  EXPECT_EQ(swings.found[0].ends, "as asked");
+}
+
+TEST(ChooseSwings, RefusesAnEmptyWindow) {
+  const auto swings = ChooseSwings(TwoReleases(), Between(5, 4));
+  ASSERT_FALSE(swings);
+  EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(swings.error().message, "the window [5, 4] s is empty; its start must lie before its end");
+}
+
+TEST(ChooseSwings, NamesTheFileThatHasNoSwing) {
+  Recording constant = Must(SimulateRecording(NoisyRun()));
+  constant.path = "run.csv";
+  constant.value.setConstant(0.3);
+  const auto swings = ChooseSwings(constant, {});
+  ASSERT_FALSE(swings);
+  EXPECT_EQ(swings.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_EQ(swings.error().message,
+            "run.csv: the reading is constant: there is no swing in it; check the sensor, or choose another column");
+}
+
+// ---- Its fit ------------------------------------------------------------------------------------------------------
+
+SwingFit FitChosen(const Recording& recording, const FitOptions& options, const SwingChoice& choice = {}) {
+  const ChosenSwings swings = Must(ChooseSwings(recording, choice));
+  return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
+}
+
+std::vector<std::string> Codes(const FitReport& report) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : report.warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+constexpr double kHalfPeriod = 0.671;  // s, of the textbook rig at 0.4 rad: π sqrt(0.079 / G) (1 + 0.4² / 16)
+
+/// A hand leads the pendulum through half swing `half` (from 0) after its release, and lets go of it as it would be.
+Recording Guided(const SyntheticOptions& run, int half, double by = 0.05) {
+  Recording recording = Must(SimulateRecording(run));
+  const double from = run.release_time + half * kHalfPeriod;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    const double share = (recording.time[i] - from) / kHalfPeriod;
+    if (share > 0 && share < 1) recording.value[i] += by * std::pow(std::sin(kPi * share), 2);
+  }
+  return recording;
+}
+
+void ExpectTruthOfThePendulum(const FitReport& fit, const SyntheticOptions& run) {
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  for (int k = 0; k < 3; ++k) {
+    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(k)];
+    EXPECT_THAT(parameter.estimate, DoubleNear(run.parameters[static_cast<std::size_t>(k)], 4 * *parameter.std_error))
+        << parameter.info.name;
+  }
+}
+
+TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    SyntheticOptions run = NoisyRun("coulomb", seed);
+    run.duration = 20;
+    const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
+    EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
+    EXPECT_EQ(result.swing.to, 19.99);
+    EXPECT_EQ(result.swing.begins, "what is before it does not fit what follows: a hand, or another disturbance");
+    EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
+    ExpectTruthOfThePendulum(result.fit, run);
+  }
+}
+
+TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
+  SyntheticOptions run = NoisyRun("coulomb", 1);
+  run.duration = 1.9 + 28.5 * kHalfPeriod;
+  run.noise = 0.0005;
+  const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
+  EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
+  EXPECT_EQ(result.swing.from, 0);
+  EXPECT_EQ(result.swing.ends, "what follows it does not fit what is before: a hand, or another disturbance");
+  ExpectTruthOfThePendulum(result.fit, run);
+}
+
+TEST(FitSwing, SaysWhatItLeftOut) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 20;
+  const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
+  ASSERT_THAT(Codes(result.fit), ElementsAre("disturbed"));
+  EXPECT_EQ(
+      result.fit.warnings[0].message,
+      "left out as disturbed: the window begins at " + NumberText(result.swing.from, 4) +
+          " s and ends at 19.99 s, for what was left out does not fit the rest; --from and --to choose otherwise");
+}
+
+TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const SyntheticOptions run = NoisyRun("coulomb", seed);
+    const Recording recording = Must(SimulateRecording(run));
+    const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
+    EXPECT_EQ(result.used.time, recording.time);
+    EXPECT_THAT(Codes(result.fit), Not(Contains("disturbed")));
+    ExpectTruthOfThePendulum(result.fit, run);
+  }
+}
+
+TEST(FitSwing, KeepsTheWholeWindowWhereOnlyTheModelIsWrong) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    SyntheticOptions run = NoisyRun("drag", seed);
+    run.release_angle = 1.2;
+    run.noise = 0.0005;
+    const Recording recording = Must(SimulateRecording(run));
+    const SwingFit result = FitChosen(recording, ModelOptions("viscous"));
+    EXPECT_EQ(result.used.time, recording.time);
+    EXPECT_THAT(Codes(result.fit), ElementsAre("lack_of_fit"));
+  }
+}
+
+TEST(FitSwing, KeepsTheEndsThatTheUserChose) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 20;
+  const Recording recording = Guided(run, 0);
+  const SwingFit from = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, kOpen));
+  EXPECT_EQ(from.used.time[0], 0.5);
+  EXPECT_THAT(Codes(from.fit), AllOf(Contains("lack_of_fit"), Not(Contains("disturbed"))));
+  const SwingFit both = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, 19));
+  EXPECT_EQ(both.used.size(), 1851);
+  const SwingFit to = FitChosen(recording, ModelOptions("coulomb"), Between(kOpen, 19));
+  EXPECT_EQ(to.used.time[to.used.size() - 1], 19);
+  EXPECT_THAT(to.used.time[0], Ge(1.9));
+}
+
+TEST(FitSwing, HandsOnWhatTheFitRefuses) {
+  const Recording recording = Must(SimulateRecording(NoisyRun()));
+  const FreeSwing swing = Must(ChooseSwings(recording, {})).found.at(0);
+  const auto refused = FitSwing(recording, swing, ModelOptions("columb"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
+}
+
+}  // namespace
+}  // namespace pendulum
