@@ -43,7 +43,6 @@ struct FitOptions {
 ///   kFailed           not any       no                      no
 enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
 
-/// "converged", "not_converged", "not_identifiable", "failed".
 std::string_view TerminationName(Termination termination);
 
 /// 0 for kConverged, 1 for the others.

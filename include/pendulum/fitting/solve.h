@@ -22,7 +22,6 @@ struct SolveOptions {
   int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
 };
 
-/// A point where the solver came to rest.
 struct Minimum {
   std::vector<double> parameters;  ///< P
   double sum = 0;                  ///< |r|², in units of the cost's scale²

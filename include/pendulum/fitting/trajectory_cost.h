@@ -58,7 +58,6 @@ class TrajectoryCost : public ceres::CostFunction {
   virtual bool Readings(std::span<const double> parameters, Eigen::VectorXd* readings,
                         Eigen::MatrixXd* jacobian) const = 0;
 
-  /// Reversals, stop and steps of the trajectory at these parameters.
   virtual TraceSummary Trace(std::span<const double> parameters) const = 0;
 
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
