@@ -93,6 +93,7 @@ std::vector<Extremum> FindTurns(const Recording& recording, double threshold) {
   if (points.size() < 2) return {};
   const double half_width = 0.15 * TypicalSpacing(recording.time, points);
   std::vector<Extremum> turns;
+  turns.reserve(points.size());
   for (const Index point : points) turns.push_back(Vertex(recording, point, half_width));
   return turns;
 }

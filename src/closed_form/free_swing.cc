@@ -175,28 +175,12 @@ struct Ending {
 Ending End(const TurnTable& table, const Run& run) {
   const Recording& recording = table.recording;
   const Index turn = table.turns[run.last].sample;
-  const bool disturbed = run.last < table.half_swings();
-  Index limit = recording.size() - 1;
-  if (disturbed) {
-    // A rest before what comes next belongs to the swing.
-    limit = table.turns[run.last + 1].sample;
-    const Index rest = std::min(turn + (limit - turn) / 2, limit);
-    const double band = 0.05 * table.amplitude[run.last] + 5 * table.noise + 2 * recording.resolution;
-    const double pause = recording.time[limit] - recording.time[turn];
-    if (pause < 3 * table.half_period * table.Stretch(run.last)) {
-      return {turn, "the last turning point before the pendulum is moved otherwise"};
-    }
-    limit = LastWithin(recording, rest, recording.value[rest], band);
-    // What lifts it slowly begins within the noise.
-    const double surely = recording.time[limit] - 2 * table.half_period;
-    while (limit > turn && recording.time[limit] > surely) --limit;
-  }
+  // What moves it next may have held it before: no rest belongs to the swing then.
+  if (run.last < table.half_swings()) return {turn, "the last turning point before the pendulum is moved otherwise"};
+  const Index limit = recording.size() - 1;
   if (IsStopped(table, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};
   const Index end = EndOfMotion(table, turn, limit);
-  const double rest = recording.time[limit] - recording.time[end];
-  if (rest <= 6 * table.half_period) {
-    return {limit, disturbed ? "before the pendulum is moved otherwise" : "the end of the recording"};
-  }
+  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period) return {limit, "the end of the recording"};
   Index sample = end;
   while (recording.time[sample] - recording.time[end] < 2 * table.half_period) ++sample;
   return {sample, "at rest from about " + NumberText(recording.time[end], 4) + " s"};
@@ -294,8 +278,10 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   const double largest = *std::ranges::max_element(table.amplitude);
   const bool scattered = 3 * free < turns && (free < kFewest || table.amplitude[longest->first] < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
-  if (Decay(table, 0, turns - 1) > kDecayed) {
-    if (climbs) return NoSwing("the amplitude climbs again and again and does not decay: the pendulum is driven");
+  // What begins at rest and climbs was not released.
+  const bool from_rest = climbs && table.amplitude[1] < 0.35 * largest;
+  if (from_rest || Decay(table, 0, turns - 1) > kDecayed) {
+    if (climbs) return NoSwing("the amplitude climbs again and again: the pendulum is driven");
     return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
                    " follow each other as a free swing's do, in equal times and with less and "
                    "less amplitude: the pendulum was moved by hand or motor, or held at one angle after another");

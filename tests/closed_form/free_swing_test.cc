@@ -338,9 +338,10 @@ TEST(FindFreeSwings, RefusesWhatDoesNotTurn) {
 
 TEST(FindFreeSwings, RefusesASwingThatIsDriven) {
   const auto growing = [](double t) { return 0.1 * std::exp(0.05 * t) * std::sin(kOmega * t); };
-  EXPECT_EQ(Refusal(Joined({Sample(growing, 30, kRate)})),
-            "the amplitude climbs again and again and does not decay: the pendulum is driven; choose a window of free "
-            "swing with --from and --to");
+  EXPECT_EQ(
+      Refusal(Joined({Sample(growing, 30, kRate)})),
+      "the amplitude climbs again and again: the pendulum is driven; choose a window of free swing with --from and "
+      "--to");
   const auto steady = [](double t) { return 0.4 * std::sin(kOmega * t); };
   EXPECT_EQ(Refusal(Joined({Sample(steady, 20, kRate)})),
             "the amplitude does not decay over 31 half swings: the pendulum is driven, or its friction is too small to "
