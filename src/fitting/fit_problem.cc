@@ -73,7 +73,8 @@ Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
     double& upper = problem.solve.upper[*i];
     const double most = std::max(Internal(problem, *i, range.lower), lower);
     const double least = std::min(Internal(problem, *i, range.upper), upper);
-    if (!(most < least)) {
+    const bool too_small = name == kInertia.name && !(least > kSmallestInertia);
+    if (!(most < least) || too_small) {
       return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " leave it no value; it must be " +
                                                      Range(problem, *i) + ", and may be fixed with --fix");
     }

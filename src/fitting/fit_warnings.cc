@@ -109,17 +109,21 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
 
 /// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
-  std::vector<ParameterInfo> friction;
+  std::vector<ParameterInfo> friction, bounded;
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
     if (parameter.info.name != kReleaseTime.name) {
-      friction.push_back(parameter.info);
+      (parameter.estimate == parameter.info.lower ? friction : bounded).push_back(parameter.info);
       continue;
     }
     warnings.push_back({"at_bound",
                         "release_time is at an end of the hold: the data ask for a release outside it, and the error "
                         "bars of the other parameters take it as exact; choose a window with all of the hold, or "
                         "--start moving with a window after the release"});
+  }
+  if (!bounded.empty()) {
+    warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) +
+                                        "; the error bars of the other parameters take that as exact: widen --bounds"});
   }
   if (friction.empty()) return;
   warnings.push_back(

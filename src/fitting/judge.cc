@@ -170,7 +170,9 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
 
 /// The power of a unit of time in a parameter: that of the clock's scale in its estimate.
 int PowerOfTime(const ParameterInfo& info) {
-  if (info.name == kInitialRate.name) return -1;
+  for (const ParameterInfo& rate : {kInitialRate, kZeroDrift, kBiasDrift}) {
+    if (info.name == rate.name) return -1;
+  }
   if (!info.scales_with_gravity()) return 0;
   return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
 }

@@ -114,6 +114,7 @@ TEST(FitWarnings, TellAReleaseAtAnEndOfTheHold) {
   FitReport report = Fit(recording, ModelOptions("coulomb"));
   report.parameters[4].at_bound = true;
   report.parameters[1].at_bound = true;
+  report.parameters[1].estimate = 0;
   Solution solution;
   solution.parameters = Truth(NoisyRun());
   const std::vector<Warning> warnings = FitWarnings(recording, problem, solution, TraceSummary{}, false, report);

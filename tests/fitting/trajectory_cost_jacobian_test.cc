@@ -101,6 +101,35 @@ TEST(Readings, HaveTheJacobianOfCentralDifferencesForEveryModelThroughReversalsA
   });
 }
 
+TEST(Readings, OfAZeroThatDriftsHaveTheJacobianOfCentralDifferences) {
+  ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
+    TrajectoryData data = Samples(quantity, 500);
+    const auto steady = MakeTrajectoryCost(model, start, data);
+    TrajectoryData drifting = data;
+    drifting.drifts = true;
+    const auto cost = MakeTrajectoryCost(model, start, drifting);
+    std::vector<double> p = TypicalParameters(model, start);
+    Eigen::VectorXd readings;
+    Eigen::MatrixXd of_steady, jacobian;
+    ASSERT_TRUE(steady->Readings(p, &readings, &of_steady));
+    p.push_back(0.02);
+    ASSERT_TRUE(cost->Readings(p, &readings, &jacobian));
+    const Eigen::Index last = of_steady.cols();
+    ASSERT_EQ(jacobian.cols(), last + 1);
+    EXPECT_EQ(jacobian.leftCols(last), of_steady);
+    std::vector<double> above = p, below = p;
+    above.back() += 0.5;
+    below.back() -= 0.5;
+    const Eigen::VectorXd difference = ReadingsOf(*cost, above) - ReadingsOf(*cost, below);
+    EXPECT_THAT((jacobian.col(last) - difference).lpNorm<Eigen::Infinity>(), Le(1e-12));
+    Eigen::MatrixXd sums;
+    ASSERT_TRUE(cost->Sums(p, &sums));
+    const Eigen::MatrixXd expected = jacobian.transpose() * jacobian;
+    const double error = (sums.topLeftCorner(last + 1, last + 1) - expected).lpNorm<Eigen::Infinity>();
+    EXPECT_THAT(error, Le(1e-9 * expected.lpNorm<Eigen::Infinity>()));
+  });
+}
+
 // Undamped and linear: A cos(ω0 (t - t_r)) + zero, and its derivatives, by hand.
 TEST(Readings, AreThoseOfTheUndampedLinearPendulum) {
   for (const Quantity quantity : kQuantities) {
