@@ -151,7 +151,7 @@ Result<Setting> ParseSetting(std::string_view flag, const std::string& entry, st
 
 Result<double> ParseValue(std::string_view flag, const ParameterInfo& info, std::string_view text) {
   const std::string name(info.name);
-  const auto value = ParseNumber(std::string(flag) + " " + name, text, "a number in SI units");
+  auto value = ParseNumber(std::string(flag) + " " + name, text, "a number in SI units");
   if (!value || (*value >= info.lower && *value <= info.upper)) return value;
   const bool low = *value < info.lower;
   return BadSetting(flag, name + " is " + NumberText(*value) + "; it must be at " + (low ? "least " : "most ") +

@@ -148,8 +148,8 @@ Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::s
   for (const int release : swings->chosen) {
     // The last one needs no copy: a long recording fills the memory.
     const bool last = release == swings->chosen.back();
-    auto fit = FitSwing(last ? std::move(recording) : recording, swings->found[static_cast<std::size_t>(release - 1)],
-                        fit_options);
+    auto fit = FitSwing(last ? std::exchange(recording, {}) : recording,
+                        swings->found[static_cast<std::size_t>(release - 1)], fit_options);
     if (!fit) return tl::unexpected(fit.error());
     Run& run = runs.emplace_back(common);
     run.report.data = SummarizeData(*fit, *swings, release, samples);
@@ -196,7 +196,7 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, int count) 
                                                    std::to_string(count) + "; name a file, and they are numbered");
   }
   for (int i = 0; i < count; ++i) {
-    if (const auto checked = CheckOutputs(options.Outputs(i, count), options.Inputs()); !checked) return checked;
+    if (auto checked = CheckOutputs(options.Outputs(i, count), options.Inputs()); !checked) return checked;
   }
   return {};
 }

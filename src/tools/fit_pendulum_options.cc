@@ -89,7 +89,12 @@ Result<void> CheckContradictions(const FitOptions& options) {
                               : options.bounds.contains(name) ? "--bounds"
                               : options.priors.contains(name) ? "--prior"
                                                               : "";
-    if (!other.empty()) return Wrong("--fix holds " + name + ", and " + other + " names it too; leave one of them out");
+    if (other.empty()) continue;
+    return Wrong(std::string("--fix holds ")
+                     .append(name)
+                     .append(", and ")
+                     .append(other)
+                     .append(" names it too; leave one of them out"));
   }
   return {};
 }

@@ -153,5 +153,40 @@ TEST(FitWarnings, TellAnotherMinimumAndAStopOnAKink) {
   EXPECT_THAT(codes(), IsEmpty());
 }
 
+TEST(FitWarnings, TellAZeroThatDriftsByHowMuchAndWhichWay) {
+  for (const double drift : {0.001, -0.001}) {  // rad/s or rad/s²
+    for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
+      SCOPED_TRACE(std::to_string(drift) + (quantity == Quantity::kAngle ? " of an angle" : " of a rate"));
+      SyntheticOptions run = NoisyRun();
+      run.duration = 30;
+      run.quantity = quantity;
+      Recording recording = Must(SimulateRecording(run));
+      recording.value += drift * recording.time;
+      const FitReport report = Fit(recording, ModelOptions("coulomb"));
+      const auto warning = std::ranges::find(report.warnings, "zero_drift", &Warning::code);
+      ASSERT_NE(warning, report.warnings.end());
+      const bool angle = quantity == Quantity::kAngle;
+      const std::string before = "the reading's zero drifts, by about ";
+      ASSERT_THAT(warning->message, testing::StartsWith(before));
+      // From the middle of the first period to that of the last whole one: 27 to 29 s.
+      EXPECT_THAT(std::stod(warning->message.substr(before.size())) / drift, testing::DoubleNear(28, 2.8));
+      EXPECT_THAT(warning->message,
+                  testing::EndsWith(
+                      angle ? " rad over the window; --init zero_drift=0 makes the drift a parameter of the fit"
+                            : " rad/s over the window; --init bias_drift=0 makes the drift a parameter of the fit"));
+    }
+  }
+}
+
+TEST(FitWarnings, TellNoDriftThatIsAParameterOfTheFit) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 30;
+  Recording recording = Must(SimulateRecording(run));
+  recording.value += 0.001 * recording.time;
+  FitOptions options = ModelOptions("coulomb");
+  options.initial = {{"zero_drift", 0.0}};
+  EXPECT_THAT(Codes(Fit(recording, options)), IsEmpty());
+}
+
 }  // namespace
 }  // namespace pendulum

@@ -121,5 +121,52 @@ TEST(FollowEachOther, TakesAnyNumberOfResidualsAndLags) {
   }
 }
 
+/// 20 s at 100 Hz of a swing of 5 rad/s: 15 periods.
+struct SwingExample {
+  static constexpr double kPeriod = 2 * kPi / 5;
+  Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(2000, 0, 19.99);
+  Eigen::VectorXd fitted = (0.4 * (-0.02 * time.array()).exp() * (5 * time.array()).cos()).matrix();
+  /// Of the readings, over its norm in one period: an error of one standard error there for a noise of 1.
+  Eigen::VectorXd rate = (-(5 * time.array()).sin() / std::sqrt(0.5 * 100 * kPeriod)).matrix();
+};
+
+TEST(SwingAlong, IsSaidOfWhiteNoiseAsSeldomAsItSays) {
+  const SwingExample swing;
+  int said = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    said += SwingAlong(swing.time, swing.fitted, WhiteNoise(2000, seed), SwingExample::kPeriod) ? 1 : 0;
+  }
+  // Two sums at 1e-4 each: 0.4 are expected, and more than three have p < 0.001.
+  EXPECT_LE(said, 3);
+}
+
+TEST(SwingAlong, IsSaidOfAPhaseErrorThatGrows) {
+  // By 0.3 standard errors in each period: 4.5 in the last one, where the samples' own are 0.03 of the noise.
+  const SwingExample swing;
+  const Eigen::VectorXd error = (0.3 * swing.time.array() / SwingExample::kPeriod * swing.rate.array()).matrix();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_TRUE(SwingAlong(swing.time, swing.fitted, WhiteNoise(2000, seed) + error, SwingExample::kPeriod)) << seed;
+  }
+}
+
+TEST(SwingAlong, IsSaidOfAKick) {
+  // From the middle on the phase is off by three standard errors in each period.
+  const SwingExample swing;
+  Eigen::VectorXd error = 3 * swing.rate;
+  error.head(1000).setZero();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::VectorXd residual = WhiteNoise(2000, seed) + error;
+    EXPECT_TRUE(SwingAlong(swing.time, swing.fitted, residual, SwingExample::kPeriod)) << seed;
+  }
+}
+
+TEST(SwingAlong, IsNotSaidOfTooLittleOrOfNothing) {
+  const SwingExample swing;
+  EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, Eigen::VectorXd::Zero(2000), SwingExample::kPeriod));
+  EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, 100 * swing.rate, 6.0));  // three periods
+  const Eigen::VectorXd still = Eigen::VectorXd::Constant(2000, 0.3);         // has no phase
+  EXPECT_FALSE(SwingAlong(swing.time, still, swing.rate, SwingExample::kPeriod));
+}
+
 }  // namespace
 }  // namespace pendulum

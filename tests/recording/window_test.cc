@@ -94,5 +94,31 @@ TEST(SelectWindow, RefusesAnEmptyRecordingWithoutReadingIt) {
   EXPECT_EQ(window.error().code, StatusCode::kFailedPrecondition);
 }
 
+// ---- Thinned --------------------------------------------------------------------------------------------------------
+
+TEST(Thinned, KeepsEverySoManyThSampleAndNoMoreThanAsked) {
+  const Recording third = Thinned(Ramp(), 7);  // 21 samples
+  EXPECT_EQ(third.value, Eigen::VectorXd::LinSpaced(7, 0.0, 18.0));
+  EXPECT_EQ(third.time, Eigen::VectorXd::LinSpaced(7, 10.0, 19.0));
+  EXPECT_EQ(Thinned(Ramp(), 20).value, Eigen::VectorXd::LinSpaced(11, 0.0, 20.0));
+  EXPECT_EQ(Thinned(Ramp(), 6).value, Eigen::VectorXd::LinSpaced(6, 0.0, 20.0));
+  EXPECT_EQ(Thinned(Ramp(), 1).value, Eigen::VectorXd::Zero(1));
+}
+
+TEST(Thinned, IsTheRecordingItselfWhereItIsShortEnough) {
+  for (const Eigen::Index most : {21, 22, 1000}) {
+    EXPECT_EQ(Thinned(Ramp(), most).time, Ramp().time) << most;
+    EXPECT_EQ(Thinned(Ramp(), most).value, Ramp().value) << most;
+  }
+}
+
+TEST(Thinned, KeepsWhatIsKnownOfTheRecording) {
+  const Recording thinned = Thinned(Ramp(), 7);
+  EXPECT_EQ(thinned.path, "swing.csv");
+  EXPECT_EQ(thinned.quantity, Quantity::kRate);
+  EXPECT_EQ(thinned.resolution, 0.5);
+  EXPECT_EQ(thinned.warnings.size(), 1);
+}
+
 }  // namespace
 }  // namespace pendulum

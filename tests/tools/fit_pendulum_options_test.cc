@@ -69,11 +69,9 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
               ElementsAre(testing::FieldsAre("--data", "run.csv"), testing::FieldsAre("--rig", "rig.json")));
 }
 
-TEST(MakeFitPendulumOptions, NeedsOneRecordingInAFile) {
+TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
   FitPendulumFlags flags;
   EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
-  flags.data = "a.csv,,b.csv";
-  EXPECT_EQ(Refusal(flags), "--data 'a.csv,,b.csv' has an empty name between its commas");
   flags.positional = {"run.csv"};
   EXPECT_EQ(Refusal(flags), "'run.csv' belongs to no flag; the recording is given with --data");
 }
@@ -160,6 +158,84 @@ TEST(MakeFitPendulumOptions, WantsAPositiveSampleRate) {
   }
   flags.sample_rate_hz = "fast";
   EXPECT_EQ(Refusal(flags), "--sample_rate_hz is 'fast'; it must be a positive number of samples per second");
+}
+
+TEST(MakeFitPendulumOptions, TakesSeveralRecordingsOrAListOfThem) {
+  FitPendulumFlags flags;
+  flags.data = "a.csv,b.csv";
+  flags.json = "fit.json";
+  const auto several = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(several) << several.error().message;
+  EXPECT_THAT(several->data, ElementsAre("a.csv", "b.csv"));
+  EXPECT_THAT(several->Inputs(),
+              ElementsAre(testing::FieldsAre("--data", "a.csv"), testing::FieldsAre("--data", "b.csv")));
+  EXPECT_THAT(several->Outputs(1, 2), ElementsAre(testing::FieldsAre("--json", "fit_002.json")));
+  flags.data_list = "list.txt";
+  EXPECT_EQ(Refusal(flags), "--data and --data_list both name recordings; give one of them");
+  flags.data.clear();
+  const auto listed = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(listed) << listed.error().message;
+  EXPECT_EQ(listed->data_list, "list.txt");
+  EXPECT_THAT(listed->Inputs(), ElementsAre(testing::FieldsAre("--data_list", "list.txt")));
+}
+
+TEST(MakeFitPendulumOptions, RefusesAnEmptyNameBetweenCommas) {
+  FitPendulumFlags flags;
+  for (const std::string data : {"a.csv,,b.csv", ",a.csv"}) {
+    flags.data = data;
+    EXPECT_EQ(Refusal(flags), "--data '" + data + "' has an empty name between its commas");
+  }
+}
+
+TEST(MakeFitPendulumOptions, KnowsReleasesByNumberOrAll) {
+  FitPendulumFlags flags = WithData();
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kLongest);
+  flags.release = "all";
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kAll);
+  flags.release = "3";
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, 3);
+  for (const std::string wrong : {"0", "-1", "1.5", "1e7", "first"}) {
+    flags.release = wrong;
+    EXPECT_EQ(Refusal(flags), "--release is '" + wrong + "'; it must be all, or the number of a release from 1 on");
+  }
+}
+
+TEST(MakeFitPendulumOptions, TakesWhatIsKnownOfParameters) {
+  FitPendulumFlags flags = WithData();
+  flags.init = "inertia=0.08,zero_drift=0";
+  flags.bounds = "viscous=:0.1";
+  flags.prior = "coulomb=0.004:0.001";
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_THAT(options->fit.initial, ElementsAre(Pair("inertia", 0.08), Pair("zero_drift", 0)));
+  EXPECT_EQ(options->fit.bounds.at("viscous").upper, 0.1);
+  EXPECT_EQ(options->fit.priors.at("coulomb").mean, 0.004);
+  EXPECT_EQ(options->fit.priors.at("coulomb").std_dev, 0.001);
+}
+
+TEST(MakeFitPendulumOptions, NamesTheFlagOfAParameterThatIsWrong) {
+  FitPendulumFlags flags = WithData();
+  flags.init = "inertia=x";
+  EXPECT_EQ(Refusal(flags), "--init inertia is 'x'; it must be a number in SI units");
+  flags.init.clear();
+  flags.bounds = "inertia=1";
+  EXPECT_EQ(Refusal(flags), "--bounds: 'inertia=1' must be name=low:high");
+  flags.bounds.clear();
+  flags.prior = "inertia=1";
+  EXPECT_EQ(Refusal(flags), "--prior: 'inertia=1' must be name=mean:std_dev");
+}
+
+TEST(MakeFitPendulumOptions, RefusesToHoldAParameterThatAnotherFlagNames) {
+  FitPendulumFlags flags = WithData();
+  flags.fix = "viscous=0.003";
+  flags.init = "viscous=0.002";
+  EXPECT_EQ(Refusal(flags), "--fix holds viscous, and --init names it too; leave one of them out");
+  flags.init.clear();
+  flags.bounds = "viscous=0:1";
+  EXPECT_EQ(Refusal(flags), "--fix holds viscous, and --bounds names it too; leave one of them out");
+  flags.bounds.clear();
+  flags.prior = "viscous=0.003:0.001";
+  EXPECT_EQ(Refusal(flags), "--fix holds viscous, and --prior names it too; leave one of them out");
 }
 
 }  // namespace

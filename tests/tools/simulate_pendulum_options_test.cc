@@ -203,14 +203,5 @@ TEST(SimulateOptions, NumberTruthFilesAsTheRecordings) {
   EXPECT_EQ(files[1].path, "truth_002.json");
 }
 
-TEST(NumberedPath, IsThePathItselfForOneRecording) { EXPECT_EQ(NumberedPath("a/run.csv", 0, 1), "a/run.csv"); }
-
-TEST(NumberedPath, CountsFromOneWithThreeDigitsOrMore) {
-  EXPECT_EQ(NumberedPath("a.b/run.csv", 0, 2), "a.b/run_001.csv");
-  EXPECT_EQ(NumberedPath("run", 11, 12), "run_012");
-  EXPECT_EQ(NumberedPath("run.x.csv", 999, 1000), "run.x_1000.csv");
-  EXPECT_EQ(NumberedPath("run.csv", 0, 1000), "run_0001.csv");
-}
-
 }  // namespace
 }  // namespace pendulum

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/repair_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Le;
+
+/// 100 Hz of amplitude * cos(5 t) around a middle; no noise.
+Recording Wave(double amplitude, double middle = 0, Eigen::Index count = 1000) {
+  Recording recording;
+  recording.time = Eigen::ArrayXd::LinSpaced(count, 0, 0.01 * static_cast<double>(count - 1));
+  recording.value = middle + amplitude * (5 * recording.time.array()).cos();
+  return recording;
+}
+
+/// Noise in (-1, 1) with the standard deviation of a normal one: the sum of twelve uniform draws.
+Recording Noisy(Recording recording, double sigma, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  for (double& value : recording.value) {
+    double sum = -6;
+    for (int k = 0; k < 12; ++k) sum += std::ldexp(static_cast<double>(generator() >> 11), -53);
+    value += sigma * sum;
+  }
+  return recording;
+}
+
+std::vector<std::string> Codes(const Recording& recording) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : recording.warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+void ExpectUntouched(const Recording& recording) {
+  const Recording repaired = RepairValues(recording);
+  EXPECT_THAT(Codes(repaired), IsEmpty());
+  EXPECT_EQ(repaired.time, recording.time);
+  EXPECT_EQ(repaired.value, recording.value);
+}
+
+/// Largest distance of a repaired recording's readings to a curve at their times.
+template <typename Curve>
+double FarthestFrom(const Recording& recording, const Curve& curve) {
+  double farthest = 0;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    farthest = std::max(farthest, std::abs(recording.value[i] - curve(recording.time[i])));
+  }
+  return farthest;
+}
+
+// ---- Whole turns ----------------------------------------------------------------------------------------------------
+
+/// What a sensor shows that begins again at `low` after a turn.
+Recording Wrapped(Recording recording, double low) {
+  for (double& value : recording.value) value -= 2 * kPi * std::floor((value - low) / (2 * kPi));
+  return recording;
+}
+
+TEST(RepairValues, ContinuesAnAngleAcrossTheZeroOfASensorThatBeginsAgain) {
+  Recording recording = Wrapped(Wave(0.5), 0);  // hangs at 0 = 360 deg: jumps at each of 16 passages
+  recording.range = SensorRange{0, 2 * kPi};
+  const Recording repaired = RepairValues(recording);
+  ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
+  EXPECT_EQ(repaired.warnings[0].message,
+            "16 jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued");
+  EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-12);
+  EXPECT_FALSE(repaired.range);
+}
+
+TEST(RepairValues, ContinuesALargeSwingBeyondHalfATurn) {
+  // Its sensor is mounted 60 deg off and shows (-180, 180] deg.
+  const Recording repaired = RepairValues(Wrapped(Wave(-2.5, kPi / 3), -kPi));
+  ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
+  EXPECT_LT(FarthestFrom(repaired, [](double t) { return kPi / 3 - 2.5 * std::cos(5 * t); }), 1e-12);
+}
+
+TEST(RepairValues, LeavesAnAngleOfMoreThanATurnAsItIs) {
+  Recording recording = Wave(2.0);
+  recording.value.tail(500).array() += 2 * kPi;  // whatever this is
+  const Recording repaired = RepairValues(recording);
+  EXPECT_EQ(repaired.value, recording.value);
+}
+
+TEST(RepairValues, UnwrapsNoRateAndNoCounts) {
+  for (const std::string unit : {"rad/s", "counts"}) {
+    Recording recording = Wrapped(Wave(0.5), 0);
+    recording.unit = unit;
+    if (unit == "rad/s") recording.quantity = Quantity::kRate;
+    EXPECT_THAT(Codes(RepairValues(recording)), testing::Not(testing::Contains("unwrapped"))) << unit;
+  }
+}
+
+// ---- Readings that only repeat --------------------------------------------------------------------------------------
+
+TEST(RepairValues, LeavesOutWhatATrackerRepeats) {
+  for (const int times : {2, 3}) {
+    SCOPED_TRACE(times);
+    Recording recording = Wave(0.5);
+    for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = recording.value[i - i % times];
+    const Recording repaired = RepairValues(recording);
+    ASSERT_THAT(Codes(repaired), ElementsAre("stale_values"));
+    const Eigen::Index left_out = recording.size() - repaired.size();
+    EXPECT_EQ(repaired.warnings[0].message, std::to_string(left_out) +
+                                                " readings only repeat the one before while the pendulum moves on; "
+                                                "they are left out");
+    EXPECT_THAT(static_cast<double>(left_out), testing::DoubleNear(1000.0 * (times - 1) / times, 10));
+    EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-3);
+  }
+}
+
+TEST(RepairValues, LeavesOutARunThatIsFrozenInMotion) {
+  Recording recording = Wave(0.5);
+  recording.value.segment(151, 5).setConstant(recording.value[150]);  // half way down
+  const Recording repaired = RepairValues(recording);
+  ASSERT_THAT(Codes(repaired), ElementsAre("stale_values"));
+  EXPECT_EQ(repaired.size(), 995);
+  EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-12);
+}
+
+TEST(RepairValues, KeepsWhatRepeatsAtRestAndWhereQuantizedReadingsTurn) {
+  Recording rest = Wave(0.5);  // held for 2 s, and stopped after six periods
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    rest.value[i] = 0.5 * std::cos(std::clamp(5 * (rest.time[i] - 2), 0.0, 12 * kPi));
+  }
+  Recording quantized = Wave(0.5);
+  for (double& value : quantized.value) value = 0.005 * std::round(value / 0.005);
+  quantized.resolution = 0.005;
+  EXPECT_EQ(RepairValues(quantized).value, quantized.value);
+  EXPECT_EQ(RepairValues(rest).size(), rest.size());
+}
+
+// ---- Spikes ---------------------------------------------------------------------------------------------------------
+
+TEST(RepairValues, LeavesOutSpikesAndNothingBesides) {
+  const Recording clean = Noisy(Wave(0.5), 0.002, 1);
+  for (const double height : {0.1, -0.3, 3.0}) {
+    Recording recording = clean;
+    std::vector<Eigen::Index> spiked = {100, 333, 334, 700};  // two of them side by side
+    for (const Eigen::Index i : spiked) recording.value[i] += height;
+    const Recording repaired = RepairValues(recording);
+    ASSERT_THAT(Codes(repaired), ElementsAre("spikes")) << height;
+    EXPECT_EQ(repaired.warnings[0].message, "4 readings far from their neighbours on both sides are left out");
+    EXPECT_EQ(repaired.size(), 996);
+    EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 0.013);  // the noise
+  }
+}
+
+TEST(RepairValues, LeavesOutReadingsThatDropToAFixedValue) {
+  Recording recording = Noisy(Wave(0.5, 1), 0.002, 1);
+  for (Eigen::Index i = 40; i < recording.size(); i += 97) recording.value[i] = 0;
+  const Recording repaired = RepairValues(recording);
+  EXPECT_THAT(Codes(repaired), ElementsAre("spikes"));
+  EXPECT_EQ(repaired.size(), 990);
+}
+
+TEST(RepairValues, KeepsAKickAndARelease) {
+  Recording kicked = Wave(0.5);  // at 4.7 s its rate is another at once, 0.3 s after a turn
+  for (Eigen::Index i = 470; i < kicked.size(); ++i) {
+    kicked.value[i] += 0.3 * std::sin(5 * (kicked.time[i] - kicked.time[470]));
+  }
+  Recording released = Wave(0.5);
+  for (Eigen::Index i = 0; i < released.size(); ++i) {
+    released.value[i] = 0.5 * std::cos(5 * std::max(released.time[i] - 2, 0.0));
+  }
+  for (const Recording& recording : {kicked, released}) {
+    ExpectUntouched(Noisy(recording, 0.002, 1));
+    ExpectUntouched(Noisy(recording, 0.0001, 2));
+  }
+}
+
+TEST(RepairValues, TakesHardlyAnyNoiseForASpike) {
+  Eigen::Index left_out = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    const Recording recording = Noisy(Wave(0.5, 0, 300), 0.003, seed);
+    left_out += recording.size() - RepairValues(recording).size();
+  }
+  EXPECT_THAT(left_out, Le(6));  // of 300,000
+}
+
+TEST(RepairValues, LeavesNothingOutWhereThereAreTooManySpikes) {
+  Recording recording = Noisy(Wave(0.5), 0.002, 1);
+  for (Eigen::Index i = 3; i < recording.size(); i += 7) recording.value[i] += 0.8;
+  const Recording repaired = RepairValues(recording);
+  ASSERT_THAT(Codes(repaired), ElementsAre("many_spikes"));
+  EXPECT_EQ(repaired.value, recording.value);
+  EXPECT_THAT(repaired.warnings[0].message,
+              testing::EndsWith(" readings stand far from their neighbours, too many to leave out"));
+  EXPECT_THAT(std::stoi(repaired.warnings[0].message), testing::Ge(101));
+}
+
+// ---- A row at each change -------------------------------------------------------------------------------------------
+
+/// An encoder of 0.01 rad per count.
+Recording Counted(Eigen::Index count, double step) {
+  Recording recording;
+  recording.time = Eigen::ArrayXd::LinSpaced(count, 0, step * static_cast<double>(count - 1));
+  recording.value = (0.01 * (50 * (5 * recording.time.array()).cos()).round()).matrix();
+  recording.resolution = 0.01;
+  return recording;
+}
+
+Recording OnlyChanges(const Recording& recording) {
+  std::vector<Eigen::Index> kept = {0};
+  for (Eigen::Index i = 1; i < recording.size(); ++i) {
+    if (recording.value[i] != recording.value[i - 1]) kept.push_back(i);
+  }
+  Recording changes = recording;
+  changes.time = recording.time(kept).eval();
+  changes.value = recording.value(kept).eval();
+  return changes;
+}
+
+TEST(RepairValues, NoticesRowsThatStandOnlyWhereTheValueChanges) {
+  const Recording repaired = RepairValues(OnlyChanges(Counted(20000, 5e-4)));
+  ASSERT_THAT(Codes(repaired), ElementsAre("event_driven"));
+  EXPECT_EQ(repaired.warnings[0].message,
+            "a row stands only where the value changes: the angle then is at the edge of its count, not in the middle, "
+            "half a count early all along, and the error bars know nothing of it; record at even times if you can");
+}
+
+TEST(RepairValues, NoticesNoEventsInEvenSamples) {
+  EXPECT_THAT(Codes(RepairValues(Counted(2000, 5e-3))), IsEmpty());
+  EXPECT_THAT(Codes(RepairValues(Counted(20000, 5e-4))), testing::Not(testing::Contains("event_driven")));
+}
+
+}  // namespace
+}  // namespace pendulum
