@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include "pendulum/base/median.h"
+#include "pendulum/base/physics.h"
 
 namespace pendulum {
 namespace {
@@ -82,7 +83,9 @@ double SuccessiveDifferenceNoise(const Recording& recording) {
 }
 
 double TurningThreshold(const Recording& recording, double noise) {
-  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  // Turns over the top make no swing larger.
+  if (recording.quantity == Quantity::kAngle && recording.is_calibrated()) range = std::min(range, 2 * kPi);
   // Twice what the largest of N deviations is expected to be, and one more: noise alone turns nowhere.
   const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 1;
   return std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});

@@ -83,7 +83,7 @@ Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   // The release lies somewhere within the band too.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
-    if (IsSteady(table, begin, held)) return {begin, "held, then released"};
+    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld)};
   }
   return {last, "after the release: the hold before it is not steady"};
 }
@@ -107,13 +107,17 @@ std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
   return SteadyPart(table, begin, LastWithin(recording, end, level, band));
 }
 
-/// After a fall from near the upright: the next turning point.
+/// After a fall from near the upright, or turns over the top: the next turning point.
 std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
-  if (table.recording.quantity != Quantity::kAngle || !(table.amplitude[turn] > kUpright)) return std::nullopt;
-  return Beginning{table.turns[turn + 1].sample,
-                   "after the fall from " + NumberText(table.amplitude[turn] / kRadFromDeg, 3) +
-                       " deg, where the smallest push decides when it falls and the release tells nothing"};
+  constexpr double kOverTheTop = 185 * kRadFromDeg;
+  const Recording& recording = table.recording;
+  const bool angle = recording.quantity == Quantity::kAngle && recording.is_calibrated();
+  if (!angle || !(table.amplitude[turn] > kUpright)) return std::nullopt;
+  const Index next = table.turns[turn + 1].sample;
+  if (table.amplitude[turn] > kOverTheTop) return Beginning{next, "after its turns over the top"};
+  return Beginning{next, "after the fall from " + NumberText(table.amplitude[turn] / kRadFromDeg, 3) +
+                             " deg, where the smallest push decides when it falls and the release tells nothing"};
 }
 
 Beginning Begin(const TurnTable& table, const Run& run) {
@@ -124,7 +128,7 @@ Beginning Begin(const TurnTable& table, const Run& run) {
   const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
   const bool within =
       std::abs(recording.value[0] - table.zero[run.first]) <= table.amplitude[run.first] + table.Tolerance(run.first);
-  if (near_start && within) return {0, "the recording begins in motion"};
+  if (near_start && within) return {0, std::string(kInMotion)};
   return {table.turns[run.first].sample, "the first turning point after the pendulum was moved otherwise"};
 }
 
@@ -291,14 +295,29 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   return swing;
 }
 
-/// The largest amplitude of turns that belong to no run.
+/// The largest amplitude of turns that belong to no run. Runs stand in time order.
 double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
   double largest = 0;
+  auto run = runs.begin();
   for (std::size_t i = 1; i < table.turns.size(); ++i) {
-    const bool inside = std::ranges::any_of(runs, [&](const Run& run) { return i >= run.first && i <= run.last; });
+    while (run != runs.end() && run->last < i) ++run;
+    const bool inside = run != runs.end() && i >= run->first;
     if (!inside) largest = std::max(largest, table.amplitude[i]);
   }
   return largest;
+}
+
+/// A swing beyond the upright to both sides is none: most likely its unit is another.
+Result<void> CheckUnit(const TurnTable& table) {
+  constexpr double kMost = 3.3;  // rad
+  const bool angle = table.recording.quantity == Quantity::kAngle && table.recording.is_calibrated();
+  const double typical = Median(table.amplitude);
+  if (!angle || typical < kMost) return {};
+  return Error(
+      StatusCode::kFailedPrecondition,
+      "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
+          " deg) to both sides, and beyond 180 deg a pendulum goes over the top: is the column in another unit? "
+          "--unit and the header must agree");
 }
 
 }  // namespace
@@ -309,15 +328,17 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
     const Result<std::vector<Extremum>> extrema = FindExtrema(recording);
     return tl::unexpected(extrema ? Status{StatusCode::kFailedPrecondition, "no turning points"} : extrema.error());
   }
+  if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
   const std::vector<Verdict> verdicts = JudgeHalfSwings(table);
   const std::vector<Run> runs = FreeRuns(table, verdicts);
   const Result<std::optional<FreeSwing>> unfree = Unfree(table, runs);
   if (!unfree) return tl::unexpected(unfree.error());
   if (*unfree) return std::vector<FreeSwing>{**unfree};
   std::vector<FreeSwing> swings;
+  const double outside = LargestOutside(table, runs);
   for (const Run& run : runs) {
     swings.push_back(MakeSwing(table, run));
-    swings.back().amplitude_outside = LargestOutside(table, runs);
+    swings.back().amplitude_outside = outside;
   }
   if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude and cross the zero");
   return swings;

@@ -58,7 +58,8 @@ struct Slip {
 Slip SlipOf(const TurnTable& table, std::size_t i) {
   constexpr std::size_t kNeighbours = 6;
   constexpr double kLeast = 0.025;
-  constexpr double kDeviations = 10;
+  // The more half swings there are, the farther one of them lies by chance.
+  const double deviations = 6 + 2 * std::log(static_cast<double>(table.half_swings()));
   std::vector<double> near;
   for (std::size_t j = i - std::min(i, kNeighbours); j < std::min(i + kNeighbours + 1, table.half_swings()); ++j) {
     if (j != i) near.push_back(RelativeDuration(table, j));
@@ -66,7 +67,7 @@ Slip SlipOf(const TurnTable& table, std::size_t i) {
   if (near.size() < kNeighbours) return {};
   const double typical = Median(near);
   for (double& duration : near) duration = std::abs(duration - typical);
-  return {RelativeDuration(table, i) - typical, std::max(kLeast, kDeviations * Median(std::move(near)))};
+  return {RelativeDuration(table, i) - typical, std::max(kLeast, deviations * Median(std::move(near)))};
 }
 
 /// Whether time slips in half swing i: samples were lost, or the pendulum was touched. A turning point that is found a
@@ -128,7 +129,7 @@ Verdict Judge(const TurnTable& table, std::size_t i) {
 
 double TurnTable::Stretch(std::size_t turn) const {
   constexpr double kNearTop = 3.0;
-  if (recording.quantity == Quantity::kRate) return 1;
+  if (recording.quantity == Quantity::kRate || !recording.is_calibrated()) return 1;
   return PeriodRatio(std::min(amplitude[turn], kNearTop));
 }
 

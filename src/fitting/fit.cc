@@ -42,7 +42,8 @@ void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
 void WeighPriors(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 20;
   constexpr double kSame = 1e-4;
-  const auto freedom = static_cast<double>(problem.data.time.size() - problem.infos.size());
+  const auto free = std::ranges::count(problem.solve.fixed, false);
+  const double freedom = std::max(static_cast<double>(problem.data.time.size()) - static_cast<double>(free), 1.0);
   double noise = 1;  // in units of data.scale
   for (int round = 0; !problem.priors.empty() && solution.usable && round < kMostRounds; ++round) {
     const double sum = solution.sum - cost.PriorSum(solution.parameters);

@@ -204,6 +204,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.holding_parameter = HoldingParameter(*model);
   problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
+  problem.restricted = !options.fixed.empty() || !options.bounds.empty() || !options.priors.empty();
   problem.solve.max_iterations = options.max_iterations;
   problem.solve.max_traces = options.max_traces;
   if (const Result<void> applied = ApplyOptions(options, problem); !applied) return tl::unexpected(applied.error());

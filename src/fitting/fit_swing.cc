@@ -10,21 +10,24 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
 #include "pendulum/fitting/not_a_pendulum.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
 namespace {
 
-/// So many samples are enough to compare windows.
+/// So many samples are enough to compare windows, and so many in a half swing.
 constexpr Eigen::Index kMostSamples = 3000;
+constexpr double kPerHalfSwing = 12;
 constexpr int kMostTraces = 60;
 
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
  public:
-  WindowTrials(const Recording& recording, const FitOptions& options) : recording_(Thinned(recording, kMostSamples)) {
-    options_.model = options.model == "linear" ? "linear" : "drag";
+  WindowTrials(Recording recording, const FitOptions& options) : recording_(std::move(recording)) {
+    options_.model = "drag";
+    if (!recording_.is_calibrated()) options_.gravity = Gravity::kLinear;
     options_.start = options.start;
     options_.max_traces = kMostTraces;
   }
@@ -67,15 +70,17 @@ class WindowTrials {
   std::vector<Trial> trials_;
 };
 
-/// How many turning points may be left out at an edge: none, one, two, four and so on to a quarter of them.
+/// How many turning points may be left out at an edge: none, one, two, four and so on, and a quarter of them.
 std::vector<std::size_t> Steps(std::size_t turns) {
+  const std::size_t most = std::max<std::size_t>(turns / 4, 1);
   std::vector<std::size_t> steps = {0};
-  for (std::size_t k = 1; k <= std::max<std::size_t>(turns / 4, 1) && turns >= k + 4; k *= 2) steps.push_back(k);
+  for (std::size_t k = 1; k < most; k *= 2) steps.push_back(k);
+  if (turns >= most + 4) steps.push_back(most);
   return steps;
 }
 
-/// The fewest turning points to leave out at an edge such that leaving out more makes the rest fit not much better.
-/// window(k) is the window without k of them.
+/// The fewest turning points to leave out at an edge such that leaving out more makes the rest fit not much better; all
+/// the steps allow where that is never so. window(k) is the window without k of them.
 template <typename Window>
 std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps, const Window& window) {
   // No law is exact: a shorter window fits a little better, the more so the shorter it is.
@@ -93,7 +98,7 @@ std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps
                                     [&](std::size_t more) { return fits(steps[i], more); });
     if (enough) return steps[i];
   }
-  return 0;
+  return steps.back();
 }
 
 /// Turning points that may begin or end a window: not the hold, nor the first sample.
@@ -105,42 +110,85 @@ std::vector<double> InnerTurns(const FreeSwing& swing) {
   return turns;
 }
 
+/// Leaves out what disturbs the swing at one of its ends.
+void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
+  const Recording excerpt = Excerpt(recording, kMostSamples, kPerHalfSwing / swing.half_period, at_end);
+  const double from = excerpt.time[0];
+  const double to = excerpt.time[excerpt.size() - 1];
+  std::vector<double> turns;
+  for (const double turn : InnerTurns(swing)) {
+    if (turn > from && turn < to) turns.push_back(turn);
+  }
+  if (turns.size() < 2) return;
+  const auto window = [&](std::size_t k) {
+    if (k == 0) return std::pair(from, to);
+    return at_end ? std::pair(from, turns[turns.size() - k]) : std::pair(turns[k - 1], to);
+  };
+  WindowTrials trials(excerpt, options);
+  const std::size_t k = LeaveOut(trials, Steps(turns.size()), window);
+  if (k == 0) return;
+  const auto [inner_from, inner_to] = window(k);
+  (at_end ? swing.to : swing.from) = at_end ? inner_to : inner_from;
+  (at_end ? swing.ends : swing.begins) = at_end
+                                             ? "what follows it does not fit what is before: touched, or another law"
+                                             : "what is before it does not fit what follows: touched, or another law";
+}
+
+/// A value of the start belongs to the first sample, or to the release, that the user meant.
+bool NamesStart(const FitOptions& options) {
+  const auto names = [](const auto& map) {
+    return std::ranges::any_of(map, [](const auto& entry) {
+      return entry.first == kReleaseAngle.name || entry.first == kReleaseTime.name ||
+             entry.first == kInitialAngle.name || entry.first == kInitialRate.name;
+    });
+  };
+  return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+}
+
 /// Leaves out what disturbs the swing at its two ends, unless the user chose them.
 void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
-  WindowTrials trials(recording, options);
-  const std::vector<double> turns = InnerTurns(swing);
-  const std::vector<std::size_t> steps = Steps(turns.size());
-  const auto without_first = [&](std::size_t k) { return std::pair(k == 0 ? swing.from : turns[k - 1], swing.to); };
-  const auto without_last = [&](std::size_t k) {
-    return std::pair(swing.from, k == 0 ? swing.to : turns[turns.size() - k]);
-  };
-  if (const std::size_t k = swing.from_given ? 0 : LeaveOut(trials, steps, without_first); k > 0) {
-    swing.from = turns[k - 1];
-    swing.begins = "what is before it does not fit what follows: a hand, or another disturbance";
-  }
-  if (const std::size_t k = swing.to_given ? 0 : LeaveOut(trials, steps, without_last); k > 0) {
-    swing.to = turns[turns.size() - k];
-    swing.ends = "what follows it does not fit what is before: a hand, or another disturbance";
-  }
+  if (!(swing.half_period > 0)) return;
+  if (!swing.from_given && !NamesStart(options)) TrimEnd(recording, options, false, swing);
+  if (!swing.to_given) TrimEnd(recording, options, true, swing);
 }
 
 bool HasWarning(const FitReport& fit, std::string_view code) {
   return std::ranges::any_of(fit.warnings, [&](const Warning& warning) { return warning.code == code; });
 }
 
+/// Takes whole turns over the top out of the readings, so that the zero is the sensor's own; says how many.
+std::string TakeTurnsOut(Recording& used) {
+  if (used.quantity != Quantity::kAngle || !used.is_calibrated()) return "";
+  const double mean = used.value.mean();
+  const double turns = std::abs(mean) > 1.5 * kPi ? std::round(mean / (2 * kPi)) : 0;
+  if (turns == 0) return "";
+  used.value.array() -= 2 * kPi * turns;
+  return NumberText(turns) + " whole turns were taken out of the readings: the zero is that of the swing's own turn";
+}
+
 Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const FitOptions& options) {
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
+  const std::string turned = TakeTurnsOut(*used);
   Result<FitReport> fit = FitRecording(*used, options);
   if (!fit) return tl::unexpected(fit.error());
-  return SwingFit{*std::move(used), swing, *std::move(fit)};
+  if (!turned.empty()) fit->warnings.push_back({"turns_taken_out", turned});
+  SwingFit result{*std::move(used), swing, *std::move(fit)};
+  // The fit has the last word on how it began.
+  const bool released = result.fit.start == StartKind::kRelease;
+  const bool held = swing.begins == kHeld;
+  if (released && swing.begins == kInMotion) result.swing.begins = kHeld;
+  if (!released && held) result.swing.begins = "in motion: held before, but its release tells less than its motion";
+  return result;
 }
 
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
 Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurns(result.swing);
-  const Recording thinned = Thinned(result.used, kMostSamples);
+  const Recording thinned =
+      Thinned(result.used,
+              std::max(kMostSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
   FitOptions quick = options;
   quick.max_traces = 5 * kMostTraces;
   const auto converges = [](const Result<SwingFit>& trial) {

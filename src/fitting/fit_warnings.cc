@@ -82,8 +82,8 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
   const bool angle = recording.quantity == Quantity::kAngle;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
-  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) +
-                                        (angle ? " rad" : " rad/s") + " over the window; --init " + name +
+  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) + " " +
+                                        recording.value_unit() + " over the window; --init " + name +
                                         "=0 makes the drift a parameter of the fit"});
 }
 
@@ -105,6 +105,21 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
                                             " only, which is not small against the noise of " +
                                             NumberText(report.noise.sigma, 1) +
                                             ": near the top rounding grows; choose a window of smaller swings"});
+}
+
+/// A prior that the estimate leaves behind, or is drawn to against the data, is not believed by one of them.
+void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
+                  std::vector<Warning>& warnings) {
+  constexpr double kFar = 3;  // standard deviations
+  for (const PriorTerm& prior : problem.priors) {
+    const double distance = std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight;
+    if (!(distance > kFar)) continue;
+    warnings.push_back({"prior_conflict", "the prior on " + std::string(report.parameters[prior.parameter].info.name) +
+                                              " and the recording disagree: the estimate lies " +
+                                              NumberText(distance, 3) +
+                                              " of the prior's standard deviations from its "
+                                              "mean; look at --prior"});
+  }
 }
 
 /// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
@@ -171,6 +186,7 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
   if (correlated) WarnOfDrift(recording, problem, report, warnings);
   WarnOfQuietSensor(recording, report, warnings);
   WarnOfTraceAccuracy(report, warnings);
+  WarnOfPriors(problem, solution, report, warnings);
   if (report.termination != Termination::kConverged) return warnings;
   WarnOfBounds(report, warnings);
   WarnOfStop(problem, solution, trace, report, warnings);

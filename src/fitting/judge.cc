@@ -47,7 +47,7 @@ std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost
   optimum.inverse = InvertInformation(optimum.information, optimum.free);
   const auto samples = static_cast<double>(problem.data.time.size());
   optimum.freedom = std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
-  optimum.variance = (solution.sum - cost.PriorSum(solution.parameters)) / optimum.freedom;
+  optimum.variance = std::max(solution.sum - cost.PriorSum(solution.parameters), 0.0) / optimum.freedom;
   return optimum;
 }
 
@@ -126,16 +126,15 @@ std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<i
 }
 
 std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
-  const bool fixed =
-      std::find(problem.solve.fixed.begin(), problem.solve.fixed.end(), true) != problem.solve.fixed.end();
-  const std::string what =
-      fixed ? "not with the values that are fixed, not a free pendulum's swing, or not one of this model: "
-            : "this is not a free pendulum's swing, or not one of this model: ";
+  const std::string what = problem.restricted ? "not with the values, bounds and priors that were given, not a free "
+                                                "pendulum's swing, or not one of this model: "
+                                              : "this is not a free pendulum's swing, or not one of this model: ";
   const std::string leaves = unexplained < 1
                                  ? "the best trajectory leaves " + std::to_string(std::lround(100 * unexplained)) +
                                        " % of the reading's variance unexplained"
                                  : std::string("the best trajectory explains the readings no better than a constant");
-  return what + leaves + (fixed ? "; look at --fix, or" : ";") + " choose a window of free swing with --from and --to";
+  return what + leaves + (problem.restricted ? "; look at --fix, --bounds and --prior, or" : ";") +
+         " choose a window of free swing with --from and --to";
 }
 
 void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
@@ -168,19 +167,25 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   }
 }
 
-/// The power of a unit of time in a parameter: that of the clock's scale in its estimate.
-int PowerOfTime(const ParameterInfo& info) {
-  for (const ParameterInfo& rate : {kInitialRate, kZeroDrift, kBiasDrift}) {
-    if (info.name == rate.name) return -1;
-  }
+/// The power of the clock's scale in a parameter's estimate. A rate sensor's clock is its own: what follows from its
+/// readings alone does not scale, and angles, which it tells as rate times time, do.
+int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
+  const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
+  const bool rate = quantity == Quantity::kRate;
+  if (is_one_of(kZeroDrift, kBiasDrift)) return -1;
+  if (is_one_of(kInitialRate)) return rate ? 0 : -1;
+  if (is_one_of(kReleaseAngle, kInitialAngle)) return rate ? 1 : 0;
   if (!info.scales_with_gravity()) return 0;
+  if (is_one_of(kInertia)) return 2;
+  if (rate) return 1;
   return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
 }
 
 /// What the rig's gravity torque and the clock's scale leave open: both multiply the parameter (MODEL.md eq. (24)).
 std::optional<double> SystematicError(const Recording& recording, const FitOptions& options,
                                       const ParameterEstimate& parameter) {
-  double relative = PowerOfTime(parameter.info) * recording.clock_scale_std_dev / recording.clock_scale;
+  double relative =
+      PowerOfTime(parameter.info, recording.quantity) * recording.clock_scale_std_dev / recording.clock_scale;
   if (options.rig && parameter.info.scales_with_gravity()) {
     const RigValue& torque = options.rig->gravity_torque;
     relative = std::hypot(relative, torque.std_dev / torque.value);
@@ -221,8 +226,10 @@ void SetErrors(const FitProblem& problem, const Optimum& optimum, const Solution
   }
   const Index row = std::find(optimum.free.begin(), optimum.free.end(), i) - optimum.free.begin();
   parameter.std_error = scale * std::sqrt(optimum.variance * optimum.inverse.matrix(row, row));
-  parameter.lower95 = std::max(parameter.estimate - t95 * *parameter.std_error, parameter.info.lower);
-  parameter.upper95 = parameter.estimate + t95 * *parameter.std_error;
+  const auto reported = [&](double internal) { return scale * internal + problem.offset[i]; };
+  const double lowest = std::max(reported(problem.solve.lower[i]), parameter.info.lower);
+  parameter.lower95 = std::max(parameter.estimate - t95 * *parameter.std_error, lowest);
+  parameter.upper95 = std::min(parameter.estimate + t95 * *parameter.std_error, reported(problem.solve.upper[i]));
 }
 
 void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,

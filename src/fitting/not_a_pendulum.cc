@@ -13,8 +13,19 @@
 namespace pendulum {
 namespace {
 
-/// So many samples are enough to tell what moves.
-constexpr Eigen::Index kMostSamples = 3000;
+/// rad/s
+double NaturalFrequencyOf(const FitReport& report) {
+  const auto found = std::ranges::find(report.derived, "natural_frequency", &DerivedQuantity::name);
+  return found == report.derived.end() ? 0 : found->estimate;
+}
+
+/// The first swings, which are the largest, in so many samples that the line of a tenth of a period can be told.
+Recording FirstSwings(const Recording& recording, const FitReport& report) {
+  constexpr Eigen::Index kMostSamples = 3000;
+  constexpr double kPerPeriod = 24;
+  const double periods_per_second = NaturalFrequencyOf(report) * recording.clock_scale / (2 * kPi);
+  return Excerpt(recording, kMostSamples, std::max(kPerPeriod * periods_per_second, 1e-9), false);
+}
 
 /// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
 std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity) {
@@ -66,17 +77,17 @@ struct Line {
 /// phase (Astrophys. J. 263:835, 1982), and the share of all within a fifth of it, for a mode that decays is no sharp
 /// line.
 Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
-  constexpr Eigen::Index kMostTerms = 2500;
   constexpr int kMostFrequencies = 1000;
   constexpr double kWidth = 0.2;
-  const Eigen::Index stride = (time.size() + kMostTerms - 1) / kMostTerms;
-  const Eigen::Index count = (time.size() + stride - 1) / stride;
-  const Eigen::ArrayXd t = time(Eigen::seqN(0, count, stride)).array() - time[0];
-  const Eigen::ArrayXd r = residual(Eigen::seqN(0, count, stride)).array();
+  const Eigen::ArrayXd t = time.array() - time[0];
+  const Eigen::ArrayXd& r = residual.array();
+  const Eigen::Index count = time.size();
   const double independent = 2 * kPi / t[count - 1];
   const double spacing = std::max(independent, 10 * natural / kMostFrequencies);
   std::vector<Line> lines;
-  for (double frequency = spacing; frequency < 10 * natural; frequency += spacing) {
+  // Beyond half the sampling rate there is nothing but mirror images.
+  const double highest = std::min(10 * natural, 0.5 * independent * static_cast<double>(count - 1));
+  for (double frequency = spacing; frequency < highest; frequency += spacing) {
     const Eigen::ArrayXd phase = frequency * t;
     const double power = std::pow((r * phase.cos()).sum(), 2) + std::pow((r * phase.sin()).sum(), 2);
     lines.push_back({frequency, 2 * power * spacing / (independent * static_cast<double>(count) * r.square().sum())});
@@ -93,12 +104,11 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
 std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
   constexpr double kMostOfIt = 0.4;
   constexpr double kSmallest = 0.03;  // of the swing's rms
-  const auto frequency = std::ranges::find(report.derived, "natural_frequency", &DerivedQuantity::name);
-  if (frequency == report.derived.end()) return std::nullopt;
-  const double natural = frequency->estimate;
+  const double natural = NaturalFrequencyOf(report);
+  if (!(natural > 0)) return std::nullopt;
   const double swing = std::sqrt((recording.value.array() - recording.value.mean()).square().mean());
   if (!(report.statistics.rms_residual > kSmallest * swing)) return std::nullopt;
-  const Line line = StrongestLine(recording.time, report.residual, natural);
+  const Line line = StrongestLine(recording.clock_scale * recording.time, report.residual, natural);
   const double ratio = line.frequency / natural;
   const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);
   if (own || line.share < kMostOfIt) return std::nullopt;
@@ -111,16 +121,16 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
 
 std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report) {
   if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
-  const Recording some = Thinned(recording, kMostSamples);
+  const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine);
   return richest ? IsLinear(some, *richest) : std::nullopt;
 }
 
 std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report) {
   if (report.termination == Termination::kFailed) return std::nullopt;
-  if (report.model.gravity == Gravity::kLinear) return HasTwoModes(recording, report);
-  const Recording some = Thinned(recording, kMostSamples);
-  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine);
+  const Recording some = FirstSwings(recording, report);
+  const std::optional<FitReport> richest =
+      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear);
   return richest ? HasTwoModes(some, *richest) : std::nullopt;
 }
 

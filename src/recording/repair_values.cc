@@ -77,6 +77,35 @@ double LeastStep(const Recording& recording, double share) {
   return std::max(*least, recording.resolution);
 }
 
+/// Runs of three and more readings at exactly one value, an extreme of all, that are entered and left in steps of many
+/// least ones: the top of a swing that is cut off.
+Index FlatTops(const Eigen::VectorXd& value, double extreme, double least_step) {
+  constexpr Index kFewest = 3;
+  constexpr double kAtSpeed = 3;
+  Index tops = 0;
+  for (Index i = 1; i + 1 < value.size(); ++i) {
+    if (value[i] != extreme || value[i - 1] == extreme) continue;
+    Index end = i;
+    while (end < value.size() && value[end] == extreme) ++end;
+    if (end == value.size()) break;
+    const double steps = std::abs(value[i - 1] - extreme) + std::abs(value[end] - extreme);
+    if (end - i >= kFewest && steps > 2 * kAtSpeed * least_step) ++tops;
+    i = end;
+  }
+  return tops;
+}
+
+/// Takes an extreme that swings are cut off at for an end of the sensor's range, where the file tells none.
+void NoticeSaturation(double least_step, Recording& recording) {
+  constexpr Index kFewest = 3;
+  if (recording.range) return;
+  const double high = recording.value.maxCoeff();
+  const double low = recording.value.minCoeff();
+  const bool at_high = FlatTops(recording.value, high, least_step) >= kFewest;
+  const bool at_low = FlatTops(recording.value, low, least_step) >= kFewest;
+  if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
+}
+
 /// A row only where the value changes: steps of one size, never none, at uneven times.
 void NoticeEvents(double least_step, Recording& recording) {
   constexpr double kSame = 1e-3;
@@ -127,7 +156,9 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
     const auto near = value.segment(from, to - from + 1);
     const bool changes = near.maxCoeff() - near.minCoeff() > kChange * least_step;
     const bool moves = std::abs(value[to] - value[from]) > kMotion * least_step * static_cast<double>(to - from);
-    const bool same = value[i] == value[i - 1];
+    const auto& range = recording.range;
+    const bool cut_off = range && (value[i] <= range->low || value[i] >= range->high);
+    const bool same = value[i] == value[i - 1] && !cut_off;
     repeats.changing += changes ? 1 : 0;
     repeats.repeated += changes && same ? 1 : 0;
     repeats.amid_change[static_cast<std::size_t>(i)] = changes && same;
@@ -251,6 +282,7 @@ void LeaveOutSpikes(double least_step, Recording& recording) {
 
 Recording RepairValues(Recording recording) {
   Unwrap(recording);
+  NoticeSaturation(LeastStep(recording, 0.01), recording);
   NoticeEvents(LeastStep(recording, 0.1), recording);
   LeaveOutStale(LeastStep(recording, 0.01), recording);
   LeaveOutSpikes(LeastStep(recording, 0.1), recording);

@@ -79,4 +79,14 @@ Recording Thinned(const Recording& recording, Eigen::Index most) {
   return thinned;
 }
 
+Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end) {
+  const double longest = static_cast<double>(most) / per_second;
+  const double first = recording.time[0];
+  const double last = recording.time[recording.size() - 1];
+  const double from = at_end ? std::max(first, last - longest) : first;
+  const double to = at_end ? last : std::min(last, first + longest);
+  const Result<Recording> part = SelectWindow(recording, from, to);
+  return Thinned(part ? *part : recording, most);
+}
+
 }  // namespace pendulum

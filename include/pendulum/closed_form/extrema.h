@@ -20,7 +20,7 @@ struct Extremum {
 double SuccessiveDifferenceNoise(const Recording& recording);
 
 /// What a reading must move back by before a turn counts [unit of the recording]: noise, 2 sqrt(2 ln N) + 1 standard
-/// deviations of it, two resolutions and 3 % of the range.
+/// deviations of it, two resolutions and 3 % of the range (of a turn at most).
 double TurningThreshold(const Recording& recording, double noise);
 
 /// Turning points as FindExtrema, and before them the first candidate, which may be the start of the recording or lie

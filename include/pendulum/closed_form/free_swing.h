@@ -2,11 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
+
+/// What FreeSwing::begins says of the two ordinary beginnings.
+inline constexpr std::string_view kHeld = "held, then released";
+inline constexpr std::string_view kInMotion = "the recording begins in motion";
 
 /// A stretch of a recording in which nothing but gravity and friction moves the pendulum.
 struct FreeSwing {

@@ -20,6 +20,7 @@ struct FitProblem {
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
   SolveOptions solve;
+  bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
   std::vector<PriorTerm> priors;  ///< Weights are one over the standard deviation, for a noise of `data.scale`.
 
   /// Index of the zero, which its drift may follow.

@@ -11,6 +11,10 @@ namespace pendulum {
 /// the window and the span of the recording.
 Result<Recording> SelectWindow(Recording recording, double from, double to);
 
+/// Not more than `most` samples from the first (or the last) on, as dense as `per_second` [Hz] asks where the recording
+/// is.
+Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end);
+
 /// Every so many-th sample, so that at most `most` remain.
 Recording Thinned(const Recording& recording, Eigen::Index most);
 
