@@ -107,18 +107,22 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
                                             ": near the top rounding grows; choose a window of smaller swings"});
 }
 
-/// A prior that the estimate leaves behind, or is drawn to against the data, is not believed by one of them.
+/// The prior against what the recording alone would say, which prior and estimate tell: with variances s² of the
+/// estimate and p² of the prior, the recording's own is 1 / (1/s² - 1/p²).
 void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
                   std::vector<Warning>& warnings) {
-  constexpr double kFar = 3;  // standard deviations
+  constexpr double kFar = 3;  // standard deviations of their difference
   for (const PriorTerm& prior : problem.priors) {
-    const double distance = std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight;
+    const ParameterEstimate& parameter = report.parameters[prior.parameter];
+    if (!parameter.std_error) continue;
+    const double error = *parameter.std_error / problem.si_per_internal[prior.parameter] * prior.weight;  // s / p
+    const double own = 1 / std::max(1 / (error * error) - 1, 1e-9);                                       // in p²
+    const double distance =
+        std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight * std::sqrt(1 + own);
     if (!(distance > kFar)) continue;
-    warnings.push_back({"prior_conflict", "the prior on " + std::string(report.parameters[prior.parameter].info.name) +
-                                              " and the recording disagree: the estimate lies " +
-                                              NumberText(distance, 3) +
-                                              " of the prior's standard deviations from its "
-                                              "mean; look at --prior"});
+    warnings.push_back({"prior_conflict", "the prior on " + std::string(parameter.info.name) +
+                                              " and the recording disagree by " + NumberText(distance, 3) +
+                                              " standard deviations of their difference; look at --prior"});
   }
 }
 
@@ -186,8 +190,8 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
   if (correlated) WarnOfDrift(recording, problem, report, warnings);
   WarnOfQuietSensor(recording, report, warnings);
   WarnOfTraceAccuracy(report, warnings);
-  WarnOfPriors(problem, solution, report, warnings);
   if (report.termination != Termination::kConverged) return warnings;
+  WarnOfPriors(problem, solution, report, warnings);
   WarnOfBounds(report, warnings);
   WarnOfStop(problem, solution, trace, report, warnings);
   return warnings;

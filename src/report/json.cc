@@ -75,6 +75,8 @@ Json DataJson(const RunReport& report) {
       .Set("duration_s", data.duration())
       .Set("sample_rate_hz", data.sample_rate())
       .Set(Named("resolution", data.unit), ResolutionJson(data))
+      .Set("clock_scale", data.clock_scale)
+      .Set("clock_scale_std_dev", data.clock_scale_std_dev)
       .Set("window_s", Json::array({data.from, data.to}))
       .Set("window_reason", TextOrNull(WindowReason(data)))
       .Set("releases", Json(data.releases))

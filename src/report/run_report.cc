@@ -28,6 +28,8 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   data.from = used.time[0];
   data.to = used.time[used.size() - 1];
   data.resolution = used.resolution;
+  data.clock_scale = used.clock_scale;
+  data.clock_scale_std_dev = used.clock_scale_std_dev;
   return data;
 }
 

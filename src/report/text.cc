@@ -74,6 +74,11 @@ std::string DataText(const DataSummary& data) {
     rows.push_back({"begins", data.begins});
     rows.push_back({"ends", data.ends});
   }
+  if (data.clock_scale != 1 || data.clock_scale_std_dev > 0) {
+    const ValueAndError scale = PdgText(data.clock_scale, data.clock_scale_std_dev);
+    rows.push_back({"clock", scale.value + (scale.error.empty() ? "" : " ± " + scale.error) +
+                                 " true seconds to its second; parameters are in true seconds"});
+  }
   if (data.releases.size() > 1) rows.push_back({"releases", ReleasesText(data)});
   if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.unit)});
   return Heading("Data") + Facts(rows);

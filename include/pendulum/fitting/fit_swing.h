@@ -42,7 +42,7 @@ struct SwingFit {
 /// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
 /// stay. Warns `left_out` of larger motion outside. What is no pendulum's swing ends kNotConverged, `not_a_pendulum`.
 ///
-/// Errors as FitRecording. Cost: that of FitRecording, and where something is wrong up to ten small fits more.
+/// Errors as FitRecording. Cost: that of FitRecording, and where something is wrong some tens of small fits more.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

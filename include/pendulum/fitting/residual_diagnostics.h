@@ -26,7 +26,7 @@ double Lag1Correlation(const Eigen::VectorXd& residual);
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 
 /// Whether residuals swing along with the pendulum, against independence (MODEL.md eq. (25)): the model's errors of
-/// phase and amplitude from period to period [s] exceed what independent residuals give in 1e-4 of all cases. N
+/// phase and amplitude from period to period [s] exceed what independent residuals give in 2e-4 of all cases. N
 /// samples.
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);

@@ -20,14 +20,16 @@ namespace pendulum {
 
 /// What is said of a recording beside its samples.
 struct DataSummary {
-  std::string path;                             ///< As the user named it; empty when it did not come from a file.
-  std::string sha256;                           ///< Of the file's bytes; empty when it did not come from a file.
-  std::string unit = "rad";                     ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
-  Eigen::Index samples = 0;                     ///< In the file.
-  Eigen::Index used_samples = 0;                ///< In the window that was fitted; at least kMinimumSamples.
-  double from = 0;                              ///< Time of the first used sample [s, on the file's clock].
-  double to = 0;                                ///< Time of the last used sample [s, on the file's clock].
-  double resolution = 0;                        ///< Spacing of the values; 0 when the file does not tell.
+  std::string path;               ///< As the user named it; empty when it did not come from a file.
+  std::string sha256;             ///< Of the file's bytes; empty when it did not come from a file.
+  std::string unit = "rad";       ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
+  Eigen::Index samples = 0;       ///< In the file.
+  Eigen::Index used_samples = 0;  ///< In the window that was fitted; at least kMinimumSamples.
+  double from = 0;                ///< Time of the first used sample [s, on the file's clock].
+  double to = 0;                  ///< Time of the last used sample [s, on the file's clock].
+  double resolution = 0;          ///< Spacing of the values; 0 when the file does not tell.
+  double clock_scale = 1;         ///< True seconds in a second of the file's clock; the fit is in true ones.
+  double clock_scale_std_dev = 0;
   std::string begins, ends;                     ///< Why the window is what it is; empty where nothing was chosen.
   std::vector<std::array<double, 2>> releases;  ///< From and to of each free swing that was found [s].
   int release = 0;                              ///< The one that was fitted, from 1; 0: a window as it was asked for.
