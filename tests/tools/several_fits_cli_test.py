@@ -99,7 +99,7 @@ class SeveralFits(unittest.TestCase):
             self.fit("--data", "two.csv", "--release", str(number), "--json", "one.json")
             self.assertEqual(self.read(f"fit_00{number}.json"), self.read("one.json"))
             parameters = json.loads(self.read("one.json"))["fits"][0]["parameters"]
-            starts.append(next(p["estimate"] for p in parameters if p["name"] == "release_time"))
+            starts.append(parameters["release_time"]["estimate"])
         self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
         self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s held, and a sample each
         self.assertNotIn("fit_003.json", self.names())
