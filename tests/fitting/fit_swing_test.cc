@@ -175,7 +175,7 @@ TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
     const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
     EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
     EXPECT_EQ(result.swing.to, 19.99);
-    EXPECT_EQ(result.swing.begins, "what is before it does not fit what follows: a hand, or another disturbance");
+    EXPECT_EQ(result.swing.begins, "what is before it does not fit what follows: touched, or another law");
     EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
     ExpectTruthOfThePendulum(result.fit, run);
   }
@@ -188,7 +188,7 @@ TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
   const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
   EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
   EXPECT_EQ(result.swing.from, 0);
-  EXPECT_EQ(result.swing.ends, "what follows it does not fit what is before: a hand, or another disturbance");
+  EXPECT_EQ(result.swing.ends, "what follows it does not fit what is before: touched, or another law");
   ExpectTruthOfThePendulum(result.fit, run);
 }
 

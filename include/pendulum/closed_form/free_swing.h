@@ -9,7 +9,6 @@
 
 namespace pendulum {
 
-/// What FreeSwing::begins says of the two ordinary beginnings.
 inline constexpr std::string_view kHeld = "held, then released";
 inline constexpr std::string_view kInMotion = "the recording begins in motion";
 

@@ -38,7 +38,6 @@ struct DataSummary {
   double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, the mean
 };
 
-/// The summary of a recording of which `used` was fitted.
 DataSummary SummarizeData(const Recording& recording, const Recording& used);
 
 /// The same, and why: swing number `release` of those that were found in a recording of so many samples.
