@@ -368,5 +368,20 @@ TEST(FindFreeSwings, RefusesAPendulumHeldAtOneAngleAfterAnother) {
             "window of free swing with --from and --to");
 }
 
+TEST(FindFreeSwings, AsksForTheUnitOfASwingBeyondTheUpright) {
+  const Recording in_degrees =
+      Sample([](double t) { return 25 * std::exp(-0.02 * t) * std::cos(kOmega * t); }, 20, kRate);
+  EXPECT_THAT(Refusal(in_degrees),
+              testing::HasSubstr("to both sides, and beyond 180 deg a pendulum goes over the top: is "
+                                 "the column in another unit?"));
+}
+
+TEST(FindFreeSwings, TakesCountsForNoAngle) {
+  Recording counts = Joined({Still(0.4, 1), Swing(0.4, 10)});
+  counts.value = 500 + 300 * counts.value.array();
+  counts.unit = "counts";
+  EXPECT_EQ(OnlySwing(counts).begins, kHeld);
+}
+
 }  // namespace
 }  // namespace pendulum

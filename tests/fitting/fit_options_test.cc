@@ -365,5 +365,27 @@ TEST(Counts, GiveTheLinearModelsPeriodAndDamping) {
   EXPECT_THAT(counts.Find("zero_angle")->estimate, DoubleNear(512 + 0.012 / kCount, 0.2));
 }
 
+// ---- What contradicts ----------------------------------------------------------------------------------------------
+
+std::vector<std::string> CodesWithPrior(double off, double width) {
+  const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
+  const ParameterEstimate viscous = *Fit(recording, ModelOptions("viscous")).Find("viscous");
+  FitOptions options = ModelOptions("viscous");
+  options.priors = {{"viscous", {viscous.estimate + off * *viscous.std_error, width * *viscous.std_error}}};
+  std::vector<std::string> codes;
+  for (const Warning& warning : Fit(recording, options).warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+TEST(Prior, ThatTheRecordingContradictsIsWarnedOf) {
+  using testing::Contains;
+  using testing::Not;
+  // Differences of 6 / sqrt(2), 6 and 2 standard deviations; those of a sure prior decide the estimate all the same.
+  EXPECT_THAT(CodesWithPrior(6, 1), Contains("prior_conflict"));
+  EXPECT_THAT(CodesWithPrior(6, 0.01), Contains("prior_conflict"));
+  EXPECT_THAT(CodesWithPrior(2, 0.01), Not(Contains("prior_conflict")));
+  EXPECT_THAT(CodesWithPrior(2, 1), Not(Contains("prior_conflict")));
+}
+
 }  // namespace
 }  // namespace pendulum

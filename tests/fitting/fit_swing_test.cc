@@ -251,5 +251,19 @@ TEST(FitSwing, HandsOnWhatTheFitRefuses) {
   EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
 }
 
+TEST(FitSwing, TakesTurnsOverTheTopOutOfTheZero) {
+  SyntheticOptions truth = NoisyRun("coulomb", 3);
+  truth.start = StartKind::kMoving;
+  truth.release_angle = truth.release_time = 0;
+  truth.initial_rate = 3.2 / std::sqrt(truth.parameters[0]);  // 2 ω0 just reaches the top
+  truth.duration = 40;
+  const Recording recording = Must(SimulateRecording(truth));
+  const FreeSwing swing = Must(ChooseSwings(recording, {})).found.front();
+  EXPECT_EQ(swing.begins, "after its turns over the top");
+  const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
+  EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
+  EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "turns_taken_out")));
+}
+
 }  // namespace
 }  // namespace pendulum

@@ -237,5 +237,30 @@ TEST(RepairValues, NoticesNoEventsInEvenSamples) {
   EXPECT_THAT(Codes(RepairValues(Counted(20000, 5e-4))), testing::Not(testing::Contains("event_driven")));
 }
 
+// ---- Saturation ----------------------------------------------------------------------------------------------------
+
+TEST(RepairValues, TakesTheLevelOfFlatTopsForAnEndOfTheRange) {
+  Recording clipped = Noisy(Wave(0.6), 0.002, 5);
+  clipped.value = clipped.value.cwiseMin(0.4);
+  const Recording repaired = RepairValues(clipped);
+  ASSERT_TRUE(repaired.range.has_value());
+  EXPECT_EQ(repaired.range->high, 0.4);
+  EXPECT_LT(repaired.range->low, -0.6);
+  EXPECT_EQ(repaired.size(), clipped.size());
+}
+
+TEST(RepairValues, TakesRoundedTopsForWhatTheyAre) {
+  Recording coarse = Wave(0.6);
+  coarse.value = (coarse.value / 0.02).array().round() * 0.02;
+  EXPECT_FALSE(RepairValues(coarse).range.has_value());
+}
+
+TEST(RepairValues, LeavesTheRangeThatTheFileTells) {
+  Recording clipped = Wave(0.6);
+  clipped.value = clipped.value.cwiseMin(0.4);
+  clipped.range = SensorRange{-1, 0.4};
+  EXPECT_EQ(RepairValues(clipped).range->low, -1);
+}
+
 }  // namespace
 }  // namespace pendulum

@@ -120,5 +120,20 @@ TEST(Thinned, KeepsWhatIsKnownOfTheRecording) {
   EXPECT_EQ(thinned.warnings.size(), 1);
 }
 
+// ---- Excerpt --------------------------------------------------------------------------------------------------------
+
+TEST(Excerpt, IsAsDenseAsAskedAndAsLongAsThatAllows) {
+  // 21 samples, one each half second from 10 s on.
+  const Recording first = Excerpt(Ramp(), 9, 2, false);
+  EXPECT_EQ(first.time[0], 10);
+  EXPECT_LE(first.time[first.size() - 1], 14.5);
+  EXPECT_LE(first.size(), 9);
+  const Recording last = Excerpt(Ramp(), 9, 2, true);
+  EXPECT_GE(last.time[last.size() - 1], 19.5);
+  EXPECT_GE(last.time[0], 15.5);
+}
+
+TEST(Excerpt, IsTheWholeWhereThatIsDenseEnough) { EXPECT_EQ(Excerpt(Ramp(), 100, 2, false).time, Ramp().time); }
+
 }  // namespace
 }  // namespace pendulum
