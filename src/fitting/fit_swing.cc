@@ -257,15 +257,13 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   const Recording* const part = selected ? &*selected : &recording;
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
-  if (!found) {
-    const std::string where = recording.path.empty() ? "" : recording.path + ": ";
-    return Error(found.error().code, where + found.error().message);
-  }
+  if (!found) return Error(found.error().code, where + found.error().message);
   ChosenSwings swings{*std::move(found), {}};
   const auto count = static_cast<int>(swings.found.size());
   if (choice.release > count) {
-    return Error(StatusCode::kInvalidArgument, "there is no free swing " + std::to_string(choice.release) +
+    return Error(StatusCode::kInvalidArgument, where + "there is no free swing " + std::to_string(choice.release) +
                                                    " in the recording; it has " + std::to_string(count));
   }
   if (choice.release == SwingChoice::kAll) {

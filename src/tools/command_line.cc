@@ -2,6 +2,7 @@
 #include "tools/command_line.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -64,22 +65,41 @@ bool Fits(const FlagInfo& flag, std::string_view value) {
   return error == std::errc() && rest == end && (flag.type == "double" || number == std::floor(number));
 }
 
-/// Checks the flag that begins the arguments and gives how many of them it takes.
-Result<std::size_t> CheckFlag(std::span<const std::string> arguments, std::span<const FlagInfo> flags) {
+/// A flag as it is given.
+struct GivenFlag {
+  const FlagInfo* info = nullptr;
+  std::string value;
+  std::size_t arguments = 1;  ///< How many it takes.
+};
+
+/// Checks the flag that begins the arguments.
+Result<GivenFlag> CheckFlag(std::span<const std::string> arguments, std::span<const FlagInfo> flags) {
   const std::string body = arguments[0].substr(arguments[0][1] == '-' ? 2 : 1);
   const std::size_t equals = body.find('=');
   const std::string name = body.substr(0, equals);
   const FlagInfo* flag = FindFlag(name, flags);
   if (flag == nullptr) return WrongFlag(name, "is not a flag of this tool; " + Suggestion(name, flags));
   const bool joined = equals != std::string::npos;
-  if (flag->type == "bool" && !joined) return 1;
+  if (flag->type == "bool" && !joined) return GivenFlag{flag, "", 1};
   if (!joined && arguments.size() == 1) return WrongFlag(name, "needs a value");
   const std::string value = joined ? body.substr(equals + 1) : arguments[1];
   if (value.empty()) return WrongFlag(name, "has an empty value; leave the flag out for its default");
   if (!Fits(*flag, value)) {
     return WrongFlag(name, "is '" + value + "'; it must be a" + (flag->type == "double" ? " number" : "n integer"));
   }
-  return joined ? 1 : 2;
+  return GivenFlag{flag, value, joined ? 1U : 2U};
+}
+
+/// gflags would take the last value without a word. A switch may be repeated, for it says the same.
+Result<void> CheckGivenOnce(const GivenFlag& flag, std::map<std::string, std::string>& values) {
+  constexpr std::array<std::string_view, 5> kLists = {"data", "fix", "init", "bounds", "prior"};
+  const std::string& name = flag.info->name;
+  if (flag.info->type == "bool") return {};
+  const auto [earlier, is_first] = values.emplace(name, flag.value);
+  if (is_first) return {};
+  if (std::ranges::find(kLists, name) == kLists.end()) return WrongFlag(name, "is given twice; leave one of them out");
+  return WrongFlag(name, "is given twice; what it names stands between commas: --" + name + " " + earlier->second +
+                             "," + flag.value);
 }
 
 }  // namespace
@@ -87,6 +107,7 @@ Result<std::size_t> CheckFlag(std::span<const std::string> arguments, std::span<
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
                                                      std::span<const FlagInfo> flags) {
   std::vector<std::string> positional;
+  std::map<std::string, std::string> values;
   bool flags_ended = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
@@ -95,9 +116,10 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
     } else if (argument == "--") {
       flags_ended = true;
     } else {
-      const auto used = CheckFlag(arguments.subspan(i), flags);
-      if (!used) return tl::unexpected(used.error());
-      i += *used - 1;
+      const auto flag = CheckFlag(arguments.subspan(i), flags);
+      if (!flag) return tl::unexpected(flag.error());
+      if (const auto checked = CheckGivenOnce(*flag, values); !checked) return tl::unexpected(checked.error());
+      i += flag->arguments - 1;
     }
   }
   return positional;

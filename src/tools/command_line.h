@@ -23,7 +23,7 @@ struct FlagInfo {
 /// belong to no flag. gflags itself exits with 1 on what this refuses.
 ///
 /// kInvalidArgument: an unknown flag (the nearest own flag is suggested), a flag without its value or with an empty
-/// one, a number that is none.
+/// one, a number that is none, a flag other than a switch that is given twice.
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
                                                      std::span<const FlagInfo> flags);
 

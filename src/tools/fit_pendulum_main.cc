@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -28,8 +29,8 @@
 const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() + "; default coulomb.";
 
 DEFINE_string(data, "",
-              "Recording (CSV); its header names the columns and their units, such as time_s,angle_deg; - is "
-              "standard input.");
+              "Recording (CSV), or several between commas; the header names the columns and their units, such as "
+              "time_s,angle_deg; - is standard input.");
 DEFINE_string(calibration, "",
               "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
 DEFINE_string(time_column, "",
@@ -66,6 +67,7 @@ constexpr const char* kUsage =
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
     "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
+    "Of several fits those that can be made are written, and the largest code counts.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
@@ -99,14 +101,15 @@ struct Run {
   Recording used;
 };
 
-/// What the runs need beside their recordings.
+/// What the runs need beside their flags.
 struct Setup {
-  std::vector<std::string> paths;
+  std::vector<std::string> paths;  ///< Of the recordings.
+  std::vector<NamedFile> inputs;   ///< All that is read.
   std::optional<Rig> rig;
 };
 
 Result<Setup> ReadSetup(FitPendulumOptions& options) {
-  Setup setup{options.data, std::nullopt};
+  Setup setup{options.data, options.Inputs(), std::nullopt};
   if (!options.rig.empty()) {
     auto rig = ReadRig(options.rig);
     if (!rig) return tl::unexpected(rig.error());
@@ -120,13 +123,38 @@ Result<Setup> ReadSetup(FitPendulumOptions& options) {
   if (options.data_list.empty()) return setup;
   const auto listed = ReadDataList(options.data_list);
   if (!listed) return tl::unexpected(listed.error());
-  for (const ListedFile& file : *listed) setup.paths.push_back(file.path.string());
+  for (const ListedFile& file : *listed) {
+    setup.paths.push_back(file.path.string());
+    setup.inputs.push_back({"--data_list", file.path.string()});
+  }
   return setup;
 }
 
-/// The swings that are asked for in one recording, fitted one by one; `rig` wins over what the recording says of its
-/// rig.
-Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
+/// Numbered outputs are other files than those that were named; data of several fits have no place on one stream.
+Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count) {
+  if (count == 1) return {};
+  for (const NamedFile& output : options.Outputs()) {
+    if (!IsStandardOutput(output.path)) continue;
+    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
+                                                   std::to_string(count) + "; name a file, and they are numbered");
+  }
+  std::vector<NamedFile> outputs;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::ranges::move(options.Outputs(static_cast<int>(i), static_cast<int>(count)), std::back_inserter(outputs));
+  }
+  return CheckOutputs(outputs, setup.inputs);
+}
+
+/// A recording that was read, and the swings to be fitted in it.
+struct ReadSwings {
+  Recording recording;
+  ChosenSwings swings;
+  Eigen::Index samples = 0;  ///< As read, before repairs.
+  RunReport common;          ///< What the reports of all its swings say.
+};
+
+/// `rig` wins over what the recording says of its rig.
+Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
   auto read = ReadRecording(path, options.read);
   if (!read) return tl::unexpected(read.error());
   if (!rig && !read->rig_json.empty()) {
@@ -134,93 +162,123 @@ Result<std::vector<Run>> FitFile(const FitPendulumOptions& options, const std::s
     if (!own) return tl::unexpected(own.error());
     rig = *std::move(own);
   }
-  FitOptions fit_options = options.fit;
-  fit_options.rig = rig;
-  const Eigen::Index samples = read->size();
-  Recording recording = RepairValues(*std::move(read));
-  const auto swings = ChooseSwings(recording, options.swing);
+  ReadSwings one;
+  one.samples = read->size();
+  one.recording = RepairValues(*std::move(read));
+  auto swings = ChooseSwings(one.recording, options.swing);
   if (!swings) return tl::unexpected(swings.error());
-  Run common;
-  common.report.rig = rig;
-  common.report.warnings = std::exchange(recording.warnings, {});
-  if (recording.calibration) common.report.calibration = recording.calibration->source;
-  std::vector<Run> runs;
-  for (const int release : swings->chosen) {
+  one.swings = *std::move(swings);
+  one.common.rig = std::move(rig);
+  one.common.warnings = std::exchange(one.recording.warnings, {});
+  if (one.recording.calibration) one.common.calibration = one.recording.calibration->source;
+  return one;
+}
+
+/// The error of one among several runs, which names its recording and, unless 0, its release.
+tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
+  const std::string name = path == "-" ? "standard input" : path;
+  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
+  const std::string where = name + ": ";
+  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
+  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
+                                status.message.substr(skip));
+}
+
+/// Fits the chosen swings of one recording one by one and appends their runs.
+void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwings one, bool among_others,
+            std::vector<Result<Run>>& runs) {
+  FitOptions fit_options = options.fit;
+  fit_options.rig = one.common.rig;
+  const bool several = one.swings.chosen.size() > 1;
+  for (const int release : one.swings.chosen) {
     // The last one needs no copy: a long recording fills the memory.
-    const bool last = release == swings->chosen.back();
-    auto fit = FitSwing(last ? std::exchange(recording, {}) : recording,
-                        swings->found[static_cast<std::size_t>(release - 1)], fit_options);
-    if (!fit) return tl::unexpected(fit.error());
-    Run& run = runs.emplace_back(common);
-    run.report.data = SummarizeData(*fit, *swings, release, samples);
+    const bool last = release == one.swings.chosen.back();
+    auto fit = FitSwing(last ? std::exchange(one.recording, {}) : one.recording,
+                        one.swings.found[static_cast<std::size_t>(release - 1)], fit_options);
+    if (!fit) {
+      runs.emplace_back(among_others || several ? ErrorAmong(fit.error(), path, several ? release : 0)
+                                                : tl::unexpected(fit.error()));
+      continue;
+    }
+    Run run{one.common, {}};
+    run.report.data = SummarizeData(*fit, one.swings, release, one.samples);
     run.report.fits.push_back(std::move(fit->fit));
     run.used = std::move(fit->used);
+    runs.emplace_back(std::move(run));
+  }
+}
+
+/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on.
+///
+/// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
+Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
+  std::vector<Result<Run>> runs;
+  const std::size_t files = setup.paths.size();
+  std::size_t count = files;  // of places: at least one for each recording
+  for (const std::string& path : setup.paths) {
+    auto one = ReadOne(options, path, setup.rig);
+    if (!one) {
+      runs.emplace_back(files > 1 ? ErrorAmong(one.error(), path, 0) : tl::unexpected(one.error()));
+      continue;
+    }
+    if (const std::size_t more = one->swings.chosen.size() - 1; more > 0) {
+      count += more;
+      if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
+        return tl::unexpected(checked.error());
+      }
+    }
+    FitOne(options, path, *std::move(one), files > 1, runs);
   }
   return runs;
 }
 
-/// What is to be written of all runs; tables for people are joined on standard output unless data go there.
-std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Run>& runs) {
+/// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
+/// not be fitted is said.
+std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Result<Run>>& runs) {
   const bool data_on_stdout = IsStandardOutput(options.json) || IsStandardOutput(options.residuals);
   const auto count = static_cast<int>(runs.size());
   std::vector<Output> outputs;
   std::string text;
   for (int i = 0; i < count; ++i) {
-    const Run& run = runs[static_cast<std::size_t>(i)];
-    const FitReport& fit = run.report.fits.front();
+    const Result<Run>& run = runs[static_cast<std::size_t>(i)];
+    if (!run) {
+      Say(kName, run.error().message);
+      continue;
+    }
+    const FitReport& fit = run->report.fits.front();
     if (!options.json.empty()) {
-      outputs.push_back({NumberedPath(options.json, i, count), ToJsonText(run.report)});
+      outputs.push_back({NumberedPath(options.json, i, count), ToJsonText(run->report)});
     }
     if (!options.residuals.empty()) {
-      outputs.push_back({NumberedPath(options.residuals, i, count), ToResidualCsv(run.used, fit)});
+      outputs.push_back({NumberedPath(options.residuals, i, count), ToResidualCsv(run->used, fit)});
     }
-    text += (i == 0 ? "" : "\n") + ToText(run.report);
+    text += (text.empty() ? "" : "\n") + ToText(run->report);
     if (data_on_stdout) {
-      for (const Warning& warning : AllWarnings(run.report)) Say(kName, "warning: " + warning.message);
+      for (const Warning& warning : AllWarnings(run->report)) Say(kName, "warning: " + warning.message);
     }
     if (fit.termination != Termination::kConverged) {
       Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
     }
   }
-  if (!data_on_stdout) outputs.push_back({"-", text});
+  if (!data_on_stdout && !text.empty()) outputs.push_back({"-", text});
   return outputs;
-}
-
-/// Numbered outputs are other files than those that were checked before; data of several fits have no place on one
-/// stream.
-Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, int count) {
-  if (count == 1) return {};
-  for (const NamedFile& output : options.Outputs()) {
-    if (!IsStandardOutput(output.path)) continue;
-    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
-                                                   std::to_string(count) + "; name a file, and they are numbered");
-  }
-  for (int i = 0; i < count; ++i) {
-    if (auto checked = CheckOutputs(options.Outputs(i, count), options.Inputs()); !checked) return checked;
-  }
-  return {};
 }
 
 Result<int> Work(const std::vector<std::string>& positional) {
   auto options = MakeFitPendulumOptions(CurrentFlags(positional));
   if (!options) return tl::unexpected(options.error());
-  if (const auto checked = CheckOutputs(options->Outputs(), options->Inputs()); !checked) {
-    return tl::unexpected(checked.error());
-  }
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
-  std::vector<Run> runs;
-  for (const std::string& path : setup->paths) {
-    auto fitted = FitFile(*options, path, setup->rig);
-    if (!fitted) return tl::unexpected(fitted.error());
-    std::ranges::move(*fitted, std::back_inserter(runs));
-  }
-  if (const auto checked = CheckNumberedOutputs(*options, static_cast<int>(runs.size())); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (const auto written = WriteOutputs(Render(*options, runs)); !written) return tl::unexpected(written.error());
+  auto checked = CheckOutputs(options->Outputs(), setup->inputs);
+  if (checked) checked = CheckNumberedOutputs(*options, *setup, setup->paths.size());
+  if (!checked) return tl::unexpected(checked.error());
+  const auto runs = FitAll(*options, *setup);
+  if (!runs) return tl::unexpected(runs.error());
+  if (const auto written = WriteOutputs(Render(*options, *runs)); !written) return tl::unexpected(written.error());
   int worst = 0;
-  for (const Run& run : runs) worst = std::max(worst, ExitCode(run.report.fits.front().termination));
+  for (const Result<Run>& run : *runs) {
+    worst = std::max(worst, run ? ExitCode(run->report.fits.front().termination) : ExitCode(run.error().code));
+  }
   return worst;
 }
 

@@ -17,6 +17,8 @@ namespace {
 
 tl::unexpected<Status> Wrong(const std::string& message) { return Error(StatusCode::kInvalidArgument, message); }
 
+bool IsStandardInput(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0"; }
+
 Result<void> CheckData(const FitPendulumFlags& flags) {
   if (!flags.positional.empty()) {
     return Wrong("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
@@ -25,8 +27,12 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
     return Wrong(flags.data.empty() ? "no recording was given; name its CSV file with --data"
                                     : "--data and --data_list both name recordings; give one of them");
   }
-  for (const std::string& path : Split(flags.data, ',')) {
+  const std::vector<std::string> paths = Split(flags.data, ',');
+  for (const std::string& path : paths) {
     if (path.empty()) return Wrong("--data '" + flags.data + "' has an empty name between its commas");
+  }
+  if (std::ranges::count_if(paths, IsStandardInput) > 1) {
+    return Wrong("--data '" + flags.data + "' names standard input twice; it can be read once");
   }
   return {};
 }

@@ -2,7 +2,9 @@
 #include "tools/output.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
@@ -44,12 +46,23 @@ bool IsStream(const std::string& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-bool IsSameFile(const std::string& a, const std::string& b) {
-  if (IsStandardOutput(a) || IsStandardOutput(b)) return IsStandardOutput(a) && IsStandardOutput(b);
+/// The same for all names of one file, be it there or not; empty when that cannot be told.
+std::string Identity(const std::string& path) {
+  if (IsStandardOutput(path)) return "-";
+  struct stat file {};
+  if (::stat(path.c_str(), &file) == 0) return std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino);
   std::error_code error;
-  if (fs::equivalent(a, b, error)) return true;
-  const fs::path canonical = fs::weakly_canonical(fs::absolute(FollowLinks(a), error), error);
-  return !error && canonical == fs::weakly_canonical(fs::absolute(FollowLinks(b), error), error) && !error;
+  const fs::path absolute = fs::absolute(FollowLinks(path), error);
+  if (error) return "";
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? "" : canonical.string();
+}
+
+/// Identities of many files, each found once: every output is compared with all others.
+std::vector<std::string> Identities(std::span<const NamedFile> files) {
+  std::vector<std::string> identities;
+  for (const NamedFile& file : files) identities.push_back(Identity(file.path));
+  return identities;
 }
 
 bool IsRedirectionOfStdout(const std::string& path) {
@@ -88,8 +101,10 @@ class StagedFile {
 
   Result<void> Open() {
     const fs::path directory = target_.has_parent_path() ? target_.parent_path() : ".";
-    for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
-      const std::string name = ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(attempt) + ".tmp";
+    while (descriptor_ < 0) {
+      // A name may be taken by what a process of that number left when it was killed: the next one is tried.
+      static std::atomic<std::uint64_t> names = 0;
+      const std::string name = ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(names++) + ".tmp";
       const std::string temporary = directory / name;
       descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ >= 0) {
@@ -172,6 +187,8 @@ std::string NumberedPath(const std::string& path, int index, int count) {
 }
 
 Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs) {
+  const std::vector<std::string> written = Identities(outputs);
+  const std::vector<std::string> read = Identities(inputs);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& path = outputs[i].path;
     const auto refuse = [&](const std::string& why) {
@@ -180,11 +197,12 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
     };
     std::error_code error;
     const bool device = fs::is_character_file(path, error);
-    for (const NamedFile& other : outputs.subspan(i + 1)) {
-      if (!device && IsSameFile(path, other.path)) return refuse("is the output of " + other.flag + " too");
+    const bool comparable = !device && !written[i].empty();
+    for (std::size_t k = i + 1; comparable && k < outputs.size(); ++k) {
+      if (written[k] == written[i]) return refuse("is the output of " + outputs[k].flag + " too");
     }
-    for (const NamedFile& input : inputs) {
-      if (!device && IsSameFile(path, input.path)) return refuse("would overwrite the input of " + input.flag);
+    for (std::size_t k = 0; comparable && k < inputs.size(); ++k) {
+      if (read[k] == written[i]) return refuse("would overwrite the input of " + inputs[k].flag);
     }
     if (IsStandardOutput(path)) continue;
     if (IsRedirectionOfStdout(path)) return refuse("is where standard output goes; give - instead");

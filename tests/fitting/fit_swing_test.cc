@@ -80,6 +80,10 @@ TEST(ChooseSwings, RefusesANumberThatThereIsNot) {
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(swings.error().message, "there is no free swing 3 in the recording; it has 2");
+  Recording named = TwoReleases();
+  named.path = "two.csv";
+  EXPECT_EQ(ChooseSwings(named, {.release = 3}).error().message,
+            "two.csv: there is no free swing 3 in the recording; it has 2");
 }
 
 TEST(ChooseSwings, AnEndThatIsGivenIsTheEndOfTheSwingNextToIt) {

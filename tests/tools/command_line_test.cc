@@ -59,6 +59,16 @@ TEST(PositionalArguments, RefusesAFlagWithoutItsValue) {
   EXPECT_EQ(Refusal({"--data", ""}), "--data has an empty value; leave the flag out for its default");
 }
 
+TEST(PositionalArguments, RefusesAFlagGivenTwice) {
+  EXPECT_EQ(Refusal({"--residuals", "a", "--residuals=b"}), "--residuals is given twice; leave one of them out");
+  EXPECT_EQ(Refusal({"--clock-scale", "1", "x", "-clock_scale", "1"}),
+            "--clock_scale is given twice; leave one of them out");
+  EXPECT_EQ(Refusal({"--data", "a.csv", "--from=1", "--data", "b.csv"}),
+            "--data is given twice; what it names stands between commas: --data a.csv,b.csv");
+  EXPECT_THAT(Positional({"--data", "a.csv", "--residuals", "--data", "--", "--data"}), ElementsAre("--data"));
+  EXPECT_THAT(Positional({"--help", "--help"}), IsEmpty());
+}
+
 TEST(PositionalArguments, RefusesANumberThatIsNone) {
   EXPECT_EQ(Refusal({"--from", "soon"}), "--from is 'soon'; it must be a number");
   EXPECT_EQ(Refusal({"--count", "1.5"}), "--count is '1.5'; it must be an integer");

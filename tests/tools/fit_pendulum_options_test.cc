@@ -187,6 +187,16 @@ TEST(MakeFitPendulumOptions, RefusesAnEmptyNameBetweenCommas) {
   }
 }
 
+TEST(MakeFitPendulumOptions, ReadsStandardInputOnce) {
+  FitPendulumFlags flags;
+  for (const std::string data : {"-,-", "-,a.csv,/dev/stdin"}) {
+    flags.data = data;
+    EXPECT_EQ(Refusal(flags), "--data '" + data + "' names standard input twice; it can be read once");
+  }
+  flags.data = "a.csv,-";
+  EXPECT_EQ(Refusal(flags), "");
+}
+
 TEST(MakeFitPendulumOptions, KnowsReleasesByNumberOrAll) {
   FitPendulumFlags flags = WithData();
   EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kLongest);

@@ -115,6 +115,22 @@ TEST_F(OutputTest, CheckRefusesTwoNamesOfOneFile) {
             "--out0 " + Path("hard") + " would overwrite the input of --in");
 }
 
+TEST_F(OutputTest, CheckComparesEachOutputWithAllOthersAndAllInputs) {
+  std::vector<std::string> outputs;
+  std::vector<std::string> inputs;
+  for (int i = 0; i < 150; ++i) {
+    outputs.push_back(Path("out" + std::to_string(i)));
+    inputs.push_back(Path("in" + std::to_string(i)));
+  }
+  EXPECT_EQ(Check(outputs, inputs, StatusCode::kInvalidArgument), "");
+  inputs.back() = outputs.front();
+  EXPECT_EQ(Check(outputs, inputs, StatusCode::kInvalidArgument),
+            "--out0 " + Path("out0") + " would overwrite the input of --in");
+  outputs.back() = outputs.front();
+  EXPECT_EQ(Check(outputs, {}, StatusCode::kInvalidArgument),
+            "--out0 " + Path("out0") + " is the output of --out149 too");
+}
+
 TEST_F(OutputTest, CheckSeesThroughALinkToAFileThatIsNotThereYet) {
   fs::create_symlink("new", Path("link"));
   EXPECT_NE(Check({Path("link"), Path("new")}, {}, StatusCode::kInvalidArgument), "");
@@ -132,6 +148,24 @@ TEST_F(OutputTest, WritesNothingWhenOneFileCannotBeWritten) {
   EXPECT_EQ(Write({{Path("a"), "a"}, {Path("no/b"), "b"}}),
             "cannot write " + Path("no/b") + ": No such file or directory");
   EXPECT_TRUE(Names().empty());
+}
+
+TEST_F(OutputTest, WritesMoreFilesAtOnceThanAHundred) {
+  std::vector<Output> outputs;
+  for (int i = 0; i < 150; ++i) outputs.push_back({Path(std::to_string(i)), "text " + std::to_string(i)});
+  EXPECT_EQ(Write(outputs), "");
+  EXPECT_EQ(Names().size(), 150);
+  EXPECT_EQ(Text("0"), "text 0");
+  EXPECT_EQ(Text("149"), "text 149");
+}
+
+TEST_F(OutputTest, LeavesAloneWhatAKilledProcessOfTheSameNumberLeft) {
+  const auto left = [](int i) { return ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(i) + ".tmp"; };
+  for (int i = 0; i < 1000; ++i) Create(left(i), "left");
+  EXPECT_EQ(Write({{Path("a"), "a"}}), "");
+  EXPECT_EQ(Text("a"), "a");
+  EXPECT_EQ(Names().size(), 1001);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(Text(left(i)), "left");
 }
 
 TEST_F(OutputTest, KeepsThePermissionsOfAFileItReplacesAndFollowsTheUmaskForANewOne) {

@@ -18,6 +18,12 @@ import swing
 
 TOOL = ""  # path of the binary, from the command line
 
+FLAT = "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500))
+FLAT_SENTENCE = ("flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose another "
+                 "column")
+NO_HOLD = ("no held part at the start: the first fall dates the release before the first sample; --start moving fits it "
+           "so")
+
 
 def two_releases():
     """Held and released, taken back by hand within 2 s, held and released once more."""
@@ -29,6 +35,12 @@ def two_releases():
     for k, angle in enumerate(released + back + released):
         lines.append(f"{k / 100:.3f},{math.degrees(angle + noise.gauss(0, 0.002)):.5f}")
     return "\n".join(lines) + "\n"
+
+
+def without_hold(text):
+    """The recording from 0.4 s after its first release on."""
+    header, *rows = text.splitlines(keepends=True)
+    return header + "".join(row for row in rows if float(row.split(",")[0]) >= swing.TRUTH["release_time"] + 0.4)
 
 
 class SeveralFits(unittest.TestCase):
@@ -105,7 +117,7 @@ class SeveralFits(unittest.TestCase):
         self.assertNotIn("fit_003.json", self.names())
 
     def test_a_release_that_there_is_not(self):
-        self.assert_refused(2, "there is no free swing 3 in the recording; it has 2", "--data", "two.csv", "--release",
+        self.assert_refused(2, "two.csv: there is no free swing 3 in the recording; it has 2", "--data", "two.csv", "--release",
                             "3", "--json", "fit.json")
 
     def test_several_fits_have_no_place_on_one_stream(self):
@@ -114,20 +126,92 @@ class SeveralFits(unittest.TestCase):
         self.assert_refused(2, "--residuals" + sentence, "--data", "two.csv", "--release", "all", "--json", "fit.json",
                             "--residuals", "-")
 
-    def test_nothing_is_written_when_one_recording_is_refused(self):
-        self.write("flat.csv", "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500)))
-        self.assert_refused(5, "flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose "
-                            "another column", "--data", "a.csv,flat.csv", "--json", "fit.json")
-        before = self.names()
-        self.assertEqual(self.run_tool("--data", "a.csv,nowhere.csv", "--json", "fit.json").returncode, 3)
-        self.assertEqual(self.names(), before)
+    def test_the_stream_is_refused_before_any_recording_is_read(self):
+        sentence = "--json - takes one fit, and there are 2; name a file, and they are numbered"
+        self.write("junk.csv", "junk\n")
+        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", "--json", "-")
+        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", "--release", "all", "--json", "-")
+
+    def assert_first_and_last_written(self, code, sentence, *flags):
+        """Runs with flags that name a.csv, one that cannot be fitted, and b.csv."""
+        run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "r.csv")
+        self.assertEqual(run.returncode, code, run.stderr)
+        self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
+        for name in "ab":
+            number = "001" if name == "a" else "003"
+            self.assertEqual(json.loads(self.read(f"fit_{number}.json"))["data"]["path"], f"{name}.csv")
+            self.assertIn(f"r_{number}.csv", self.names())
+            self.assertIn(f"{name}.csv", run.stdout)
+        self.assertFalse(self.names() & {"fit_002.json", "r_002.csv", "fit.json"})
+
+    def test_one_that_cannot_be_fitted_leaves_the_others_and_their_numbers(self):
+        self.write("flat.csv", FLAT)
+        self.write("list.txt", "a.csv\nflat.csv\nb.csv\n")
+        self.assert_first_and_last_written(5, FLAT_SENTENCE, "--data", "a.csv,flat.csv,b.csv")
+        self.assert_first_and_last_written(5, FLAT_SENTENCE, "--data_list", "list.txt")
+        self.assert_first_and_last_written(3, "nowhere.csv: there is no such file; check the path", "--data",
+                                           "a.csv,nowhere.csv,b.csv")
+
+    def test_a_sentence_among_several_names_its_recording(self):
+        self.write("moving.csv", without_hold(swing.angle_csv()))
+        self.assert_first_and_last_written(5, "moving.csv: " + NO_HOLD, "--data", "a.csv,moving.csv,b.csv", "--start",
+                                           "release")
+        self.assert_refused(5, NO_HOLD, "--data", "moving.csv", "--start", "release", "--json", "one.json")
+
+    def test_the_exit_code_is_the_largest(self):
+        self.write("flat.csv", FLAT)
+        run = self.run_tool("--data", "flat.csv,nowhere.csv,a.csv", "--json", "fit.json")
+        self.assertEqual(run.returncode, 5, run.stderr)
+        self.assertEqual(len(run.stderr.splitlines()), 2)
+        self.assertIn("fit_003.json", self.names())
+
+    def test_nothing_is_written_when_none_can_be_fitted(self):
+        self.write("flat.csv", FLAT)
+        self.assert_refused(5, FLAT_SENTENCE, "--data", "flat.csv", "--json", "fit.json")
+        self.assert_refused(5, FLAT_SENTENCE + "\nfit_pendulum: nowhere.csv: there is no such file; check the path",
+                            "--data", "flat.csv,nowhere.csv", "--json", "fit.json")
+
+    def test_all_releases_of_several_recordings_are_numbered_on(self):
+        self.write("flat.csv", FLAT)
+        run = self.run_tool("--data", "flat.csv,two.csv,a.csv", "--release", "all", "--json", "fit.json")
+        self.assertEqual(run.returncode, 5, run.stderr)
+        written = {name: json.loads(self.read(name))["data"]["path"] for name in self.names() if "fit_" in name}
+        self.assertEqual(written, {"fit_002.json": "two.csv", "fit_003.json": "two.csv", "fit_004.json": "a.csv"})
+
+    def test_one_release_that_cannot_be_fitted_leaves_the_other(self):
+        self.write("two.csv", without_hold(two_releases()))
+        run = self.run_tool("--data", "two.csv", "--release", "all", "--start", "release", "--json", "fit.json")
+        self.assertEqual(run.returncode, 5, run.stderr)
+        self.assertEqual(run.stderr, "fit_pendulum: two.csv: free swing 1: " + NO_HOLD + "\n")
+        self.assertIn("fit_002.json", self.names())
+        self.assertNotIn("fit_001.json", self.names())
+
+    def assert_kept(self, name, flag, *flags):
+        """The recording of that name is not overwritten, but refused as an output."""
+        before = self.read(name)
+        self.assert_refused(2, f"--json {name} would overwrite the input of {flag}", *flags)
+        self.assertEqual(self.read(name), before)
 
     def test_nothing_is_written_over_an_input(self):
         self.write("fit_002.json", swing.angle_csv())
-        before = self.read("fit_002.json")
-        self.assert_refused(2, "--json fit_002.json would overwrite the input of --data", "--data", "a.csv,fit_002.json",
-                            "--json", "fit.json")
-        self.assertEqual(self.read("fit_002.json"), before)
+        self.write("list.txt", "a.csv\nfit_002.json\n")
+        self.write("one.txt", "a.csv\n")
+        self.assert_kept("fit_002.json", "--data", "--data", "a.csv,fit_002.json", "--json", "fit.json")
+        self.assert_kept("fit_002.json", "--data_list", "--data_list", "list.txt", "--json", "fit.json")
+        self.assert_kept("a.csv", "--data_list", "--data_list", "one.txt", "--json", "a.csv")
+
+    def test_no_release_is_written_over_an_input(self):
+        self.write("fit_002.json", two_releases())
+        self.assert_kept("fit_002.json", "--data", "--data", "fit_002.json", "--release", "all", "--json", "fit.json")
+
+    def test_flags_given_twice(self):
+        self.assert_refused(2, "--data is given twice; what it names stands between commas: --data a.csv,b.csv",
+                            "--data", "a.csv", "--data", "b.csv")
+        self.assert_refused(2, "--model is given twice; leave one of them out", "--data", "a.csv", "--model", "viscous",
+                            "--model=drag")
+
+    def test_standard_input_is_read_once(self):
+        self.assert_refused(2, "--data '-,-' names standard input twice; it can be read once", "--data", "-,-")
 
 
 if __name__ == "__main__":
