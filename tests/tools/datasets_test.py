@@ -77,7 +77,7 @@ class DatasetsTest(unittest.TestCase):
         tool = BINARY.parent / "fit_pendulum"
         if not tool.exists():
             self.skipTest("fit_pendulum is not built")
-        run = subprocess.run([tool, *flags, "--rig", "textbook_rig.json", "--json", "-"], cwd=DATASETS, check=True,
+        run = subprocess.run([tool, *flags, "--json", "-"], cwd=DATASETS, check=True,
                              capture_output=True, text=True)
         return json.loads(run.stdout)
 
