@@ -24,6 +24,16 @@ std::string Count(Index count, const std::string& one) {
 }
 
 /// One file's stamps under repair.
+/// A counter holds whole numbers and drops by nearly all of its range.
+struct Counter {
+  const char* range_text;
+  double range;
+  double first;
+};
+
+constexpr std::array kCounters = {Counter{"2^32", 4294967296.0, 0}, Counter{"2^16", 65536.0, 0},
+                                  Counter{"2^16", 65536.0, -32768.0}};
+
 class ClockRepair {
  public:
   explicit ClockRepair(RawSamples samples) : samples_(std::move(samples)) {}
@@ -47,6 +57,8 @@ class ClockRepair {
   bool Increases() const;
   double MedianStep() const;
   void Unwrap();
+  std::vector<Index> Wraps(const Counter& counter) const;
+  bool IsLikely(const Counter& counter, const std::vector<Index>& wraps) const;
   std::optional<double> Grid() const;
   bool IsNotDecreasing() const;
   Index OddSteps(double grid) const;
@@ -95,36 +107,58 @@ double ClockRepair::MedianStep() const {
 
 // ---- Counters that begin again -----------------------------------------------------------------------------------
 
-/// A counter of 32 bits holds whole numbers and drops by nearly all of its range.
-void ClockRepair::Unwrap() {
-  constexpr double kRange = 4294967296.0;
-  constexpr double kUsualSteps = 10;
-  if (samples_.time_unit == "s") return;
+/// The rows where the counter begins again; none when it does not fit.
+std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   std::vector<Index> wraps;
-  double largest = 0;
   for (Index i = 0; i < size(); ++i) {
-    if (time()[i] != std::floor(time()[i]) || time()[i] < 0 || time()[i] >= kRange) return;
-    if (i == 0) continue;
-    const double step = time()[i] - time()[i - 1];
-    if (step < -kRange / 2) wraps.push_back(i);
-    largest = std::max(largest, step);
+    const double count = time()[i] - counter.first;
+    if (count != std::floor(count) || count < 0 || count >= counter.range) return {};
+    if (i > 0 && time()[i] - time()[i - 1] < -counter.range / 2) wraps.push_back(i);
   }
-  if (wraps.empty()) return;
-  const double limit = std::max(largest, kUsualSteps * MedianStep());
+  return wraps;
+}
+
+/// Whether the steps across look like the others. One of 16 bits begins again so often that any clock set back and any
+/// longer gap might pass for it: there all steps must be alike, but for short gaps.
+bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wraps) const {
+  constexpr double kUsualSteps = 10, kAlike = 2, kShortGap = 1.0 / 64;
+  const double usual = MedianStep();
+  const bool is_short = counter.range < kCounters.front().range;
+  double largest = 0;
+  for (Index i = 1; i < size(); ++i) largest = std::max(largest, time()[i] - time()[i - 1]);
+  const double limit = is_short ? kAlike * usual + 1 : std::max(largest, kUsualSteps * usual);
   for (const Index i : wraps) {
-    if (time()[i] + kRange - time()[i - 1] > limit) return;
+    if (time()[i] + counter.range - time()[i - 1] > limit) return false;
   }
-  Warn("time_wrapped", wraps.front(),
-       "the times begin again from 0 after 2^32 " + samples_.time_unit + ", " +
-           Count(static_cast<Index>(wraps.size()), "time") + " in all; they were counted on");
-  double add = 0;
-  std::size_t next = 0;
-  for (Index i = wraps.front(); i < size(); ++i) {
-    if (next < wraps.size() && wraps[next] == i) {
-      add += kRange;
-      ++next;
+  if (!is_short) return true;
+  const double longest = std::max(limit, kShortGap * counter.range);
+  for (Index i = 1; i < size(); ++i) {
+    double step = time()[i] - time()[i - 1];
+    if (step < -counter.range / 2) step += counter.range;
+    if (step < usual / kAlike - 1 || step > longest) return false;
+  }
+  return true;
+}
+
+void ClockRepair::Unwrap() {
+  if (samples_.time_unit == "s") return;
+  for (const Counter& counter : kCounters) {
+    const std::vector<Index> wraps = Wraps(counter);
+    if (wraps.empty() || !IsLikely(counter, wraps)) continue;
+    Warn("time_wrapped", wraps.front(),
+         "the times begin again from " + NumberText(counter.first, kDigits) + " after " + counter.range_text + " " +
+             samples_.time_unit + ", " + Count(static_cast<Index>(wraps.size()), "time") +
+             " in all; they were counted on");
+    double add = 0;
+    std::size_t next = 0;
+    for (Index i = wraps.front(); i < size(); ++i) {
+      if (next < wraps.size() && wraps[next] == i) {
+        add += counter.range;
+        ++next;
+      }
+      samples_.time[i] += add;
     }
-    samples_.time[i] += add;
+    return;
   }
 }
 

@@ -126,6 +126,34 @@ TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
       "one file; split it before this line");
 }
 
+TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
+  struct Case {
+    const char* unit;
+    double first;  // Of the counter's 65536 values.
+    double step;
+    int wraps;  // Of 20000 steps: floor(20000 step / 65536), as the count starts at `first`.
+  };
+  for (const Case& each : {Case{"ms", 0, 10, 3}, Case{"us", 0, 10000, 3051}, Case{"ms", -32768, 10, 3}}) {
+    const auto stamp = [&](int i) { return each.first + std::fmod(each.step * i, 65536.0); };
+    const RawSamples repaired = Repaired(Rows(Stamps(20001, stamp), each.unit));
+    for (int i = 0; i <= 20000; ++i) ASSERT_EQ(repaired.time[i], each.first + each.step * i);
+    EXPECT_THAT(WarningOf(repaired),
+                testing::HasSubstr("the times begin again from " + std::to_string(static_cast<int>(each.first)) +
+                                   " after 2^16 " + each.unit + ", " + std::to_string(each.wraps) + " times in all"));
+  }
+}
+
+TEST(RepairClock, DoesNotCountOnACounterOf16BitsWhereStepsAreUnalike) {
+  // Set back after 61 s, 4.5 s before the counter's end; and the same after a value that no 16 bits hold.
+  EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6100); }), "ms")),
+              testing::HasSubstr("so the clock was set back"));
+  EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6554) + 6; }), "ms")),
+              testing::HasSubstr("65536 ms, so the clock was set back"));
+  // Six rows of 10 ms lost: 70 ms are seen as 4.464 ms.
+  EXPECT_THAT(FaultOf(Rows(Stamps(200, [](int i) { return std::fmod(1e4 * (i < 50 ? i : i + 6), 65536.0); }), "us")),
+              testing::HasSubstr("so the clock was set back"));
+}
+
 // ---- Coarse stamps -----------------------------------------------------------------------------------------------
 
 struct Rounding {
