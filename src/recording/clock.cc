@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "tangle.h"
+#include "uniform_clock.h"
 
 namespace pendulum {
 namespace {
@@ -22,6 +23,16 @@ constexpr int kDigits = 15;
 std::string Count(Index count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
+
+/// A counter holds whole numbers and drops by nearly all of its range.
+struct Counter {
+  const char* range_text;
+  double range;
+  double first;
+};
+
+constexpr std::array kCounters = {Counter{"2^32", 4294967296.0, 0}, Counter{"2^16", 65536.0, 0},
+                                  Counter{"2^16", 65536.0, -32768.0}};
 
 /// One file's stamps under repair.
 class ClockRepair {
@@ -46,6 +57,8 @@ class ClockRepair {
   bool IsUniform() const;
   bool Increases() const;
   double MedianStep() const;
+  std::vector<Index> Wraps(const Counter& counter) const;
+  bool IsLikely(const Counter& counter, const std::vector<Index>& wraps) const;
   void Unwrap();
   std::optional<double> Grid() const;
   bool IsNotDecreasing() const;
@@ -95,36 +108,58 @@ double ClockRepair::MedianStep() const {
 
 // ---- Counters that begin again -----------------------------------------------------------------------------------
 
-/// A counter of 32 bits holds whole numbers and drops by nearly all of its range.
-void ClockRepair::Unwrap() {
-  constexpr double kRange = 4294967296.0;
-  constexpr double kUsualSteps = 10;
-  if (samples_.time_unit == "s") return;
+/// The rows where the counter begins again; none when it does not fit.
+std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   std::vector<Index> wraps;
-  double largest = 0;
   for (Index i = 0; i < size(); ++i) {
-    if (time()[i] != std::floor(time()[i]) || time()[i] < 0 || time()[i] >= kRange) return;
-    if (i == 0) continue;
-    const double step = time()[i] - time()[i - 1];
-    if (step < -kRange / 2) wraps.push_back(i);
-    largest = std::max(largest, step);
+    const double count = time()[i] - counter.first;
+    if (count != std::floor(count) || count < 0 || count >= counter.range) return {};
+    if (i > 0 && time()[i] - time()[i - 1] < -counter.range / 2) wraps.push_back(i);
   }
-  if (wraps.empty()) return;
-  const double limit = std::max(largest, kUsualSteps * MedianStep());
+  return wraps;
+}
+
+/// Whether the steps across look like the others. One of 16 bits begins again so often that any clock set back and any
+/// longer gap might pass for it: there all steps must be alike, but for short gaps.
+bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wraps) const {
+  constexpr double kUsualSteps = 10, kAlike = 2, kShortGap = 1.0 / 64;
+  const double usual = MedianStep();
+  const bool is_short = counter.range < kCounters.front().range;
+  double largest = 0;
+  for (Index i = 1; i < size(); ++i) largest = std::max(largest, time()[i] - time()[i - 1]);
+  const double limit = is_short ? kAlike * usual + 1 : std::max(largest, kUsualSteps * usual);
   for (const Index i : wraps) {
-    if (time()[i] + kRange - time()[i - 1] > limit) return;
+    if (time()[i] + counter.range - time()[i - 1] > limit) return false;
   }
-  Warn("time_wrapped", wraps.front(),
-       "the times begin again from 0 after 2^32 " + samples_.time_unit + ", " +
-           Count(static_cast<Index>(wraps.size()), "time") + " in all; they were counted on");
-  double add = 0;
-  std::size_t next = 0;
-  for (Index i = wraps.front(); i < size(); ++i) {
-    if (next < wraps.size() && wraps[next] == i) {
-      add += kRange;
-      ++next;
+  if (!is_short) return true;
+  const double longest = std::max(limit, kShortGap * counter.range);
+  for (Index i = 1; i < size(); ++i) {
+    double step = time()[i] - time()[i - 1];
+    if (step < -counter.range / 2) step += counter.range;
+    if (step < usual / kAlike - 1 || step > longest) return false;
+  }
+  return true;
+}
+
+void ClockRepair::Unwrap() {
+  if (samples_.time_unit == "s") return;
+  for (const Counter& counter : kCounters) {
+    const std::vector<Index> wraps = Wraps(counter);
+    if (wraps.empty() || !IsLikely(counter, wraps)) continue;
+    Warn("time_wrapped", wraps.front(),
+         "the times begin again from " + NumberText(counter.first, kDigits) + " after " + counter.range_text + " " +
+             samples_.time_unit + ", " + Count(static_cast<Index>(wraps.size()), "time") +
+             " in all; they were counted on");
+    double add = 0;
+    std::size_t next = 0;
+    for (Index i = wraps.front(); i < size(); ++i) {
+      if (next < wraps.size() && wraps[next] == i) {
+        add += counter.range;
+        ++next;
+      }
+      samples_.time[i] += add;
     }
-    samples_.time[i] += add;
+    return;
   }
 }
 
@@ -163,80 +198,27 @@ Index ClockRepair::OddSteps(double grid) const {
   return std::ranges::count_if(steps, [usual](double step) { return step != usual; });
 }
 
-/// The stamps less b i lie between these.
-struct Band {
-  double low;
-  double high;
-
-  double width() const { return high - low; }
-};
-
-Band BandAlong(const Eigen::VectorXd& time, double slope) {
-  Band band{time[0], time[0]};
-  for (Index i = 1; i < time.size(); ++i) {
-    const double offset = time[i] - slope * static_cast<double>(i);
-    band.low = std::min(band.low, offset);
-    band.high = std::max(band.high, offset);
-  }
-  return band;
-}
-
-/// The slope within `reach` of `middle` whose band is narrowest: the width is convex in the slope (golden section).
-double NarrowestBand(const Eigen::VectorXd& time, double middle, double reach) {
-  constexpr int kIterations = 40;
-  constexpr double kGolden = 0.6180339887498949;
-  double low = middle - reach, high = middle + reach;
-  double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-  double left_width = BandAlong(time, left).width(), right_width = BandAlong(time, right).width();
-  for (int i = 0; i < kIterations; ++i) {
-    if (left_width < right_width) {
-      high = std::exchange(right, left);
-      right_width = left_width;
-      left = high - kGolden * (high - low);
-      left_width = BandAlong(time, left).width();
-    } else {
-      low = std::exchange(left, right);
-      left_width = right_width;
-      right = low + kGolden * (high - low);
-      right_width = BandAlong(time, right).width();
-    }
-  }
-  return (low + high) / 2;
-}
-
-/// The slope of least squares.
-double MeanSlope(const Eigen::VectorXd& time) {
-  const double middle = static_cast<double>(time.size() - 1) / 2;
-  double products = 0, squares = 0;
-  for (Index i = 0; i < time.size(); ++i) {
-    const double centred = static_cast<double>(i) - middle;
-    products += centred * (time[i] - time[0]);
-    squares += centred * centred;
-  }
-  return products / squares;
-}
-
-/// Replaces stamps by the uniform clock a + b i that agrees with every one of them to half a step of the grid, and a
-/// twentieth of it for the sampling's own jitter: that of least squares, or the one that comes nearest to all. Stamps
-/// that were cut off instead of rounded differ by a constant.
+/// Replaces stamps by the middle of the uniform clocks that agree with every one of them to half a step of the grid.
 bool ClockRepair::MakeUniform(double grid) {
-  constexpr double kWidest = 1.1;
-  const auto steps = static_cast<double>(size() - 1);
-  const double mean = (time()[size() - 1] - time()[0]) / steps;
-  double slope = MeanSlope(time());
-  Band band = BandAlong(time(), slope);
-  if (band.width() > kWidest * grid) {
-    slope = NarrowestBand(time(), mean, kWidest * grid / steps);
-    band = BandAlong(time(), slope);
-  }
-  if (band.width() > kWidest * grid || !(slope > 0)) return false;
+  const double first = time()[0];
+  const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
+  const std::optional<UniformClock> clock = FindUniformClock(time().unaryExpr(in_steps));
+  if (!clock) return false;
   const double per_second = samples_.time_unit == "s" ? 1 : samples_.time_unit == "ms" ? 1e3 : 1e6;
+  const double rate_hz = per_second / (clock->slope * grid);
+  const double tolerance = clock->slope_tolerance / clock->slope;
+  const auto percent = [](double share) { return NumberText(100 * share, 2) + " %"; };
   Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(grid) + ", coarse against the sampling interval; " +
-           "they were replaced by a uniform clock of " + NumberText(per_second / slope, 5) +
-           " Hz, which agrees with each of them: this assumes uniform sampling");
-  const double middle = (band.low + band.high) / 2;
-  samples_.time = Eigen::VectorXd::LinSpaced(size(), middle, middle + slope * steps);
+       "the times are rounded to " + TimeText(grid) + ", coarse against the sampling interval; they were replaced by " +
+           "a uniform clock of " + NumberText(rate_hz, 6) + " Hz, the middle of those that agree with each of them, " +
+           "which end at +- " + NumberText(tolerance * rate_hz, 2) + " Hz: +- " + percent(tolerance) +
+           " of a time, +- " + percent(2 * tolerance) + " of an inertia; this assumes uniform sampling; if the times " +
+           "are cut off instead of rounded, the new ones, and release_time with them, are " + TimeText(grid / 2) +
+           " too early");
+  samples_.clock_std_dev = tolerance / std::sqrt(3.0);
+  const double start = first + clock->start * grid;
+  samples_.time =
+      Eigen::VectorXd::LinSpaced(size(), start, start + clock->slope * grid * static_cast<double>(size() - 1));
   return true;
 }
 

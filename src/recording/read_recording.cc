@@ -355,7 +355,8 @@ Result<Recording> Reader::Finish() {
   recording.value = std::move(samples_.value);
   recording.warnings = std::move(samples_.warnings);
   recording.clock_scale = metadata_.clock_scale;
-  recording.clock_scale_std_dev = metadata_.clock_scale_std_dev;
+  recording.clock_scale_std_dev =
+      std::hypot(metadata_.clock_scale_std_dev, metadata_.clock_scale * samples_.clock_std_dev);
   recording.rig_json = metadata_.rig_json;
   csv::SetValues(layout_.value, options_, metadata_, recording);
   Result<std::string> sha256 = lines_.Sha256();

@@ -126,6 +126,34 @@ TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
       "one file; split it before this line");
 }
 
+TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
+  struct Case {
+    const char* unit;
+    double first;  // Of the counter's 65536 values.
+    double step;
+    int wraps;  // Of 20000 steps: floor(20000 step / 65536), as the count starts at `first`.
+  };
+  for (const Case& each : {Case{"ms", 0, 10, 3}, Case{"us", 0, 10000, 3051}, Case{"ms", -32768, 10, 3}}) {
+    const auto stamp = [&](int i) { return each.first + std::fmod(each.step * i, 65536.0); };
+    const RawSamples repaired = Repaired(Rows(Stamps(20001, stamp), each.unit));
+    for (int i = 0; i <= 20000; ++i) ASSERT_EQ(repaired.time[i], each.first + each.step * i);
+    EXPECT_THAT(WarningOf(repaired),
+                testing::HasSubstr("the times begin again from " + std::to_string(static_cast<int>(each.first)) +
+                                   " after 2^16 " + each.unit + ", " + std::to_string(each.wraps) + " times in all"));
+  }
+}
+
+TEST(RepairClock, DoesNotCountOnACounterOf16BitsWhereStepsAreUnalike) {
+  // Set back after 61 s, 4.5 s before the counter's end; and the same after a value that no 16 bits hold.
+  EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6100); }), "ms")),
+              testing::HasSubstr("so the clock was set back"));
+  EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6554) + 6; }), "ms")),
+              testing::HasSubstr("65536 ms, so the clock was set back"));
+  // Six rows of 10 ms lost: 70 ms are seen as 4.464 ms.
+  EXPECT_THAT(FaultOf(Rows(Stamps(200, [](int i) { return std::fmod(1e4 * (i < 50 ? i : i + 6), 65536.0); }), "us")),
+              testing::HasSubstr("so the clock was set back"));
+}
+
 // ---- Coarse stamps -----------------------------------------------------------------------------------------------
 
 struct Rounding {
@@ -158,10 +186,69 @@ TEST(RepairClock, FindsTheUniformClockBehindCoarseStamps) {
   }
 }
 
+/// 100 Hz, rounded by `round`.
+RawSamples Coarse(int seconds, double grid, double start, const std::function<double(double)>& round) {
+  // A stamp half way, 0.5 s = 50 counts of 0.01 s, stays half way: whole hundredths are divided.
+  const double counts = std::round(100 * grid);
+  return Rows(Stamps(100 * seconds + 1, [&](int i) { return round((100 * start + i) / counts) * grid; }));
+}
+
+TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
+  for (const int seconds : {20, 30}) {
+    for (const double grid : {0.1, 0.5, 1.0}) {
+      for (const double start : {0.0, 0.03, 0.27, 17.48}) {
+        for (const bool is_cut_off : {false, true}) {
+          const auto round = [&](double x) { return is_cut_off ? std::floor(x) : std::round(x); };
+          const RawSamples samples = Coarse(seconds, grid, start, round);
+          const RawSamples repaired = Repaired(samples);
+          const std::string name = std::to_string(seconds) + " s, " + std::to_string(grid) + " s from " +
+                                   std::to_string(start) + (is_cut_off ? ", cut off" : "");
+          ASSERT_EQ(repaired.warnings.at(0).code, "time_rounded") << name;
+          EXPECT_LE((repaired.time - samples.time).cwiseAbs().maxCoeff(), (0.5 + 1e-6) * grid) << name;
+          const double step = (repaired.time[100 * seconds] - repaired.time[0]) / (100 * seconds);
+          const double half_width = std::sqrt(3.0) * repaired.clock_std_dev;  // Of an equal distribution.
+          EXPECT_LE(std::abs(0.01 / step - 1), half_width) << name;
+          // The first and the last step of the grid alone, which rows of them fix to a row each, leave as much open.
+          EXPECT_LE(half_width, 0.01 / (seconds - 2 * grid)) << name;
+        }
+      }
+    }
+  }
+}
+
+/// At both ends the band that the stamps lie in is as wide as a step: it is convex in the slope, so beyond it is wider.
+TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
+  std::mt19937 random(19);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (int trial = 0; trial < 300; ++trial) {
+    const int size = 40 + static_cast<int>(random() % 100);
+    const double slope = 0.15 + uniform(), start = uniform();
+    const std::vector<double> stamps = Stamps(size, [&](int i) { return std::round(start + slope * i); });
+    const RawSamples repaired = Repaired(Rows(stamps));
+    if (repaired.clock_std_dev == 0) continue;
+    const double middle = (repaired.time[size - 1] - repaired.time[0]) / (size - 1);
+    const double half_width = std::sqrt(3.0) * repaired.clock_std_dev * middle;
+    const auto width = [&](double each) {  // Of the band along a slope.
+      double low = stamps[0], high = stamps[0];
+      for (int i = 0; i < size; ++i) {
+        low = std::min(low, stamps[i] - each * i);
+        high = std::max(high, stamps[i] - each * i);
+      }
+      return high - low;
+    };
+    EXPECT_LE(std::abs(slope - middle), half_width * (1 + 1e-9)) << trial;
+    for (const double end : {middle - half_width, middle + half_width}) EXPECT_NEAR(width(end), 1, 1e-5) << trial;
+  }
+}
+
 TEST(RepairClock, SaysWhatItMadeOfCoarseStamps) {
+  // Rows 2 and 898 and rows 1 and 899 are a third of a step off, towards and away: 0.3 s is 1 / 896 too long or
+  // 1 / 898 too short at the most.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
             "time_rounded: run.csv:2: the times are rounded to 0.1 s, coarse against the sampling interval; they were "
-            "replaced by a uniform clock of 30 Hz, which agrees with each of them: this assumes uniform sampling");
+            "replaced by a uniform clock of 30 Hz, the middle of those that agree with each of them, which end at "
+            "+- 0.033 Hz: +- 0.11 % of a time, +- 0.22 % of an inertia; this assumes uniform sampling; if the times "
+            "are cut off instead of rounded, the new ones, and release_time with them, are 0.05 s too early");
 }
 
 TEST(RepairClock, KeepsCoarseStampsOfUnevenSamplingThatIncrease) {

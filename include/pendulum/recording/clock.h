@@ -40,15 +40,17 @@ struct RawSamples {
   Eigen::VectorXd time;           ///< N x 1, in time_unit, finite, as the file has them.
   Eigen::VectorXd value;          ///< N x 1, finite, in any unit.
   LineNumbers lines;              ///< N of them.
+  double clock_std_dev = 0;       ///< Of a clock rebuilt from coarse stamps: relative standard deviation of its rate.
   std::vector<Warning> warnings;  ///< What was repaired.
 };
 
 /// Makes the times increase where that is safe, with a warning that has the count and the first line:
 ///
-/// time_wrapped         whole ms or us that begin again after 2³² are counted on, where the step across looks like the
-///                      others;
-/// time_rounded         stamps on a grid that is coarse against the sampling interval are replaced by the uniform clock
-///                      that agrees with all of them; where none does and they increase, they are kept;
+/// time_wrapped         whole ms or us that begin again after 2³² or 2¹⁶ are counted on, where the step across looks
+///                      like the others;
+/// time_rounded         stamps on a grid that is coarse against the sampling interval are replaced by a uniform clock:
+///                      the middle of those that agree with all of them to half a step, an equal distribution over
+///                      which gives clock_std_dev; where none does and they increase, they are kept;
 /// time_repeated        rows that share a stamp are left out, of rows that are equal one is kept: up to a fifth of all;
 /// time_not_increasing  the fewest rows are left out where stamps go back by at most kMostStepsBack sampling intervals:
 ///                      up to a twentieth of all.

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include <Eigen/Core>
+
+/// The uniform clocks behind stamps that were rounded to whole steps.
+namespace pendulum {
+
+/// The clocks a + b i that are within half a step of every stamp, i = 0, 1, ...; in steps.
+struct UniformClock {
+  double start;            ///< a, the middle of what is left open for b.
+  double slope;            ///< b, the middle of what is left open, > 0.
+  double slope_tolerance;  ///< Half of what is left open for b.
+};
+
+/// The largest b for which y_j - y_i + height >= b (j - i) for all i < j. Each pass finds the pair that is violated
+/// most and takes its own b (Dinkelbach): it falls to the exact one in a few passes.
+inline double LargestSlope(const Eigen::VectorXd& y, double height) {
+  const Eigen::Index last = y.size() - 1;
+  for (double slope = (y[last] - y[0] + height) / static_cast<double>(last);;) {
+    Eigen::Index highest = 0, from = 0, to = last;
+    double highest_offset = y[0], least = y[last] - slope * static_cast<double>(last) - y[0];
+    for (Eigen::Index j = 1; j <= last; ++j) {
+      const double offset = y[j] - slope * static_cast<double>(j);
+      if (offset - highest_offset < least) {
+        least = offset - highest_offset;
+        from = highest;
+        to = j;
+      }
+      if (offset > highest_offset) {
+        highest_offset = offset;
+        highest = j;
+      }
+    }
+    const double next = (y[to] - y[from] + height) / static_cast<double>(to - from);
+    if (!(next < slope)) return slope;
+    slope = next;
+  }
+}
+
+/// The middle of all clocks that agree with the stamps [whole steps], none when there is none that goes forward.
+/// Stamps that were cut off instead of rounded have the same slopes, and starts half a step later. Two stamps or more.
+inline std::optional<UniformClock> FindUniformClock(const Eigen::VectorXd& stamps) {
+  constexpr double kHeight = 1 + 1e-6;  // Of the band the stamps lie in; stamps half way may be rounded either way.
+  const double largest = LargestSlope(stamps, kHeight);
+  const double least = -LargestSlope(-stamps, kHeight);
+  if (!(least > 0) || least > largest) return std::nullopt;
+  const double slope = (least + largest) / 2;
+  double low = stamps[0], high = stamps[0];
+  for (Eigen::Index i = 1; i < stamps.size(); ++i) {
+    const double offset = stamps[i] - slope * static_cast<double>(i);
+    low = std::min(low, offset);
+    high = std::max(high, offset);
+  }
+  return UniformClock{(low + high) / 2, slope, (largest - least) / 2};
+}
+
+}  // namespace pendulum
