@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files as people and spreadsheets write them, and what the user may say beside them.
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/base/format.h"
 #include "pendulum/recording/read_recording.h"
 #include "tests/recording/rows.h"
 
@@ -272,6 +274,18 @@ TEST(ForeignFormats, DoNotApplyTheFilesCalibrationToAnAngle) {
 TEST(ForeignFormats, RefuseAnInlineCalibrationThatIsNone) {
   EXPECT_THAT(FaultOf("\n# calibration: {\"input\": \"px\"}\ntime_ms,adc_counts\n" + Rows("{t},{v}")),
               StartsWith("run.csv:2: # calibration: \"angle_unit\" is missing"));
+}
+
+TEST(ForeignFormats, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
+  std::string rows;
+  for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: open by 0.1115 % each way, see clock_test.cc.
+    rows += NumberText(std::round(i / 3.0) / 10, 6) + "," + NumberText(std::sin(i), 6) + "\n";
+  }
+  const double std_dev = (1.0 / 896 + 1.0 / 898) / 2 / std::sqrt(3.0);
+  EXPECT_NEAR(RecordingOf(std::string("time_s,angle_rad\n") + rows).clock_scale_std_dev, std_dev, 1e-3 * std_dev);
+  const Recording stated =
+      RecordingOf("# clock_scale: 1.01\n# clock_scale_std_dev: 1e-3\n" + std::string("time_s,angle_rad\n") + rows);
+  EXPECT_NEAR(stated.clock_scale_std_dev, std::hypot(1e-3, 1.01 * std_dev), 1e-6);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/read_recording.h"
 
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +13,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 
 namespace pendulum {
@@ -178,17 +176,6 @@ TEST(ParseRecording, CarriesMetadataThatOthersApply) {
   EXPECT_EQ(recording.rig_json, "{\"gravity_torque\": 1.8}");
   EXPECT_EQ(RecordingOf(kHeader + Rows()).clock_scale, 1);
   EXPECT_EQ(RecordingOf(kHeader + Rows()).clock_scale_std_dev, 0);
-}
-
-TEST(ParseRecording, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
-  std::string rows;
-  for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: open by 0.1115 % each way, see clock_test.cc.
-    rows += NumberText(std::round(i / 3.0) / 10, 6) + "," + NumberText(std::sin(i), 6) + "\n";
-  }
-  const double std_dev = (1.0 / 896 + 1.0 / 898) / 2 / std::sqrt(3.0);
-  EXPECT_NEAR(RecordingOf(kHeader + rows).clock_scale_std_dev, std_dev, 1e-3 * std_dev);
-  const Recording stated = RecordingOf("# clock_scale: 1.01\n# clock_scale_std_dev: 1e-3\n" + kHeader + rows);
-  EXPECT_NEAR(stated.clock_scale_std_dev, std::hypot(1e-3, 1.01 * std_dev), 1e-6);
 }
 
 TEST(ParseRecording, TakesTheDeclaredRangeInSi) {

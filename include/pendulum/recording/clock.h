@@ -46,15 +46,12 @@ struct RawSamples {
 
 /// Makes the times increase where that is safe, with a warning that has the count and the first line:
 ///
-/// time_wrapped         whole ms or us that begin again after 2³² or 2¹⁶ are counted on, where the step across looks
-///                      like the others;
-/// time_rounded         stamps on a grid that is coarse against the sampling interval are replaced by a uniform clock:
-///                      the middle of those that agree with all of them to half a step, an equal distribution over
-///                      which gives clock_std_dev; where none does and they increase, they are kept;
-/// time_repeated        rows that share a stamp are left out, of rows that are equal one is kept: up to a fifth of all;
-/// time_not_increasing  the fewest rows are left out where stamps go back by at most kMostStepsBack sampling intervals:
-///                      up to a twentieth of all.
-///
+/// time_wrapped: whole ms or us that begin again after 2³² or 2¹⁶ are counted on, where the step across looks like the
+/// others. time_rounded: stamps on a grid that is coarse against the sampling interval are replaced by the middle of
+/// the uniform clocks that agree with all of them, whose spread is clock_std_dev; where none does and they increase,
+/// they are kept. time_repeated: rows that share a stamp are left out, of equal ones one is kept, up to a fifth of all.
+/// time_not_increasing: the fewest rows are left out where stamps go back by at most kMostStepsBack sampling intervals,
+/// up to a twentieth of all.
 /// A gap, and sampling at uneven intervals, is ordinary. kDataLoss: any other stamps that do not increase; the message
 /// has the line, both times and what to do. Cost: one pass where stamps are uniform, about twenty otherwise.
 Result<RawSamples> RepairClock(RawSamples samples);
