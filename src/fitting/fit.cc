@@ -9,6 +9,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
+#include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/search.h"
 #include "pendulum/trajectory/tolerance.h"
 
@@ -38,24 +39,6 @@ void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
   solution.parameters[angle] += 2 * kPi * turns;
 }
 
-/// Solves again with the priors' weights for the noise that the residuals show, until it stays the same.
-void WeighPriors(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
-  constexpr int kMostRounds = 20;
-  constexpr double kSame = 1e-4;
-  const auto free = std::ranges::count(problem.solve.fixed, false);
-  const double freedom = std::max(static_cast<double>(problem.data.time.size()) - static_cast<double>(free), 1.0);
-  double noise = 1;  // in units of data.scale
-  for (int round = 0; !problem.priors.empty() && solution.usable && round < kMostRounds; ++round) {
-    const double sum = solution.sum - cost.PriorSum(solution.parameters);
-    const double before = std::exchange(noise, std::sqrt(std::max(sum, 0.0) / freedom));
-    if (std::abs(noise - before) <= kSame * noise) break;
-    std::vector<PriorTerm> priors = problem.priors;
-    for (PriorTerm& prior : priors) prior.weight *= noise;
-    cost.set_priors(std::move(priors));
-    solution = Continue(cost, solution, problem.solve);
-  }
-}
-
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
@@ -66,9 +49,10 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   cost.set_tolerance(tolerance);
   const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
   cost.set_priors(problem.priors);
+  cost.set_noise(problem.noise);
   Solution solution = Search(cost, problem.data, guess, problem.solve);
   TakeTurnsOut(problem, solution);
-  WeighPriors(cost, problem, solution);
+  MaximizeLikelihood(cost, problem, options, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureAccuracy(cost, tolerance, solution);
     if (solution.trace_error <= max_error || refinement == kMostRefinements) break;
@@ -96,6 +80,15 @@ Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
   return attempt;
 }
 
+/// Whether a solution leaves at most a tenth of the readings' variance.
+bool Explains(const TrajectoryData& data, const Solution& solution) {
+  constexpr double kExplained = 0.1;
+  if (!solution.usable) return false;
+  const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
+  return (value - solution.readings).squaredNorm() <=
+         kExplained * (value.array() - value.mean()).matrix().squaredNorm();
+}
+
 /// A short hold may be a turning point, and what a release does not explain may have begun in motion.
 bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
   const StartValues& start = attempt.problem->start;
@@ -104,7 +97,7 @@ bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
 }
 
 bool IsBetter(const Attempt& a, const Attempt& b) {
-  return a.solution.usable && (!b.solution.usable || a.solution.sum < b.solution.sum);
+  return a.solution.usable && (!b.solution.usable || a.solution.log_likelihood > b.solution.log_likelihood);
 }
 
 }  // namespace

@@ -135,6 +135,25 @@ TrajectoryData MakeData(const Recording& recording, const StartValues& start) {
   return data;
 }
 
+/// Which readings stand at an end of the sensor's range: those beyond the edge of the last level within it. Files round
+/// their numbers, those of the range too.
+void SetCensoring(const Recording& recording, FitProblem& problem) {
+  problem.noise.sigma = problem.data.scale;
+  problem.resolution = recording.resolution;
+  if (!recording.range) return;
+  constexpr double kRounding = 1e-6;
+  const auto [low, high] = *recording.range;
+  const double q = recording.resolution;
+  const double levels = q > 0 ? std::floor((high - low) / q + kRounding) : 0;
+  const double half = q > 0 ? 0.5 * q : kRounding * (high - low);
+  NoiseModel noise = problem.noise;
+  noise.low = low + half;
+  noise.high = (q > 0 ? low + q * levels : high) - half;
+  problem.censored =
+      std::ranges::count_if(problem.data.value, [&](double reading) { return noise.IsCensored(reading); });
+  if (problem.censored > 0) problem.noise = noise;
+}
+
 /// The recording with seconds that last a second.
 Recording TrueTime(Recording recording) {
   const double first = recording.time[0];
@@ -169,7 +188,23 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
   return infos;
 }
 
+namespace {
+
+Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
+  if (options.noise != NoiseChoice::kQuantized) return {};
+  if (options.loss != Loss::kNone) {
+    return Error(StatusCode::kInvalidArgument, "--noise quantized and --loss exclude each other; give one of them");
+  }
+  if (recording.resolution > 0) return {};
+  return Error(
+      StatusCode::kInvalidArgument,
+      "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
+}
+
+}  // namespace
+
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
+  if (const Result<void> checked = CheckNoise(recording, options); !checked) return tl::unexpected(checked.error());
   Result<MotionModel> model = FindMotionModel(options.model);
   if (!model) return tl::unexpected(model.error());
   model->gravity = options.gravity.value_or(model->gravity);
@@ -191,6 +226,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, *start);
   problem.data.drifts = drifts;
+  SetCensoring(recording, problem);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   for (const ParameterInfo& info : problem.infos) {
     const bool is_release = info.name == kReleaseTime.name;

@@ -30,6 +30,8 @@ class WindowTrials {
     if (!recording_.is_calibrated()) options_.gravity = Gravity::kLinear;
     options_.start = options.start;
     options_.max_traces = kMostTraces;
+    options_.noise = NoiseChoice::kGaussian;
+    options_.interval = IntervalMethod::kCovariance;
   }
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
@@ -191,6 +193,8 @@ Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
               std::max(kMostSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
   FitOptions quick = options;
   quick.max_traces = 5 * kMostTraces;
+  quick.noise = NoiseChoice::kGaussian;
+  quick.interval = IntervalMethod::kCovariance;
   const auto converges = [](const Result<SwingFit>& trial) {
     return trial && trial->fit.termination == Termination::kConverged;
   };

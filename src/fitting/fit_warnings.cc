@@ -15,39 +15,43 @@ namespace pendulum {
 namespace {
 
 /// A reading at an end of the sensor's range only says that the angle is there or beyond.
-void WarnOfSaturation(const Recording& recording, std::vector<Warning>& warnings) {
-  if (!recording.range) return;
-  // Files round their numbers, those of the range too.
-  const auto [lowest, highest] = *recording.range;
-  const double near = std::max(0.5 * recording.resolution, 1e-6 * (highest - lowest));
-  const double low = lowest + near;
-  const double high = highest - near;
-  const auto saturated = (recording.value.array() <= low || recording.value.array() >= high).count();
-  if (saturated == 0) return;
-  warnings.push_back({"saturated", std::to_string(saturated) +
-                                       " readings stand at an end of the sensor's range; they are taken as measured, "
-                                       "which draws the amplitude in: choose a window of smaller swings"});
+void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings) {
+  if (problem.censored == 0) return;
+  warnings.push_back({"saturated", std::to_string(problem.censored) +
+                                       " readings stand at an end of the sensor's range; they are taken to say that "
+                                       "the angle is there or beyond"});
 }
 
-void WarnOfCorrelation(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
+/// The misfit beyond the noise, in levels where the readings stand on such.
+std::string MisfitSize(const Recording& recording, double misfit) {
+  if (recording.resolution > 0) return NumberText(misfit / recording.resolution, 2) + " resolutions";
+  return NumberText(misfit, 2) + " " + recording.value_unit();
+}
+
+void WarnOfCorrelation(const Recording& recording, const FitReport& report, const Eigen::VectorXd& z,
+                       std::vector<Warning>& warnings) {
   constexpr double kRatio = 1.3;
   constexpr double kLargestSaid = 99;
   Recording residuals;
   residuals.time = recording.time;
-  residuals.value = report.residual;
-  const double ratio = report.statistics.rms_residual / SuccessiveDifferenceNoise(residuals);
-  const std::string consequence =
-      "the error bars, which take the residuals as independent, are too small: take them as lower limits";
+  residuals.value = z;
+  const double noise = SuccessiveDifferenceNoise(residuals);
+  const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
+  const double ratio = rms / noise;
   if (!(ratio > kRatio)) {
-    warnings.push_back({"correlated_residuals", "the residuals follow each other: " + consequence});
+    warnings.push_back(
+        {"correlated_residuals", "the residuals follow each other: the error bars take them as noise that remembers (" +
+                                     report.noise.correlation + ") and hold if the model is right"});
     return;
   }
   const std::string times = ratio > kLargestSaid ? "more than 99" : NumberText(ratio, 2);
+  const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
   warnings.push_back({"lack_of_fit", "the residuals are " + times +
-                                         " times the noise between neighbouring samples and follow each other: the "
-                                         "model does not describe everything in this recording (look at --residuals, "
-                                         "try another model or window), and " +
-                                         consequence});
+                                         " times the noise between neighbouring samples and follow each other, by " +
+                                         MisfitSize(recording, misfit) +
+                                         ": the model does not describe everything in this recording, or its noise is "
+                                         "slow (look at --residuals, try another model or window); the error bars are "
+                                         "conditional on a model that may be wrong"});
 }
 
 /// Line through the mean residuals of whole periods, which the swing itself leaves alone.
@@ -91,10 +95,11 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
   const double rms = report.statistics.rms_residual;
-  if (!(rms < kQuiet * recording.resolution)) return;
-  warnings.push_back({"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
-                                          " resolutions: the noise is too small for rounding to average out, and the "
-                                          "error bars may be several times too small: take them as lower limits"});
+  if (report.noise.family == NoiseFamily::kQuantized || !(rms < kQuiet * recording.resolution)) return;
+  warnings.push_back(
+      {"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                           " resolutions: the noise is too small for rounding to average out, and the "
+                           "error bars may be several times too small; --noise quantized has true ones"});
 }
 
 void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
@@ -128,6 +133,8 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
 
 /// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr std::string_view kConsequence =
+      "; the standard errors of the others take that as exact, the intervals by profile likelihood do not";
   std::vector<ParameterInfo> friction, bounded;
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
@@ -135,20 +142,18 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
       (parameter.estimate == parameter.info.lower ? friction : bounded).push_back(parameter.info);
       continue;
     }
-    warnings.push_back({"at_bound",
-                        "release_time is at an end of the hold: the data ask for a release outside it, and the error "
-                        "bars of the other parameters take it as exact; choose a window with all of the hold, or "
-                        "--start moving with a window after the release"});
+    warnings.push_back({"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
+                                        std::string(kConsequence) +
+                                        "; choose a window with all of the hold, or --start moving with a window after "
+                                        "the release"});
   }
   if (!bounded.empty()) {
-    warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) +
-                                        "; the error bars of the other parameters take that as exact: widen --bounds"});
+    warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) + std::string(kConsequence) +
+                                        "; widen --bounds"});
   }
   if (friction.empty()) return;
-  warnings.push_back(
-      {"at_bound", "at the bound 0: " + NameList(friction) +
-                       "; the error bars of the other parameters take that as exact and are too small if it is not: "
-                       "compare with the fit of a simpler model, or record for longer"});
+  warnings.push_back({"at_bound", "at the bound 0: " + NameList(friction) + std::string(kConsequence) +
+                                      "; a simpler model, or a longer recording, has smaller ones"});
 }
 
 /// Warnings about the stop of a pendulum that dry friction brings to rest.
@@ -160,12 +165,11 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
   const double si = problem.si_per_internal[holding];
   const double error = *friction.std_error / si;
   const std::string name(friction.info.name);
-  const auto samples = static_cast<double>(problem.data.time.size());
   constexpr double kNearlyAsWell = 9;  // in -2 log L
   const auto other =
       std::find_if(solution.other_minima.begin(), solution.other_minima.end(), [&](const Minimum& minimum) {
         const double distance = minimum.parameters[holding] - solution.parameters[holding];
-        return samples * std::log(minimum.sum / solution.sum) <= kNearlyAsWell && std::abs(distance) >= error;
+        return minimum.sum - solution.sum <= kNearlyAsWell && std::abs(distance) >= error;
       });
   if (other != solution.other_minima.end()) {
     warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) + " " +
@@ -183,10 +187,11 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
 }  // namespace
 
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
-                                 const TraceSummary& trace, bool correlated, const FitReport& report) {
+                                 const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
+                                 const FitReport& report) {
   std::vector<Warning> warnings;
-  WarnOfSaturation(recording, warnings);
-  if (correlated) WarnOfCorrelation(recording, report, warnings);
+  WarnOfSaturation(problem, warnings);
+  if (correlated) WarnOfCorrelation(recording, report, quantile_residuals, warnings);
   if (correlated) WarnOfDrift(recording, problem, report, warnings);
   WarnOfQuietSensor(recording, report, warnings);
   WarnOfTraceAccuracy(report, warnings);

@@ -6,58 +6,19 @@
 #include <optional>
 #include <utility>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/covariance.h"
+#include "pendulum/fitting/estimate_autocorrelation.h"
 #include "pendulum/fitting/fit_warnings.h"
+#include "pendulum/fitting/intervals.h"
+#include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/fitting/systematic.h"
 
 namespace pendulum {
 namespace {
 
 using Eigen::Index;
-
-/// The least squares around a solution, in the problem's units (residuals in units of data.scale).
-struct Optimum {
-  Eigen::MatrixXd information;  // P x P, J'J
-  Eigen::VectorXd gradient;     // P, J'r
-  std::vector<int> free;        // neither fixed nor at a bound
-  std::vector<int> at_bound;
-  InformationInverse inverse;  // over free
-  double freedom = 1;          // N - free parameters
-  double variance = 0;         // of one residual
-};
-
-/// Nothing when the trajectory cannot be traced.
-std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
-  Optimum optimum;
-  Eigen::MatrixXd sums;
-  if (!solution.usable || !cost.Sums(solution.parameters, &sums)) return std::nullopt;
-  const Index size = sums.rows() - 1;
-  optimum.information = sums.topLeftCorner(size, size);
-  optimum.gradient = sums.col(size).head(size);
-  for (int i = 0; i < static_cast<int>(size); ++i) {
-    if (problem.solve.fixed[i]) continue;
-    const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
-    const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
-    (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
-  }
-  optimum.inverse = InvertInformation(optimum.information, optimum.free);
-  const auto samples = static_cast<double>(problem.data.time.size());
-  optimum.freedom = std::max(samples - static_cast<double>(optimum.free.size()), 1.0);
-  optimum.variance = std::max(solution.sum - cost.PriorSum(solution.parameters), 0.0) / optimum.freedom;
-  return optimum;
-}
-
-/// Length of the Gauss-Newton step that is left, in standard errors (its square is twice the expected drop of -log L).
-double RemainingShift(const Optimum& optimum) {
-  constexpr double kNegligibleVariance = 1e-12;  // residuals of a millionth of the data's scale are rounding
-  const Eigen::VectorXd gradient = optimum.gradient(optimum.free);
-  const double drop = gradient.dot(optimum.inverse.matrix * gradient);
-  return std::sqrt(drop / std::max(optimum.variance, kNegligibleVariance));
-}
 
 std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices) {
   std::string names;
@@ -66,20 +27,6 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
     names += problem.infos[static_cast<std::size_t>(indices[i])].name;
   }
   return names;
-}
-
-/// Length of the 95 % interval of a parameter at its bound: up to where the quadratic through the bound's cost
-/// and slope has risen by 3.84 variances (the profile of the linearized problem).
-double IntervalAtBound(const Optimum& optimum, int parameter) {
-  std::vector<int> freed = optimum.free;
-  freed.push_back(parameter);
-  const InformationInverse inverse = InvertInformation(optimum.information, freed);
-  if (!inverse.identifiable) return kUnbounded;
-  const Index last = inverse.matrix.rows() - 1;
-  const Eigen::VectorXd gradient = optimum.gradient(freed);
-  const double beyond = std::abs(inverse.matrix.row(last).dot(gradient));  // how far past the bound the minimum lies
-  const double rise = 3.841 * optimum.variance * inverse.matrix(last, last);
-  return rise / (std::sqrt(beyond * beyond + rise) + beyond);
 }
 
 /// Share of the readings' variance that the trajectory leaves.
@@ -167,33 +114,6 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
   }
 }
 
-/// The power of the clock's scale in a parameter's estimate. A rate sensor's clock is its own: what follows from its
-/// readings alone does not scale, and angles, which it tells as rate times time, do.
-int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
-  const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
-  const bool rate = quantity == Quantity::kRate;
-  if (is_one_of(kZeroDrift, kBiasDrift)) return -1;
-  if (is_one_of(kInitialRate)) return rate ? 0 : -1;
-  if (is_one_of(kReleaseAngle, kInitialAngle)) return rate ? 1 : 0;
-  if (!info.scales_with_gravity()) return 0;
-  if (is_one_of(kInertia)) return 2;
-  if (rate) return 1;
-  return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
-}
-
-/// What the rig's gravity torque and the clock's scale leave open: both multiply the parameter (MODEL.md eq. (24)).
-std::optional<double> SystematicError(const Recording& recording, const FitOptions& options,
-                                      const ParameterEstimate& parameter) {
-  double relative =
-      PowerOfTime(parameter.info, recording.quantity) * recording.clock_scale_std_dev / recording.clock_scale;
-  if (options.rig && parameter.info.scales_with_gravity()) {
-    const RigValue& torque = options.rig->gravity_torque;
-    relative = std::hypot(relative, torque.std_dev / torque.value);
-  }
-  if (relative == 0) return std::nullopt;
-  return std::abs(parameter.estimate * relative);
-}
-
 /// Value, unit and flags of parameter i, without its errors.
 ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                const Solution& solution, std::size_t i) {
@@ -202,78 +122,138 @@ ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& opt
   parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
   const bool is_reading = parameter.unit.starts_with("rad");
   if (is_reading && !recording.is_calibrated()) parameter.unit.replace(0, 3, recording.unit);
-  const auto reported = [&](double internal) { return problem.si_per_internal[i] * internal + problem.offset[i]; };
-  parameter.estimate = reported(solution.parameters[i]);
+  parameter.estimate = problem.Reported(i, solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];
   const auto is_one_of = [&](auto... infos) { return ((parameter.info.name == infos.name) || ...); };
   const bool has_closed_form = !is_one_of(kInitialAngle, kInitialRate, kZeroDrift, kBiasDrift);
-  if (has_closed_form && !parameter.fixed) parameter.closed_form = reported(problem.start.parameters[i]);
-  if (!parameter.fixed) parameter.systematic_std_error = SystematicError(recording, options, parameter);
+  if (has_closed_form && !parameter.fixed) parameter.closed_form = problem.Reported(i, problem.start.parameters[i]);
   return parameter;
-}
-
-void SetErrors(const FitProblem& problem, const Optimum& optimum, const Solution& solution, int i, double t95,
-               ParameterEstimate& parameter) {
-  const double scale = problem.si_per_internal[i];
-  if (parameter.at_bound) {
-    parameter.reason = "at its bound";
-    const bool at_lower = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]) < 0;
-    const double length = scale * IntervalAtBound(optimum, i);
-    (at_lower ? parameter.lower95 : parameter.upper95) = parameter.estimate;
-    if (!std::isfinite(length)) return;
-    (at_lower ? parameter.upper95 : parameter.lower95) = parameter.estimate + (at_lower ? length : -length);
-    return;
-  }
-  const Index row = std::find(optimum.free.begin(), optimum.free.end(), i) - optimum.free.begin();
-  parameter.std_error = scale * std::sqrt(optimum.variance * optimum.inverse.matrix(row, row));
-  const auto reported = [&](double internal) { return scale * internal + problem.offset[i]; };
-  const double lowest = std::max(reported(problem.solve.lower[i]), parameter.info.lower);
-  parameter.lower95 = std::max(parameter.estimate - t95 * *parameter.std_error, lowest);
-  parameter.upper95 = std::min(parameter.estimate + t95 * *parameter.std_error, reported(problem.solve.upper[i]));
 }
 
 void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                    const Optimum& optimum, const Solution& solution, FitReport& report) {
-  const double t95 = boost::math::quantile(boost::math::students_t(optimum.freedom), 0.975);
+  report.parameters.clear();
   for (int i = 0; i < static_cast<int>(problem.infos.size()); ++i) {
     ParameterEstimate parameter = MakeEstimate(recording, options, problem, solution, static_cast<std::size_t>(i));
-    parameter.at_bound = std::find(optimum.at_bound.begin(), optimum.at_bound.end(), i) != optimum.at_bound.end();
+    parameter.at_bound = std::ranges::find(optimum.at_bound, i) != optimum.at_bound.end();
     if (parameter.fixed) {
       parameter.reason = "fixed";
     } else if (report.termination != Termination::kConverged) {
       parameter.reason = "the fit is " + std::string(TerminationName(report.termination));
-    } else {
-      SetErrors(problem, optimum, solution, i, t95, parameter);
+    } else if (parameter.at_bound) {
+      parameter.reason = "at its bound";
     }
     report.parameters.push_back(std::move(parameter));
   }
 }
 
-void SetCovariance(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
+void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report) {
   Eigen::VectorXd scale(static_cast<Index>(optimum.free.size()));
   for (std::size_t i = 0; i < optimum.free.size(); ++i) {
     const auto index = static_cast<std::size_t>(optimum.free[i]);
+    const auto row = static_cast<Index>(i);
     report.covariance_names.emplace_back(problem.infos[index].name);
-    scale[static_cast<Index>(i)] = problem.si_per_internal[index];
+    scale[row] = problem.si_per_internal[index];
+    report.parameters[index].std_error = scale[row] * std::sqrt(errors.covariance(row, row));
   }
-  report.covariance = optimum.variance * (scale.asDiagonal() * optimum.inverse.matrix * scale.asDiagonal()).eval();
+  report.covariance = scale.asDiagonal() * errors.covariance * scale.asDiagonal();
+  report.std_error_method = errors.method;
 }
 
-void SetDerived(const FitProblem& problem, const Optimum& optimum, const Solution& solution, FitReport& report) {
+void SetSystematicErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                         const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
+                         FitReport& report) {
+  Eigen::VectorXd estimates(static_cast<Index>(report.parameters.size()));
+  for (Index i = 0; i < estimates.size(); ++i) estimates[i] = report.parameters[static_cast<std::size_t>(i)].estimate;
+  const Eigen::MatrixXd covariance =
+      SystematicCovariance(recording, options, problem, cost, solution, optimum, estimates);
+  std::vector<Index> concerned;
+  for (Index i = 0; i < estimates.size(); ++i) {
+    if (!(covariance(i, i) > 0)) continue;
+    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
+    parameter.systematic_std_error = std::sqrt(covariance(i, i));
+    report.systematic_names.emplace_back(parameter.info.name);
+    concerned.push_back(i);
+  }
+  report.systematic_covariance = covariance(concerned, concerned);
+}
+
+void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
+                FitReport& report) {
   if (report.termination != Termination::kConverged) {
     report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
     return;
   }
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  covariance(optimum.free, optimum.free) = optimum.variance * optimum.inverse.matrix;
+  covariance(optimum.free, optimum.free) = errors.covariance;
   report.derived = DerivedQuantities(problem.infos, solution.parameters, &covariance, optimum.at_bound);
+  std::vector<IntervalEnds> intervals;
+  for (std::size_t i = 0; i < problem.infos.size(); ++i) {
+    const ParameterEstimate& parameter = report.parameters[i];
+    const auto internal = [&](const std::optional<double>& end) {
+      if (parameter.fixed) return std::optional(solution.parameters[i]);
+      return end ? std::optional((*end - problem.offset[i]) / problem.si_per_internal[i]) : std::nullopt;
+    };
+    intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
+  }
+  SetDerivedIntervals(problem.infos, solution.parameters, intervals, report.derived);
+}
+
+/// The memory of the residuals, looked for where independence is in doubt.
+Autocorrelation MemoryOf(const Recording& recording, const TrajectoryCost& cost, const Solution& solution,
+                         const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
+  constexpr double kDoubtful = 0.05;
+  if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd jacobian;
+  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
+  return EstimateAutocorrelation(recording.time, z, jacobian(Eigen::all, optimum.free) / solution.noise.sigma);
+}
+
+NoiseEstimate DescribeNoise(const FitOptions& options, const FitProblem& problem, const Solution& solution,
+                            const FitReport& report, const Eigen::VectorXd& z) {
+  NoiseEstimate noise;
+  noise.family = solution.noise.family;
+  noise.sigma = solution.noise.sigma;
+  noise.censored = problem.censored;
+  noise.why = ChooseNoise(options, problem.resolution, report.statistics.rms_residual).why;
+  noise.lag1_correlation = Lag1Correlation(z);
+  return noise;
+}
+
+FitReport FailedReport(FitReport report, const Recording& recording, const FitOptions& options,
+                       const FitProblem& problem, const Solution& solution) {
+  report.termination = Termination::kFailed;
+  report.reason =
+      "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
+      "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
+  SetParameters(recording, options, problem, Optimum{}, solution, report);
+  return report;
+}
+
+/// Estimates, errors and intervals of a fit that converged, and what they rest on.
+void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
+               Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
+               FitReport& report) {
+  const Autocorrelation memory = MemoryOf(recording, cost, solution, optimum, z, correlated);
+  Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
+  report.noise.correlation = memory.Name();
+  report.statistics.effective_samples = errors.effective_samples;
+  const FittedModel fitted{options, problem, cost, solution, optimum, memory, z};
+  const bool sampled = memory.kind == Autocorrelation::Kind::kWhite && UsePosterior(fitted, errors, report);
+  report.noise.sigma = solution.noise.sigma;
+  report.noise.sigma_std_error = errors.sigma;
+  SetCovariance(problem, optimum, errors, report);
+  if (!sampled) SetIntervals(fitted, errors, report);
+  SetDerived(problem, optimum, errors, solution, report);
+  SetSystematicErrors(recording, options, problem, cost, solution, optimum, report);
 }
 
 }  // namespace
 
-FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                const TrajectoryCost& cost, Solution solution) {
+FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
+                Solution solution) {
   FitReport report;
   report.model = problem.model;
   report.start = problem.start.start;
@@ -281,29 +261,28 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.reading_unit = recording.value_unit();
   const std::optional<Optimum> optimum = Linearize(problem, cost, solution);
   report.solver = {solution.iterations, cost.traces(), solution.message};
-  if (!optimum) {
-    report.termination = Termination::kFailed;
-    report.reason =
-        "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
-        "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
-    SetParameters(recording, options, problem, Optimum{}, solution, report);
-    return report;
-  }
-  report.fitted = std::move(solution.readings);
+  if (!optimum) return FailedReport(std::move(report), recording, options, problem, solution);
+  const Eigen::VectorXd z = QuantileResiduals(solution.noise, recording.value, solution.readings);
+  report.fitted = solution.readings;
   report.residual = recording.value - report.fitted;
   report.trace_error = solution.trace_error;
-  report.noise = {problem.data.scale * std::sqrt(optimum->variance), Lag1Correlation(report.residual)};
-  report.statistics = ComputeStatistics(report.residual, static_cast<int>(optimum->free.size()), recording.resolution);
+  report.statistics =
+      ComputeStatistics(report.residual, z, solution.log_likelihood, static_cast<int>(optimum->free.size()));
+  report.noise = DescribeNoise(options, problem, solution, report, z);
   const TraceSummary trace = cost.Trace(solution.parameters);
   const bool correlated = !IsRounding(recording, report) &&
-                          (FollowEachOther(report.residual, PeriodLags(problem)) ||
-                           SwingAlong(recording.time, report.fitted, report.residual,
+                          (FollowEachOther(z, PeriodLags(problem)) ||
+                           SwingAlong(recording.time, report.fitted, z,
                                       2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
   SetTermination(recording, problem, *optimum, correlated, OnKink(problem, trace, solution), report);
   SetParameters(recording, options, problem, *optimum, solution, report);
-  SetDerived(problem, *optimum, solution, report);
-  if (report.termination == Termination::kConverged) SetCovariance(problem, *optimum, report);
-  report.warnings = FitWarnings(recording, problem, solution, trace, correlated, report);
+  if (report.termination == Termination::kConverged) {
+    SetErrors(recording, options, problem, cost, solution, *optimum, z, correlated, report);
+  } else {
+    SetDerived(problem, *optimum, Errors{}, solution, report);
+  }
+  SetIdentifiability(problem, *optimum, report);
+  report.warnings = FitWarnings(recording, problem, solution, trace, z, correlated, report);
   report.solver.evaluations = cost.traces();
   return report;
 }

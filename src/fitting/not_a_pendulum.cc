@@ -33,6 +33,8 @@ std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity)
   options.model = "drag";
   options.gravity = gravity;
   options.max_traces = 200;
+  options.noise = NoiseChoice::kGaussian;
+  options.interval = IntervalMethod::kCovariance;
   Result<FitReport> fit = FitRecording(recording, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
   return *std::move(fit);

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/random/uniform_01.hpp>
 
 #include "pendulum/base/physics.h"
 
@@ -94,20 +97,67 @@ bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, cons
   return Exceeds(all, 2.0 * count) || Exceeds(slow, 2.0 * cosines);
 }
 
-FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, int free_parameters, double resolution) {
+Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                                  const Eigen::Ref<const Eigen::VectorXd>& readings) {
+  if (noise.IsPlain()) return (value - readings) / noise.sigma;
+  constexpr double kFarthest = 1e-15;  // from 0 and 1: eight standard deviations
+  std::mt19937_64 generator(1);
+  boost::random::uniform_01<double> uniform;
+  const boost::math::normal normal;
+  Eigen::VectorXd residuals(value.size());
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    const NoiseModel::Distribution u = noise.DistributionAt(value[i], readings[i]);
+    const double place = u.below + uniform(generator) * (u.at - u.below);
+    residuals[i] = boost::math::quantile(normal, std::clamp(place, kFarthest, 1 - kFarthest));
+  }
+  return residuals;
+}
+
+double LjungBoxP(const Eigen::VectorXd& residual) {
+  constexpr Eigen::Index kMostLags = 20;
+  const Eigen::Index n = residual.size();
+  const Eigen::Index lags = std::min(kMostLags, n / 5);
+  const double sum = residual.squaredNorm();
+  if (!(sum > 0) || lags < 1) return 1;
+  double portmanteau = 0;
+  for (Eigen::Index lag = 1; lag <= lags; ++lag) {
+    const double correlation = residual.tail(n - lag).dot(residual.head(n - lag)) / sum;
+    portmanteau += correlation * correlation / static_cast<double>(n - lag);
+  }
+  portmanteau *= static_cast<double>(n) * static_cast<double>(n + 2);
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(static_cast<double>(lags)), portmanteau));
+}
+
+double RunsP(const Eigen::VectorXd& residual) {
+  const auto positive = static_cast<double>((residual.array() > 0).count());
+  const auto n = static_cast<double>(residual.size());
+  const double negative = n - positive;
+  if (positive == 0 || negative == 0) return 1;
+  double runs = 1;
+  for (Eigen::Index i = 1; i < residual.size(); ++i) runs += (residual[i] > 0) != (residual[i - 1] > 0) ? 1 : 0;
+  const double pairs = 2 * positive * negative;
+  const double mean = pairs / n + 1;
+  const double variance = pairs * (pairs - n) / (n * n * (n - 1));
+  return std::erfc(std::abs(runs - mean) / std::sqrt(2 * variance));
+}
+
+FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
+                                double log_likelihood, int free_parameters) {
   const Eigen::Index samples = residual.size();
   const auto n = static_cast<double>(samples);
   const double k = free_parameters + 1;
-  // Residuals that vanish would make the likelihood infinite; the smallest double keeps it a number.
-  const double sum = std::max(residual.squaredNorm(), std::numeric_limits<double>::min());
+  const Eigen::VectorXd& z = quantile_residual;
   FitStatistics statistics;
-  statistics.rms_residual = std::sqrt(sum / n);
-  statistics.log_likelihood =
-      -0.5 * n * (std::log(2 * kPi * sum / n) + 1) + (resolution > 0 ? n * std::log(resolution) : 0.0);
-  statistics.aic = 2 * k - 2 * statistics.log_likelihood;
+  statistics.rms_residual = std::sqrt(residual.squaredNorm() / n);
+  statistics.log_likelihood = log_likelihood;
+  statistics.aic = 2 * k - 2 * log_likelihood;
   statistics.aicc = statistics.aic + 2 * k * (k + 1) / std::max(n - k - 1, 1.0);
-  statistics.bic = k * std::log(n) - 2 * statistics.log_likelihood;
-  statistics.durbin_watson = (residual.tail(samples - 1) - residual.head(samples - 1)).squaredNorm() / sum;
+  statistics.bic = k * std::log(n) - 2 * log_likelihood;
+  const double sum = std::max(z.squaredNorm(), std::numeric_limits<double>::min());
+  statistics.durbin_watson = (z.tail(samples - 1) - z.head(samples - 1)).squaredNorm() / sum;
+  statistics.ljung_box_p = LjungBoxP(z);
+  statistics.runs_p = RunsP(z);
+  statistics.effective_samples = n;
   return statistics;
 }
 

@@ -69,6 +69,16 @@ Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<d
   return direction.allFinite() ? direction : Eigen::VectorXd();
 }
 
+/// `from` with so much of a direction, within the bounds.
+std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift, std::vector<double> from,
+                                 const SolveOptions& options) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double moved = from[i] + shift * direction[static_cast<Eigen::Index>(i)];
+    from[i] = options.fixed[i] ? from[i] : std::clamp(moved, options.lower[i], options.upper[i]);
+  }
+  return from;
+}
+
 /// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
 /// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
 std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<double>& from, double side,
@@ -79,14 +89,7 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
   const int k = options.holding_parameter;
   const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
   if (direction.size() == 0) return {};
-  const auto shifted = [&](double shift) {
-    std::vector<double> start = from;
-    for (std::size_t i = 0; i < start.size(); ++i) {
-      const double change = shift * from[k] * direction[static_cast<Eigen::Index>(i)];
-      start[i] = std::clamp(start[i] + change, options.lower[i], options.upper[i]);
-    }
-    return start;
-  };
+  const auto shifted = [&](double shift) { return ShiftedAlong(direction, shift * from[k], from, options); };
   const int reversals = cost.Trace(from).reversals;
   for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
     if (cost.Trace(shifted(side * shift)).reversals != reversals) return shifted(side * shift * kGrowth);
@@ -116,8 +119,19 @@ Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveO
   return best;
 }
 
-bool ReachesRest(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& parameters) {
-  return cost.Trace(parameters).stop_time < data.time.back();
+/// Whether the pendulum comes to rest, at a minimum or with dry friction 1.2 % to either side along its profile: only
+/// then are there other minima near.
+bool MayReachRest(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& parameters,
+                  const SolveOptions& options) {
+  constexpr double kShift = 0.012;
+  const auto rests = [&](const std::vector<double>& at) { return cost.Trace(at).stop_time < data.time.back(); };
+  const int k = options.holding_parameter;
+  if (k < 0 || rests(parameters)) return k >= 0;
+  if (options.fixed[k] || !(parameters[k] > 0)) return false;
+  const Eigen::VectorXd direction = ProfileDirection(cost, parameters, k, options);
+  if (direction.size() == 0) return false;
+  return rests(ShiftedAlong(direction, kShift * parameters[k], parameters, options)) ||
+         rests(ShiftedAlong(direction, -kShift * parameters[k], parameters, options));
 }
 
 /// Solves over all samples, and goes on to the neighbouring minima where the pendulum comes to rest.
@@ -125,7 +139,7 @@ Solution Refine(TrajectoryCost& cost, const TrajectoryData& data, const Solution
   Solution solution = Continue(cost, from, options);
   const int holding = options.holding_parameter;
   if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
-  if (!ReachesRest(cost, data, solution.parameters)) return solution;
+  if (!MayReachRest(cost, data, solution.parameters, options)) return solution;
   return DescendBasins(cost, solution, options);
 }
 
@@ -178,16 +192,17 @@ Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const St
   return Continue(cost, solution, options);
 }
 
-}  // namespace
-
+/// Whether a solution leaves at most a tenth of the readings' variance.
 bool Explains(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }
 
+}  // namespace
+
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
   Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
-  if (Explains(data, best) && !ReachesRest(cost, data, best.parameters)) return best;
+  if (Explains(data, best) && !MayReachRest(cost, data, best.parameters, options)) return best;
   for (const int k : Removable(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);

@@ -163,6 +163,8 @@ Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions
   if (!solution.usable) solution.parameters = from.parameters;
   solution.iterations += from.iterations;
   solution.other_minima = from.other_minima;
+  solution.noise = from.noise;
+  solution.log_likelihood = from.log_likelihood;
   return solution;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
@@ -75,6 +76,7 @@ class Products {
 
 /// R, R^-T J'r and the rest of |r| from the sums (MODEL.md eq. (19)), by a pivoted Cholesky factor of J'J scaled to
 /// unit diagonal: a direction that the data do not see gets a row of zeros, which Levenberg-Marquardt leaves alone.
+/// Where J'J is a likelihood's information the rest may be negative; then R grows until it is none, a shorter step.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
   constexpr double kRounding = 1e-15;  // of a diagonal of ones
   const Eigen::Index size = sums.rows() - 1;
@@ -88,15 +90,15 @@ void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** 
   ldlt.matrixL().solveInPlace(gradient);
   const Eigen::MatrixXd scaled = ldlt.transpositionsP() * Eigen::MatrixXd(norms.asDiagonal());
   const Eigen::MatrixXd factor = root.asDiagonal() * (ldlt.matrixU() * scaled);
-  double rest = sums(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    residuals[i] = root[i] > 0 ? gradient[i] / root[i] : 0.0;
-    rest -= residuals[i] * residuals[i];
-  }
-  residuals[size] = std::sqrt(std::max(rest, 0.0));
+  Eigen::Map<Eigen::VectorXd> seen(residuals, size);
+  seen = root.unaryExpr([](double x) { return x > 0 ? 1 / x : 0.0; }).cwiseProduct(gradient);
+  const double total = sums(size, size);
+  const double longer = seen.squaredNorm() > total && total > 0 ? std::sqrt(seen.squaredNorm() / total) : 1.0;
+  seen /= longer;
+  residuals[size] = std::sqrt(std::max(total - seen.squaredNorm(), 0.0));
   for (Eigen::Index j = 0; j < size; ++j) {
     if (jacobians[j] == nullptr) continue;
-    Eigen::Map<Eigen::VectorXd>(jacobians[j], size) = factor.col(j);
+    Eigen::Map<Eigen::VectorXd>(jacobians[j], size) = longer * factor.col(j);
     jacobians[j][size] = 0;
   }
 }
@@ -115,10 +117,16 @@ class TrajectoryCostFor final : public TrajectoryCost {
       : gravity_(gravity), data_(data), used_samples_(data.time.size()), count_(kParameters + (data.drifts ? 1 : 0)) {
     set_num_residuals(count_ + 1);
     mutable_parameter_block_sizes()->assign(count_, 1);
+    noise_.sigma = data.scale;
   }
 
   void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
   void set_used_samples(std::size_t count) override { used_samples_ = count; }
+
+  void set_noise(const NoiseModel& noise) override {
+    noise_ = noise;
+    last_.parameters.clear();
+  }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     std::array<double, kParameters + 1> values{};
@@ -138,12 +146,15 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool SumOfSquares(std::span<const double> p, double* sum) const override {
-    const double inverse_scale = 1 / data_.scale;
     Lanes squares{};
+    const bool plain = noise_.IsPlain();
+    const double inverse_sigma = 1 / noise_.sigma;
     const auto add = [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
       for (int i = 0; i < count; ++i) {
-        const double residual = (data_.value[first + i] - model[0][i] - Zero(p, first + i)) * inverse_scale;
-        squares[i] += residual * residual;
+        const double value = data_.value[first + i];
+        const double reading = model[0][i] + Zero(p, first + i);
+        const double residual = (value - reading) * inverse_sigma;
+        squares[i] += plain ? residual * residual : noise_.At(value, reading).deviance;
       }
     };
     if (!VisitSamples<double>(p, add)) return false;
@@ -202,20 +213,32 @@ class TrajectoryCostFor final : public TrajectoryCost {
   template <int kBaseline>
   bool AddUp(std::span<const double> p, Eigen::MatrixXd* sums) const {
     constexpr int kResidual = kZero + kBaseline;
-    const double inverse_scale = 1 / data_.scale;
+    const bool plain = noise_.IsPlain();
+    const double inverse_sigma = 1 / noise_.sigma;
+    Lanes deviances{};
     Products<kResidual + 1> products;
     const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
       std::array<Lanes, kResidual + 1> columns{};  // lanes beyond count stay zero
       for (int i = 0; i < count; ++i) {
-        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * inverse_scale;
-        columns[kZero][i] = -inverse_scale;
-        if constexpr (kBaseline == 2) columns[kZero + 1][i] = -data_.time[first + i] * inverse_scale;
-        columns[kResidual][i] = (data_.value[first + i] - model[0][i] - Zero(p, first + i)) * inverse_scale;
+        const double value = data_.value[first + i];
+        const double reading = model[0][i] + Zero(p, first + i);
+        double root_weight = inverse_sigma;
+        columns[kResidual][i] = (value - reading) * inverse_sigma;
+        if (!plain) {
+          const SampleLikelihood sample = noise_.At(value, reading);
+          deviances[i] += sample.deviance;
+          root_weight = std::sqrt(sample.weight);
+          columns[kResidual][i] = root_weight > 0 ? sample.score / root_weight : 0.0;
+        }
+        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * root_weight;
+        columns[kZero][i] = -root_weight;
+        if constexpr (kBaseline == 2) columns[kZero + 1][i] = -data_.time[first + i] * root_weight;
       }
       products.Add(columns);
     };
     if (!VisitSamples<Dual>(p, add)) return false;
     *sums = products.Matrix();
+    if (!plain) (*sums)(kResidual, kResidual) = std::accumulate(deviances.begin(), deviances.end(), 0.0);
     return sums->allFinite();
   }
 
@@ -318,6 +341,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   std::size_t used_samples_;
   int count_;  // of parameters
   double tolerance_ = 1e-10;
+  NoiseModel noise_;
 
   /// Sums and where they were taken: solver, active set and judgement ask for them at the same point, one by one.
   struct SumsAt {

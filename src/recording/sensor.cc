@@ -201,6 +201,21 @@ double Calibration::Slope(double reading) const {
   return sum * RadFrom(angle_unit);
 }
 
+double Calibration::Reading(double angle, double near) const {
+  constexpr int kMostSteps = 50;
+  constexpr double kSmallStep = 1e-12;
+  double reading = near;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double change = (angle - Angle(reading)) / Slope(reading);
+    if (!std::isfinite(change)) return near;
+    reading += change;
+    if (std::abs(change) <= kSmallStep * (1 + std::abs(reading))) break;
+  }
+  return reading;
+}
+
+double Calibration::RadFromUnit() const { return RadFrom(angle_unit); }
+
 Result<Calibration> ParseCalibration(std::string_view text, const std::string& name) {
   const Result<Json> json = ParseJsonObject(text, name, "calibration", kForm);
   if (!json) return tl::unexpected(json.error());

@@ -75,6 +75,7 @@ Json DataJson(const RunReport& report) {
       .Set("duration_s", data.duration())
       .Set("sample_rate_hz", data.sample_rate())
       .Set(Named("resolution", data.unit), ResolutionJson(data))
+      .Set("resolution_source", TextOrNull(data.resolution_source))
       .Set("clock_scale", data.clock_scale)
       .Set("clock_scale_std_dev", data.clock_scale_std_dev)
       .Set("window_s", Json::array({data.from, data.to}))
@@ -85,16 +86,17 @@ Json DataJson(const RunReport& report) {
       .Done();
 }
 
-Json IntervalJson(const ParameterEstimate& parameter) {
-  if (!parameter.lower95 && !parameter.upper95) return nullptr;
-  return Json::array({NumberOrNull(parameter.lower95), NumberOrNull(parameter.upper95)});
+Json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper) {
+  if (!lower && !upper) return nullptr;
+  return Json::array({NumberOrNull(lower), NumberOrNull(upper)});
 }
 
 Json ParameterJson(const ParameterEstimate& parameter) {
-  return NumberObject()
-      .Set("estimate", parameter.estimate)
+  NumberObject object;
+  if (!parameter.open_interval.empty()) object.Because("the interval is open: " + parameter.open_interval);
+  return object.Set("estimate", parameter.estimate)
       .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
-      .Set("interval95", IntervalJson(parameter))
+      .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
       .Set("systematic_std_error", NumberOrNull(parameter.systematic_std_error))
       .Set("unit", Json(parameter.unit))
       .Set("fixed", Json(parameter.fixed))
@@ -117,6 +119,7 @@ Json DerivedJson(const FitReport& fit) {
         NumberObject()
             .Set("estimate", quantity.estimate)
             .Set("std_error", quantity.std_error, "a parameter it comes from has no standard error")
+            .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
             .Set("unit", Json(quantity.unit))
             .Done();
   }
@@ -144,12 +147,22 @@ Json CorrelationJson(const FitReport& fit) {
   return MatrixJson(fit.covariance_names, [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
 }
 
+Json SystematicJson(const FitReport& fit) {
+  return MatrixJson(fit.systematic_names,
+                    [&](Eigen::Index i, Eigen::Index j) { return fit.systematic_covariance(i, j); });
+}
+
 Json NoiseJson(const FitReport& fit, const DataSummary& data) {
+  const NoiseEstimate& noise = fit.noise;
   return NumberObject()
-      .Set("model", "gaussian")
-      .Set(Named("sigma", fit.reading_unit), fit.noise.sigma)
+      .Set("model", Json(NoiseFamilyName(noise.family)))
+      .Set("why", Json(noise.why))
+      .Set(Named("sigma", fit.reading_unit), noise.sigma)
+      .Set("sigma_std_error", NumberOrNull(noise.sigma_std_error))
       .Set(Named("resolution", fit.reading_unit), ResolutionJson(data))
-      .Set("lag1_correlation", fit.noise.lag1_correlation)
+      .Set("saturated_samples", Json(noise.censored))
+      .Set("lag1_correlation", noise.lag1_correlation)
+      .Set("correlation", Json(noise.correlation))
       .Done();
 }
 
@@ -162,7 +175,21 @@ Json StatisticsJson(const FitReport& fit) {
       .Set("aicc", statistics.aicc)
       .Set("bic", statistics.bic)
       .Set("durbin_watson", statistics.durbin_watson)
+      .Set("ljung_box_p", statistics.ljung_box_p)
+      .Set("runs_p", statistics.runs_p)
+      .Set("effective_samples", statistics.effective_samples)
       .Done();
+}
+
+Json IdentifiabilityJson(const FitReport& fit) {
+  Json all = Json::array();
+  for (const Identifiability& known : fit.identifiability) {
+    all.push_back({{"parameter", known.parameter},
+                   {"verdict", VerdictName(known.verdict)},
+                   {"direction", known.direction},
+                   {"advice", TextOrNull(known.advice)}});
+  }
+  return all;
 }
 
 /// What a failed fit does not have is null; its `reason` says why.
@@ -177,7 +204,10 @@ Json FitJson(const FitReport& fit, const DataSummary& data) {
   json["covariance"] = CovarianceJson(fit);
   json["correlation"] = CorrelationJson(fit);
   json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, data);
-  json["std_error_method"] = fit.covariance_names.empty() ? Json(nullptr) : Json(kStdErrorMethod);
+  json["systematic_covariance"] = SystematicJson(fit);
+  json["std_error_method"] = TextOrNull(fit.std_error_method);
+  json["interval_method"] = TextOrNull(fit.interval_method);
+  json["identifiability"] = IdentifiabilityJson(fit);
   json["statistics"] = failed ? Json(nullptr) : StatisticsJson(fit);
   json["solver"] = {{"iterations", fit.solver.iterations},
                     {"evaluations", fit.solver.evaluations},

@@ -28,6 +28,7 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   data.from = used.time[0];
   data.to = used.time[used.size() - 1];
   data.resolution = used.resolution;
+  data.resolution_source = used.resolution > 0 ? used.resolution_source : "";
   data.clock_scale = used.clock_scale;
   data.clock_scale_std_dev = used.clock_scale_std_dev;
   return data;

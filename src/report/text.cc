@@ -64,6 +64,11 @@ std::string ReleasesText(const DataSummary& data) {
   return text;
 }
 
+std::string SourceText(const DataSummary& data) {
+  if (data.resolution_source == "found") return ", found in the values";
+  return data.resolution_source.empty() ? "" : data.resolution_source == "file" ? ", from the file" : ", as given";
+}
+
 std::string DataText(const DataSummary& data) {
   std::vector<Row> rows;
   if (!data.path.empty()) rows.push_back({"file", data.path});
@@ -80,7 +85,7 @@ std::string DataText(const DataSummary& data) {
                                  " true seconds to its second; parameters are in true seconds"});
   }
   if (data.releases.size() > 1) rows.push_back({"releases", ReleasesText(data)});
-  if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.unit)});
+  if (data.resolution > 0) rows.push_back({"resolution", ReadingText(data.resolution, data.unit) + SourceText(data)});
   return Heading("Data") + Facts(rows);
 }
 
@@ -179,6 +184,31 @@ std::string MissingErrors(const FitReport& fit) {
   return text;
 }
 
+std::string OpenIntervals(const FitReport& fit) {
+  std::string text;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.open_interval.empty()) continue;
+    text += " That of " + std::string(parameter.info.name) + " is open: " + parameter.open_interval + ".";
+  }
+  return text;
+}
+
+/// What the recording hardly tells, and what would.
+std::string IdentifiabilityText(const FitReport& fit) {
+  std::string text;
+  for (const Identifiability& known : fit.identifiability) {
+    if (known.verdict == Identifiability::Verdict::kIdentifiable) continue;
+    std::string traded;
+    for (const std::string& name : known.direction) {
+      if (name != known.parameter) traded += (traded.empty() ? " (traded for " : ", ") + name;
+    }
+    if (!traded.empty()) traded += ")";
+    text +=
+        Prose(known.parameter + " is " + std::string(VerdictName(known.verdict)) + traded + ": " + known.advice + ".");
+  }
+  return text;
+}
+
 /// The rig file's own moment of inertia beside the fitted one.
 std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
   const ParameterEstimate* fitted = fit.Find("inertia");
@@ -204,21 +234,36 @@ std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig) 
   const bool failed = fit.termination == Termination::kFailed;
   std::string text = Heading("Parameters") + (failed ? Prose("These are no estimates: nothing was fitted.") : "");
   text += AlignedTable(ParameterColumns(), rows, kIndent) + MissingErrors(fit);
-  if (!fit.covariance_names.empty()) text += Prose("Standard errors: " + std::string(kStdErrorMethod) + ".");
-  return text + InertiaText(fit, rig);
+  if (!fit.std_error_method.empty()) text += Prose("Standard errors: " + fit.std_error_method + ".");
+  if (!fit.interval_method.empty()) text += Prose("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
+  return text + IdentifiabilityText(fit) + InertiaText(fit, rig);
 }
 
 // --- what follows from the parameters -----------------------------------------------------------------------------
 
+std::string DerivedInterval(const DerivedQuantity& quantity) {
+  if (!quantity.lower95 && !quantity.upper95) return "";
+  const auto number = [&](const std::optional<double>& end) -> std::string {
+    if (!end) return "?";
+    if (!(quantity.std_error.value_or(0) > 0)) return NumberText(*end, kDigits);
+    return RoundedText(*end, PdgRounding(quantity.estimate, *quantity.std_error));
+  };
+  return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
+}
+
 std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
-    ValueAndError text{NumberText(quantity.estimate, kDigits), ""};
-    if (quantity.std_error.value_or(0) > 0) text = PdgText(quantity.estimate, *quantity.std_error);
-    rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit});
+    // An error beyond the value, of a quotient whose divisor may be 0, says nothing.
+    const bool tells =
+        quantity.std_error && *quantity.std_error > 0 && *quantity.std_error < std::abs(quantity.estimate);
+    ValueAndError text{NumberText(quantity.estimate, tells ? kDigits : 3), ""};
+    if (tells) text = PdgText(quantity.estimate, *quantity.std_error);
+    rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
+                    DerivedInterval(quantity)});
   }
   if (rows.empty()) return "";
-  return Heading("Derived quantities") + AlignedTable({{""}, {"", true}, {"", false, 1}, {""}}, rows, kIndent);
+  return Heading("Derived quantities") + AlignedTable({{""}, {"", true}, {"", false, 1}, {""}, {""}}, rows, kIndent);
 }
 
 std::string CorrelationText(const FitReport& fit) {
@@ -241,14 +286,33 @@ std::string CorrelationText(const FitReport& fit) {
          AlignedTable({{""}, {"", true}}, rows, kIndent);
 }
 
+std::string NoiseText(const FitReport& fit) {
+  const NoiseEstimate& noise = fit.noise;
+  std::string text(NoiseFamilyName(noise.family));
+  text += noise.family == NoiseFamily::kStudent ? "'s t, 4 degrees of freedom, scale " : ", sigma ";
+  if (!noise.sigma_std_error) return text + ReadingText(noise.sigma, fit.reading_unit);
+  const ValueAndError sigma = PdgText(noise.sigma, *noise.sigma_std_error);
+  const std::optional<Conversion> degrees = Degrees(fit.reading_unit);
+  text += sigma.value + (sigma.error.empty() ? "" : " ± " + sigma.error) + " " + fit.reading_unit;
+  if (!degrees) return text;
+  constexpr int kReadingDigits = 3;
+  return text + " (" + NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit) +
+         ")";
+}
+
 std::string StatisticsText(const FitReport& fit) {
   if (fit.termination == Termination::kFailed) return "";
   const FitStatistics& statistics = fit.statistics;
   return Heading("Noise and statistics") +
-         Facts({{"noise", "Gaussian, sigma " + ReadingText(fit.noise.sigma, fit.reading_unit)},
+         Facts({{"noise", NoiseText(fit)},
+                {"because", fit.noise.why},
                 {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
                 {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
                 {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+                {"Ljung-Box, runs",
+                 "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
+                {"memory", fit.noise.correlation + "; the samples count as " +
+                               NumberText(std::round(statistics.effective_samples)) + " independent ones"},
                 {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
                 {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
                                        FixedText(statistics.bic, 2)},

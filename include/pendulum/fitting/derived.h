@@ -17,6 +17,12 @@ struct DerivedQuantity {
   std::string unit;
   double estimate = 0;
   std::optional<double> std_error;
+  std::optional<double> lower95, upper95;
+};
+
+/// Ends of a parameter's interval; one may be missing.
+struct IntervalEnds {
+  std::optional<double> lower, upper;
 };
 
 /// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ, and gravity, viscous, coulomb,
@@ -29,5 +35,12 @@ struct DerivedQuantity {
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);
+
+/// Sets the intervals of derived quantities from those of the parameters they come from: each end of one is carried
+/// over with the others at their estimates, and the distances are added in squares.
+///
+/// As above; intervals: P, in units of G. An end that no end of a parameter is carried to stays missing.
+void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
+                         const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
 
 }  // namespace pendulum

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,8 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/fitting/derived.h"
+#include "pendulum/fitting/identifiability.h"
+#include "pendulum/fitting/noise.h"
 #include "pendulum/fitting/residual_diagnostics.h"
 #include "pendulum/fitting/start_values.h"
 #include "pendulum/model/motion_model.h"
@@ -18,17 +22,33 @@
 
 namespace pendulum {
 
+/// What to take the noise for: kAuto takes the resolution into account where the noise does not drown it.
+enum class NoiseChoice { kAuto, kGaussian, kQuantized };
+
+/// Robust alternatives to normal noise, for recordings with outliers.
+enum class Loss { kNone, kHuber, kStudent };
+
+/// Where intervals come from. kAuto: covariance, but profiles where any parameter is within three standard errors of a
+/// bound, and the posterior where counts hardly scatter.
+enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap };
+
 /// What FitRecording is asked to do. Values by parameter name are SI: torques and inertia in N m and kg m^2 with a rig,
 /// in units of G without one.
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Instead of the model's own.
   StartChoice start = StartChoice::kAuto;
-  std::optional<Rig> rig;         ///< Turns ratios into SI; without it torques are in units of G.
-  ParameterValues fixed;          ///< Parameters held at a value.
-  ParameterValues initial;        ///< Where parameters begin instead of where the data say.
-  ParameterRanges bounds;         ///< Bounds within a parameter's own.
-  ParameterPriors priors;         ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
+  std::optional<Rig> rig;   ///< Turns ratios into SI; without it torques are in units of G.
+  ParameterValues fixed;    ///< Parameters held at a value.
+  ParameterValues initial;  ///< Where parameters begin instead of where the data say.
+  ParameterRanges bounds;   ///< Bounds within a parameter's own.
+  ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
+  NoiseChoice noise = NoiseChoice::kAuto;
+  Loss loss = Loss::kNone;
+  IntervalMethod interval = IntervalMethod::kAuto;
+  std::uint64_t seed = 1;  ///< Of the bootstrap and of posterior sampling.
+  int threads = 0;         ///< Of the bootstrap; 0: all cores. The result does not depend on it.
+  std::function<void(int done, int total)> progress;  ///< Called now and then by the bootstrap, from one thread.
   double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.
   int max_traces = 3000;          ///< Trajectories of a fit: good recordings need tens, hopeless ones go on for ever.
@@ -54,8 +74,9 @@ struct ParameterEstimate {
   std::string unit;  ///< info.unit with a rig, info.relative_unit without; counts and volts instead of rad.
   double estimate = 0;
   std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
-  std::optional<double> lower95, upper95;  ///< Interval of 95 % (Student's t); one end is the bound when at_bound.
-  std::optional<double> systematic_std_error;  ///< From the rig's standard deviations; absent without them.
+  std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
+  std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
+  std::optional<double> systematic_std_error;  ///< From rig, clock and calibration; absent without their errors.
   std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
   bool fixed = false;
   bool at_bound = false;
@@ -64,8 +85,14 @@ struct ParameterEstimate {
 
 /// The noise of the samples about the trajectory.
 struct NoiseEstimate {
-  double sigma = 0;  ///< Standard deviation, rad or rad/s: RSS / (N - free parameters), square root.
-  double lag1_correlation = 0;
+  NoiseFamily family = NoiseFamily::kGaussian;
+  double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), otherwise the likeliest; the scale
+                     ///< of a robust family.
+  std::optional<double> sigma_std_error;  ///< Same unit.
+  Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
+  std::string why;                        ///< Why this family, in words.
+  double lag1_correlation = 0;            ///< Of the quantile residuals.
+  std::string correlation = "white";      ///< What describes the quantile residuals: white, AR(3), ARMA(1,1) ...
 };
 
 /// What the solver did, over all its runs.
@@ -86,7 +113,12 @@ struct FitReport {
   std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
-  Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  Eigen::MatrixXd covariance;    ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  std::string std_error_method;  ///< In words.
+  std::string interval_method;   ///< In words.
+  std::vector<std::string> systematic_names;     ///< Parameters with a systematic error.
+  Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
+  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed, in their order.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
@@ -109,8 +141,9 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
 /// file's own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
 ///
 /// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
-/// bounds. kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or too little of one. Cost:
-/// about a millisecond for 2000 samples, tens where the pendulum comes to rest.
+/// bounds, quantized noise without a resolution or with a robust loss. kDataLoss: counts or volts without a
+/// calibration. kFailedPrecondition: no swing, or too little of one. Cost: about a millisecond for 2000 samples, three
+/// with the quantized likelihood, tens where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

@@ -20,8 +20,14 @@ struct FitProblem {
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
   SolveOptions solve;
-  bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
-  std::vector<PriorTerm> priors;  ///< Weights are one over the standard deviation, for a noise of `data.scale`.
+  bool restricted = false;  ///< The user fixed or bounded parameters, or gave priors.
+  std::vector<PriorTerm> priors;
+  NoiseModel noise;           ///< With which a search begins: σ is data.scale; saturated readings are censored.
+  Eigen::Index censored = 0;  ///< How many they are.
+  double resolution = 0;      ///< Of the readings; 0: none.
+
+  /// Parameter i as the report has it.
+  double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
 
   /// Index of the zero, which its drift may follow.
   std::size_t zero() const { return infos.size() - (data.drifts ? 2 : 1); }

@@ -3,18 +3,36 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/fitting/noise.h"
+
 namespace pendulum {
 
-/// Measures of the fit. N samples, k = free parameters + 1 for sigma.
+/// Measures of the fit. N samples, k = free parameters + 1 for sigma. Those of independence are of quantile residuals.
 struct FitStatistics {
-  double rms_residual = 0;  ///< sqrt(RSS / N), rad or rad/s
-  double log_likelihood =
-      0;            ///< Gaussian, at the maximum-likelihood sigma; densities times the resolution (or 1 rad, 1 rad/s).
-  double aic = 0;   ///< 2 k - 2 log L
-  double aicc = 0;  ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
-  double bic = 0;   ///< k ln N - 2 log L
-  double durbin_watson = 0;  ///< Σ (r_i - r_{i-1})² / Σ r_i²
+  double rms_residual = 0;       ///< sqrt(RSS / N), rad or rad/s
+  double log_likelihood = 0;     ///< See Solution; compared only within a noise family.
+  double aic = 0;                ///< 2 k - 2 log L
+  double aicc = 0;               ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
+  double bic = 0;                ///< k ln N - 2 log L
+  double durbin_watson = 0;      ///< Σ (z_i - z_{i-1})² / Σ z_i² (Durbin & Watson, Biometrika 37:409, 1950)
+  double ljung_box_p = 1;        ///< Of LjungBoxP.
+  double runs_p = 1;             ///< Of RunsP.
+  double effective_samples = 0;  ///< N / (1 + 2 Σ ρ_k), at most N.
 };
+
+/// Randomized quantile residuals z (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996): Φ⁻¹ of the distribution function
+/// at the reading, at a random place within the jump that a level or a censored reading makes. Standard normal and
+/// independent when the model is right, whatever the rounding. N samples; always the same random places.
+Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                                  const Eigen::Ref<const Eigen::VectorXd>& readings);
+
+/// Probability that independent residuals have autocorrelations as large over min(20, N/5) lags (Ljung & Box,
+/// Biometrika 65:297, 1978).
+double LjungBoxP(const Eigen::VectorXd& residual);
+
+/// Two-sided probability that independent residuals change sign as seldom, or as often (Wald & Wolfowitz, Ann. Math.
+/// Stat. 11:147, 1940); 1 when all have one sign.
+double RunsP(const Eigen::VectorXd& residual);
 
 /// Correlation of each residual with the next, Σ r_i r_{i-1} / Σ r_i²; 0 for residuals that are all 0.
 double Lag1Correlation(const Eigen::VectorXd& residual);
@@ -31,7 +49,9 @@ bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 
-/// Statistics of N residuals [rad or rad/s] of a fit with that many free parameters. resolution: same unit, 0 for none.
-FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, int free_parameters, double resolution);
+/// The statistics of N residuals [rad or rad/s] of a fit with that many free parameters, from its log-likelihood and
+/// quantile residuals; effective_samples is N.
+FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
+                                double log_likelihood, int free_parameters);
 
 }  // namespace pendulum

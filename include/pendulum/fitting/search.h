@@ -19,7 +19,4 @@ using StartGuess = std::function<std::vector<double>(const std::vector<bool>& fi
 /// budgets end it.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, const SolveOptions& options);
 
-/// Whether a solution leaves at most a tenth of the readings' variance.
-bool Explains(const TrajectoryData& data, const Solution& solution);
-
 }  // namespace pendulum

@@ -24,16 +24,18 @@ struct SolveOptions {
 
 struct Minimum {
   std::vector<double> parameters;  ///< P
-  double sum = 0;                  ///< |r|², in units of the cost's scale²
+  double sum = 0;                  ///< |r|²
 };
 
 /// A least-squares solution and what the solver did to reach it.
 struct Solution {
   std::vector<double> parameters;  ///< P, TrajectoryCost's units.
-  double sum = 0;                  ///< |r|², in units of the cost's scale².
+  double sum = 0;                  ///< |r|², the deviance under the cost's noise.
   bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
   std::string message;
+  NoiseModel noise;                   ///< Set by MaximizeLikelihood, as is the next.
+  double log_likelihood = 0;          ///< Probability per sample; a density is multiplied with the resolution (or 1).
   Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
   double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.
   std::vector<Minimum> other_minima;  ///< Found by Search beside this one, none lower; this one may be among them.

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <ceres/cost_function.h>
 
+#include "pendulum/fitting/noise.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
@@ -24,34 +25,35 @@ struct TrajectoryData {
   double natural_frequency = 0;  ///< rad/s, roughly; a trial of a very different time scale is refused.
   double latest_release = 0;     ///< s; a trial released outside [0, latest_release] is refused.
   bool drifts = false;           ///< The zero moves: one parameter more.
-  double scale =
-      1;  ///< rad or rad/s; residuals are divided by it, so that Ceres' tolerances are those of numbers near 1.
+  double scale = 1;              ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
 };
 
 /// What is known of a parameter beside the recording, as a residual (p - mean) · weight beside those of the samples.
 struct PriorTerm {
   int parameter = 0;
   double mean = 0;    ///< In the cost's units.
-  double weight = 0;  ///< One over the standard deviation, times that of the noise over `scale`.
+  double weight = 0;  ///< One over the standard deviation.
 };
 
-/// Samples, sensitivities and the least squares of one trajectory: the part of a fit that is repeated.
+/// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
 ///
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
-/// the reading per s] where the data ask for it. Residual r_i = value_i - model_i(p).
+/// the reading per s] where the data ask for it. The squared residual of a sample is its deviance under the noise,
+/// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale).
 ///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
-/// J'J, R^-T J' r, and what is left of |r|. Cost, gradient and Gauss-Newton matrix are exactly those of the N residuals
-/// (MODEL.md eq. (19)), nothing of length N is stored or factored. Asked for residuals alone it returns (0, ..., 0,
-/// |r|). A trial that never moves, that cannot be traced or is released outside the data makes every function return
-/// false.
+/// J'J, R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of the N residuals, J'J is the observed
+/// information of the samples (MODEL.md eq. (19) and (28)), nothing of length N is stored or factored. Asked for
+/// residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be traced or is released outside
+/// the data makes every function return false.
 class TrajectoryCost : public ceres::CostFunction {
  public:
-  /// |r|^2 in units of scale^2, that of the priors included, or false.
+  /// |r|², the deviance of samples and priors, or false.
   virtual bool SumOfSquares(std::span<const double> parameters, double* sum) const = 0;
 
-  /// The (P + 1) x (P + 1) symmetric matrix of sums [J'J, J'r; r'J, r'r], J = dr/dp, r in units of scale; or false.
+  /// The (P + 1) x (P + 1) symmetric matrix of sums [J'J, J'r; r'J, r'r], J = dr/dp: information, minus the gradient of
+  /// the log-likelihood, and the deviance; or false.
   virtual bool Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) const = 0;
 
   /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
@@ -62,6 +64,7 @@ class TrajectoryCost : public ceres::CostFunction {
 
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
   virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
+  virtual void set_noise(const NoiseModel& noise) = 0;
 
   void set_priors(std::vector<PriorTerm> priors) { priors_ = std::move(priors); }
   const std::vector<PriorTerm>& priors() const { return priors_; }

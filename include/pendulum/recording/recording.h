@@ -29,6 +29,7 @@ struct Recording {
   Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
   Eigen::VectorXd value;     ///< N x 1, rad or rad/s whatever the unit; counts or volts unless is_calibrated().
   double resolution = 0;  ///< Spacing of the values the sensor can give, in the unit of value; 0 when unknown or none.
+  std::string resolution_source;           ///< Who says so: "given" by the user, the "file", or "found" in the values.
   std::optional<SensorRange> range;        ///< What the sensor can show, in the unit of value; none when unlimited.
   double clock_scale = 1;                  ///< True seconds in a second of the file's clock; not applied to `time`.
   double clock_scale_std_dev = 0;          ///< Standard deviation of clock_scale.

@@ -35,6 +35,12 @@ struct Calibration {
 
   /// Its derivative at a reading, rad per unit of the reading.
   double Slope(double reading) const;
+
+  /// The reading that shows an angle [rad]: of a curve with several, one near the reading `near`.
+  double Reading(double angle, double near) const;
+
+  /// rad in one angle_unit.
+  double RadFromUnit() const;
 };
 
 /// Reads a calibration from JSON text, {"input": "counts"|"volts", "angle_unit": "deg"|"rad", "coefficients": [c0, c1,

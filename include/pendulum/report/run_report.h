@@ -4,7 +4,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,7 +26,8 @@ struct DataSummary {
   Eigen::Index used_samples = 0;  ///< In the window that was fitted; at least kMinimumSamples.
   double from = 0;                ///< Time of the first used sample [s, on the file's clock].
   double to = 0;                  ///< Time of the last used sample [s, on the file's clock].
-  double resolution = 0;          ///< Spacing of the values; 0 when the file does not tell.
+  double resolution = 0;          ///< Spacing of the values; 0 for none.
+  std::string resolution_source;  ///< "given", "file" or "found"; empty for none.
   double clock_scale = 1;         ///< True seconds in a second of the file's clock; the fit is in true ones.
   double clock_scale_std_dev = 0;
   std::string begins, ends;                     ///< Why the window is what it is; empty where nothing was chosen.
@@ -57,8 +57,5 @@ std::vector<Warning> AllWarnings(const RunReport& report);
 
 /// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
-
-/// How the standard errors of a fit were obtained.
-inline constexpr std::string_view kStdErrorMethod = "covariance sigma^2 (J'J)^-1, residuals taken as independent";
 
 }  // namespace pendulum

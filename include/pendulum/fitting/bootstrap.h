@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/autocorrelation.h"
+#include "pendulum/fitting/fit_problem.h"
+
+namespace pendulum {
+
+/// Estimates from recordings that the fit itself could have given.
+struct Bootstrap {
+  Eigen::MatrixXd estimates;  ///< B x P, the problem's units; rows of those that could be solved.
+  int failed = 0;             ///< How many could not.
+
+  /// The quantile of parameter k's estimates, by linear interpolation between order statistics.
+  double Quantile(int k, double probability) const;
+};
+
+/// Refits of kBootstrapFits recordings: the fitted readings with new noise, rounded and cut as the sensor does.
+///
+/// Independent Gaussian or quantized noise is drawn from its model (parametric bootstrap). Residuals that remember, and
+/// those of a robust family, are resampled: circular blocks of the quantile residuals, long enough to hold their memory
+/// (D. N. Politis and J. P. Romano, "A circular block-resampling procedure", 1992); of independent ones one by one.
+/// quantile_residuals: N. Runs on options.threads threads; the same for a seed whatever their number.
+Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, const Solution& solution,
+                       const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation);
+
+inline constexpr int kBootstrapFits = 999;
+
+}  // namespace pendulum

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/autocorrelation.h"
+#include "pendulum/fitting/covariance.h"
+#include "pendulum/fitting/fit_problem.h"
+
+namespace pendulum {
+
+/// The likelihood around a solution, in the problem's units, and what is free there.
+struct Optimum {
+  Eigen::MatrixXd information;  ///< P x P, observed, priors included.
+  Eigen::VectorXd gradient;     ///< P, of minus the log-likelihood.
+  std::vector<int> free;        ///< F parameters that are neither fixed nor at a bound.
+  std::vector<int> at_bound;    ///< Those at a bound that the likelihood pushes outwards.
+  InformationInverse inverse;   ///< Of the information, over free.
+};
+
+/// Nothing when the trajectory cannot be traced.
+std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution);
+
+/// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
+double RemainingShift(const Optimum& optimum);
+
+/// Errors of the free parameters, and how they were obtained.
+struct Errors {
+  Eigen::MatrixXd covariance;    ///< F x F
+  std::optional<double> sigma;   ///< Standard error of σ, rad or rad/s.
+  double freedom = 1;            ///< Of Student's t: (effective) samples - F.
+  double effective_samples = 0;  ///< N over the variance inflation 1 + 2 Σ ρ_k, at most N.
+  std::string method;            ///< In words.
+};
+
+/// The covariance of the free parameters (MODEL.md eq. (18), (28) to (30)): the inverse of the observed information of
+/// parameters and log σ; of a robust family Huber's sandwich; and where the residuals remember, W'RW between two
+/// inverses, W the roots of the samples' information times the Jacobian and R the autocorrelation.
+Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                     const Optimum& optimum, const Autocorrelation& correlation);
+
+}  // namespace pendulum

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/bootstrap.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+
+#include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/trajectory/tolerance.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Samples in a block: a few times what the variance of a mean is inflated by, and 1 without memory.
+Index BlockLength(const Autocorrelation& correlation, Index samples) {
+  if (correlation.kind == Autocorrelation::Kind::kWhite) return 1;
+  constexpr double kMemories = 5;
+  const auto length = static_cast<Index>(std::ceil(kMemories * correlation.VarianceInflation()));
+  return std::clamp<Index>(length, 2, std::max<Index>(samples / 8, 2));
+}
+
+class Replicas {
+ public:
+  Replicas(const FitProblem& problem, const FitOptions& options, const Solution& solution,
+           const Eigen::VectorXd& residuals, const Autocorrelation& correlation)
+      : problem_(problem), options_(options), solution_(solution), residuals_(residuals) {
+    block_ = BlockLength(correlation, residuals.size());
+    parametric_ = block_ == 1 && !solution.noise.IsRobust();
+  }
+
+  /// Estimates of replica number `index`; empty when it cannot be solved.
+  std::vector<double> Estimate(std::uint64_t index) const {
+    FitProblem replica = problem_;
+    std::seed_seq seeds{options_.seed & 0xffffffffU, options_.seed >> 32U, index};
+    std::mt19937_64 generator(seeds);
+    const Eigen::VectorXd noise = Draw(generator);
+    for (Index i = 0; i < noise.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      replica.data.value[at] = Shown(solution_.readings[i] + solution_.noise.sigma * noise[i], problem_.data.value[at]);
+    }
+    const auto cost = MakeTrajectoryCost(replica.model, replica.start.start, replica.data);
+    const double max_error = std::min(options_.max_trace_error, 1e-3 * problem_.data.scale);
+    cost->set_tolerance(TraceTolerance(max_error, problem_.start.amplitude));
+    cost->set_priors(replica.priors);
+    cost->set_noise(replica.noise);
+    Solution solution = Solve(*cost, solution_.parameters, replica.solve);
+    MaximizeLikelihood(*cost, replica, options_, solution);
+    return solution.usable ? solution.parameters : std::vector<double>{};
+  }
+
+ private:
+  /// Noise of N samples, in σ.
+  Eigen::VectorXd Draw(std::mt19937_64& generator) const {
+    const Index samples = residuals_.size();
+    Eigen::VectorXd noise(samples);
+    if (parametric_) {
+      boost::random::normal_distribution<double> normal;
+      for (double& x : noise) x = normal(generator);
+      return noise;
+    }
+    boost::random::uniform_int_distribution<Index> any(0, samples - 1);
+    for (Index i = 0; i < samples;) {
+      const Index first = any(generator);
+      for (Index k = 0; k < block_ && i < samples; ++k, ++i) noise[i] = residuals_[(first + k) % samples];
+    }
+    return noise;
+  }
+
+  /// What the sensor shows of a value: one of its levels, on which `other` stands, within its range.
+  double Shown(double value, double other) const {
+    const double q = problem_.resolution;
+    if (q > 0) value = other + q * std::round((value - other) / q);
+    const double half = problem_.resolution > 0 ? 0.5 * q : 0.0;
+    return std::clamp(value, problem_.noise.low - half, problem_.noise.high + half);
+  }
+
+  const FitProblem& problem_;
+  const FitOptions& options_;
+  const Solution& solution_;
+  const Eigen::VectorXd& residuals_;
+  Index block_ = 1;
+  bool parametric_ = true;
+};
+
+}  // namespace
+
+double Bootstrap::Quantile(int k, double probability) const {
+  std::vector<double> sorted(estimates.col(k).begin(), estimates.col(k).end());
+  std::ranges::sort(sorted);
+  const double position = probability * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (position - std::floor(position)) * (sorted[above] - sorted[below]);
+}
+
+Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, const Solution& solution,
+                       const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation) {
+  const Replicas replicas(problem, options, solution, quantile_residuals, correlation);
+  std::vector<std::vector<double>> estimates(kBootstrapFits);
+  std::atomic<int> next = 0;
+  const auto work = [&](bool reports) {
+    for (int i = next++; i < kBootstrapFits; i = next++) {
+      if (reports && options.progress) options.progress(i, kBootstrapFits);
+      estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
+    }
+  };
+  const unsigned cores =
+      options.threads > 0 ? static_cast<unsigned>(options.threads) : std::max(std::thread::hardware_concurrency(), 1U);
+  std::vector<std::jthread> others;
+  for (unsigned i = 1; i < cores; ++i) others.emplace_back(work, false);
+  work(true);
+  others.clear();
+  std::erase_if(estimates, [](const std::vector<double>& estimate) { return estimate.empty(); });
+  Bootstrap bootstrap;
+  bootstrap.failed = kBootstrapFits - static_cast<int>(estimates.size());
+  bootstrap.estimates.resize(static_cast<Index>(estimates.size()), static_cast<Index>(problem.infos.size()));
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    bootstrap.estimates.row(static_cast<Index>(i)) =
+        Eigen::Map<const Eigen::RowVectorXd>(estimates[i].data(), bootstrap.estimates.cols());
+  }
+  return bootstrap;
+}
+
+}  // namespace pendulum

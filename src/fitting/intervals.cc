@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/intervals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/bootstrap.h"
+#include "pendulum/fitting/posterior.h"
+#include "pendulum/fitting/profile.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// All but the fixed parameters: free ones first.
+std::vector<int> NotFixed(const Optimum& optimum) {
+  std::vector<int> parameters = optimum.free;
+  parameters.insert(parameters.end(), optimum.at_bound.begin(), optimum.at_bound.end());
+  return parameters;
+}
+
+/// Sets one parameter's interval, given in the problem's units.
+void SetInterval(const FitProblem& problem, int parameter, const std::optional<double>& lower,
+                 const std::optional<double>& upper, FitReport& report) {
+  const auto i = static_cast<std::size_t>(parameter);
+  const auto reported = [&](const std::optional<double>& end) {
+    return end ? std::optional(problem.Reported(i, *end)) : std::nullopt;
+  };
+  report.parameters[i].lower95 = reported(lower);
+  report.parameters[i].upper95 = reported(upper);
+}
+
+bool NearBound(const FittedModel& fitted, const Errors& errors) {
+  constexpr double kNear = 3;  // standard errors
+  const SolveOptions& solve = fitted.problem.solve;
+  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
+    const double reach = kNear * std::sqrt(errors.covariance(static_cast<Index>(row), static_cast<Index>(row)));
+    const double at = fitted.solution.parameters[i];
+    if (at - reach < solve.lower[i] || at + reach > solve.upper[i]) return true;
+  }
+  return !fitted.optimum.at_bound.empty();
+}
+
+void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
+  const double t = boost::math::quantile(boost::math::students_t(errors.freedom), 0.975);
+  const SolveOptions& solve = fitted.problem.solve;
+  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
+    const double length = t * std::sqrt(errors.covariance(static_cast<Index>(row), static_cast<Index>(row)));
+    const double at = fitted.solution.parameters[i];
+    const double lowest = i == 0 ? 0.0 : solve.lower[i];  // inertia is positive
+    SetInterval(fitted.problem, fitted.optimum.free[row], std::max(at - length, lowest),
+                std::min(at + length, solve.upper[i]), report);
+  }
+  for (const int i : fitted.optimum.at_bound) {
+    report.parameters[static_cast<std::size_t>(i)].open_interval =
+        "at its bound; --interval profile gives the other end";
+    const double at = fitted.solution.parameters[static_cast<std::size_t>(i)];
+    const bool low = BoundSide(solve, static_cast<std::size_t>(i), at) < 0;
+    SetInterval(fitted.problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at),
+                report);
+  }
+  report.interval_method = "estimate ± " + NumberText(t, 4) + " standard errors";
+}
+
+void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
+  for (const int i : NotFixed(fitted.optimum)) {
+    const ProfileInterval interval =
+        ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i);
+    SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
+    report.parameters[static_cast<std::size_t>(i)].open_interval = interval.open;
+  }
+  report.interval_method = "profile likelihood";
+}
+
+void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
+  const Bootstrap bootstrap =
+      RunBootstrap(fitted.problem, fitted.options, fitted.solution, fitted.quantile_residuals, fitted.correlation);
+  constexpr int kFewest = kBootstrapFits * 9 / 10;
+  for (const int i : NotFixed(fitted.optimum)) {
+    if (bootstrap.estimates.rows() < kFewest) {
+      report.parameters[static_cast<std::size_t>(i)].open_interval =
+          std::to_string(bootstrap.failed) + " of the bootstrap's fits cannot be made";
+      continue;
+    }
+    SetInterval(fitted.problem, i, bootstrap.Quantile(i, 0.025), bootstrap.Quantile(i, 0.975), report);
+  }
+  report.interval_method = "quantiles of " + std::to_string(bootstrap.estimates.rows()) + " bootstrap fits, seed " +
+                           std::to_string(fitted.options.seed);
+}
+
+LinearizedFit LinearizedOf(const FittedModel& fitted) {
+  const FitProblem& problem = fitted.problem;
+  const std::vector<int>& free = fitted.optimum.free;
+  const auto size = static_cast<Index>(free.size());
+  LinearizedFit linear;
+  linear.value =
+      Eigen::Map<const Eigen::VectorXd>(problem.data.value.data(), static_cast<Index>(problem.data.value.size()));
+  Eigen::MatrixXd jacobian;
+  if (!fitted.cost.Readings(fitted.solution.parameters, &linear.readings, &jacobian)) return linear;
+  linear.jacobian = jacobian(Eigen::all, free);
+  linear.noise = fitted.solution.noise;
+  linear.lower.resize(size);
+  linear.upper.resize(size);
+  linear.prior_mean = linear.prior_weight = Eigen::VectorXd::Zero(size);
+  for (Index row = 0; row < size; ++row) {
+    const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(row)]);
+    const double at = fitted.solution.parameters[i];
+    linear.lower[row] = problem.solve.lower[i] - at;
+    linear.upper[row] = problem.solve.upper[i] - at;
+    for (const PriorTerm& prior : fitted.cost.priors()) {
+      if (static_cast<std::size_t>(prior.parameter) != i) continue;
+      linear.prior_mean[row] = prior.mean - at;
+      linear.prior_weight[row] = prior.weight;
+    }
+  }
+  return linear;
+}
+
+/// The parameters that follow the one in `row` of the inverse most closely.
+std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& optimum, Index row) {
+  constexpr double kClosely = 0.9;
+  const Eigen::MatrixXd& inverse = optimum.inverse.matrix;
+  std::vector<std::string> names;
+  for (Index j = 0; j < inverse.cols(); ++j) {
+    if (std::abs(inverse(row, j)) < kClosely * std::sqrt(inverse(row, row) * inverse(j, j))) continue;
+    names.emplace_back(problem.infos[static_cast<std::size_t>(optimum.free[static_cast<std::size_t>(j)])].name);
+  }
+  return names;
+}
+
+/// The estimates are the posterior's means.
+void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
+  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
+    const double at = fitted.solution.parameters[i];
+    const auto k = static_cast<Index>(row);
+    SetInterval(fitted.problem, fitted.optimum.free[row], at + posterior.lower95[k], at + posterior.upper95[k], report);
+    fitted.solution.parameters[i] = at + posterior.mean[k];
+    report.parameters[i].estimate = fitted.problem.Reported(i, fitted.solution.parameters[i]);
+  }
+  if (fitted.cost.Readings(fitted.solution.parameters, &fitted.solution.readings, nullptr)) {
+    const Eigen::Map<const Eigen::VectorXd> value(fitted.problem.data.value.data(), fitted.solution.readings.size());
+    report.fitted = fitted.solution.readings;
+    report.residual = value - report.fitted;
+  }
+}
+
+}  // namespace
+
+bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
+  const NoiseModel& noise = fitted.solution.noise;
+  const bool quiet = noise.family == NoiseFamily::kQuantized && noise.sigma < kQuietSigma * noise.resolution;
+  const IntervalMethod asked = fitted.options.interval;
+  const bool may = asked == IntervalMethod::kAuto || asked == IntervalMethod::kCovariance;
+  if (!quiet || !may || fitted.optimum.free.empty() || !fitted.optimum.at_bound.empty()) return false;
+  const Result<Posterior> posterior = SamplePosterior(LinearizedOf(fitted), fitted.options.seed);
+  if (!posterior) return false;
+  MoveTo(*posterior, fitted, report);
+  errors.covariance = posterior->covariance;
+  errors.sigma = posterior->sigma_std_dev;
+  errors.method = "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";
+  fitted.solution.noise.sigma = posterior->sigma;
+  report.interval_method = "quantiles of the posterior";
+  return true;
+}
+
+void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
+  switch (fitted.options.interval) {
+    case IntervalMethod::kBootstrap: return SetBootstrapIntervals(fitted, report);
+    case IntervalMethod::kProfile: return SetProfileIntervals(fitted, report);
+    case IntervalMethod::kCovariance: return SetCovarianceIntervals(fitted, errors, report);
+    case IntervalMethod::kAuto: break;
+  }
+  if (NearBound(fitted, errors)) return SetProfileIntervals(fitted, report);
+  SetCovarianceIntervals(fitted, errors, report);
+}
+
+namespace {
+
+Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& optimum, int parameter,
+                                     const ParameterEstimate& estimate) {
+  // Correlated with the others by 0.995: its error is ten times what it would be if they were known.
+  constexpr double kTraded = 100;
+  constexpr double kImprecise = 0.1;  // of the estimate
+  const auto i = static_cast<std::size_t>(parameter);
+  Identifiability known;
+  known.parameter = estimate.info.name;
+  const std::vector<int>& unseen = optimum.inverse.direction;
+  const Index row = std::ranges::find(optimum.free, parameter) - optimum.free.begin();
+  const bool traded = optimum.inverse.identifiable && row < static_cast<Index>(optimum.free.size()) &&
+                      optimum.inverse.matrix(row, row) * optimum.information(parameter, parameter) > kTraded &&
+                      estimate.std_error.value_or(0) > kImprecise * std::abs(estimate.estimate);
+  const bool reaches_bound =
+      estimate.at_bound || (estimate.lower95 && *estimate.lower95 <= problem.Reported(i, problem.solve.lower[i]));
+  if (std::ranges::find(unseen, parameter) != unseen.end()) {
+    known.verdict = Identifiability::Verdict::kNotIdentifiable;
+    for (const int other : unseen) known.direction.emplace_back(problem.infos[static_cast<std::size_t>(other)].name);
+  } else if (traded || reaches_bound) {
+    known.verdict = Identifiability::Verdict::kWeakly;
+    if (traded) known.direction = TradedFor(problem, optimum, row);
+  } else {
+    return known;
+  }
+  known.advice = MeasurementFor(known.parameter);
+  return known;
+}
+
+}  // namespace
+
+void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
+  for (const int i : NotFixed(optimum)) {
+    const ParameterEstimate& estimate = report.parameters[static_cast<std::size_t>(i)];
+    report.identifiability.push_back(JudgeIdentifiability(problem, optimum, i, estimate));
+  }
+}
+
+}  // namespace pendulum

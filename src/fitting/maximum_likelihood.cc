@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/maximum_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+/// Parameters that are neither fixed nor at a bound.
+double FreeParameters(const FitProblem& problem, const Solution& solution) {
+  double free = 0;
+  for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
+    if (!problem.solve.fixed[i] && BoundSide(problem.solve, i, solution.parameters[i]) == 0) ++free;
+  }
+  return free;
+}
+
+/// σ² = RSS / (N - free parameters) of a deviance under the cost's noise; residuals of a millionth of the data's scale
+/// are rounding.
+double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
+  constexpr double kNegligible = 1e-6;
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const double freedom = std::max(samples - FreeParameters(problem, solution), 1.0);
+  const double sum = std::max(solution.sum - cost.PriorSum(solution.parameters), 0.0);
+  return std::max(solution.noise.sigma * std::sqrt(sum / freedom), kNegligible * problem.data.scale);
+}
+
+double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
+  Eigen::VectorXd readings;
+  if (!cost.Readings(solution.parameters, &readings, nullptr)) return problem.data.scale;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const double value = problem.data.value[static_cast<std::size_t>(i)];
+    if (!problem.noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
+  }
+  return std::sqrt(sum / static_cast<double>(readings.size()));
+}
+
+/// Gaussian noise has σ in closed form.
+void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostRounds = 20;
+  constexpr double kSame = 1e-4;
+  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+    const double before = std::exchange(solution.noise.sigma, GaussianSigma(cost, problem, solution));
+    const double ratio = before / solution.noise.sigma;
+    cost.set_noise(solution.noise);
+    const double prior = cost.PriorSum(solution.parameters);
+    solution.sum = (solution.sum - prior) * ratio * ratio + prior;
+    for (Minimum& minimum : solution.other_minima) minimum.sum *= ratio * ratio;
+    if (problem.priors.empty() || std::abs(ratio - 1) <= kSame) break;
+    solution = Continue(cost, solution, problem.solve);
+  }
+}
+
+/// One σ after the other, each with the parameters that belong to it.
+void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostRounds = 15;
+  constexpr double kSame = 3e-3;  // of σ: some tenths of its standard error at most
+  const Eigen::Map<const Eigen::VectorXd> value(problem.data.value.data(),
+                                                static_cast<Eigen::Index>(problem.data.value.size()));
+  const double smallest = std::max(kSmallestSigma * problem.resolution, 1e-6 * problem.data.scale);
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
+    const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
+    const double change = std::abs(std::log(sigma / solution.noise.sigma));
+    solution.noise.sigma = sigma;
+    if (round > 0 && change < kSame) break;
+    cost.set_noise(solution.noise);
+    solution = Continue(cost, solution, problem.solve);
+    if (!solution.usable) return;
+  }
+}
+
+/// Solves from those of the other minima that came near, by the same noise, and keeps the likeliest.
+void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, std::vector<Minimum> others, Solution& solution) {
+  for (const Minimum& minimum : others) {
+    Solution other = solution;
+    other.parameters = minimum.parameters;
+    other = Continue(cost, other, problem.solve);
+    if (!other.usable) continue;
+    if (other.sum < solution.sum) std::swap(other, solution);
+    solution.iterations = std::max(solution.iterations, other.iterations);
+    solution.other_minima.push_back({other.parameters, other.sum});
+  }
+}
+
+/// The minima of least squares that may be the likeliest; `sigma` is that of the residuals.
+std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
+  constexpr double kNear = 60;  // in -2 log L by least squares, which counts of little noise do not follow closely
+  constexpr std::size_t kMost = 4;
+  std::vector<Minimum> near;
+  for (const Minimum& minimum : solution.other_minima) {
+    if (samples * std::log(minimum.sum / solution.sum) < kNear) near.push_back(minimum);
+  }
+  std::ranges::sort(near, {}, &Minimum::sum);
+  if (near.size() > kMost) near.resize(kMost);
+  return near;
+}
+
+double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
+
+/// Of Gaussian noise with the likeliest σ, whose square is RSS / N.
+double GaussianLogLikelihood(double rss, double samples) {
+  return -0.5 * samples * (std::log(2 * kPi * std::max(rss, std::numeric_limits<double>::min()) / samples) + 1);
+}
+
+double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
+  const Eigen::Map<const Eigen::VectorXd> value(problem.data.value.data(),
+                                                static_cast<Eigen::Index>(problem.data.value.size()));
+  const auto samples = static_cast<double>(value.size());
+  if (solution.noise.IsPlain()) {
+    return GaussianLogLikelihood((value - solution.readings).squaredNorm(), samples) +
+           samples * std::log(DensityUnit(problem.resolution));
+  }
+  const double densities =
+      solution.noise.family == NoiseFamily::kQuantized ? 0.0 : samples - static_cast<double>(problem.censored);
+  return LogLikelihood(solution.noise, value, solution.readings) +
+         densities * std::log(DensityUnit(problem.resolution));
+}
+
+}  // namespace
+
+ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
+  constexpr double kDrowned = 1;  // resolutions
+  if (options.loss == Loss::kHuber) return {NoiseFamily::kHuber, "asked for by --loss"};
+  if (options.loss == Loss::kStudent) return {NoiseFamily::kStudent, "asked for by --loss"};
+  if (options.noise == NoiseChoice::kQuantized) return {NoiseFamily::kQuantized, "asked for by --noise"};
+  if (options.noise == NoiseChoice::kGaussian) return {NoiseFamily::kGaussian, "asked for by --noise"};
+  if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
+  const double ratio = residual_std_dev / resolution;
+  if (ratio < kDrowned) {
+    return {NoiseFamily::kQuantized,
+            "the residuals are " + NumberText(ratio, 2) + " resolutions: the readings are levels, not numbers"};
+  }
+  return {NoiseFamily::kGaussian,
+          "the residuals are " + NumberText(ratio, 2) + " resolutions: rounding drowns in the noise"};
+}
+
+void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
+                        Solution& solution) {
+  solution.noise = problem.noise;
+  if (!solution.usable) return;
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const double rms = RmsResidual(cost, problem, solution);
+  solution.noise.family = ChooseNoise(options, problem.resolution, rms).family;
+  solution.noise.resolution = solution.noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
+  if (solution.noise.IsPlain()) {
+    SettleGaussian(cost, problem, solution);
+  } else {
+    const std::vector<Minimum> near = NearMinima(solution, samples);
+    const double rounding = solution.noise.resolution / std::sqrt(12.0);
+    solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
+    solution.noise.sigma = std::max(solution.noise.sigma, 1e-6 * problem.data.scale);
+    cost.set_noise(solution.noise);
+    solution.other_minima.clear();
+    Alternate(cost, problem, solution);
+    CompareMinima(cost, problem, near, solution);
+    if (!near.empty()) Alternate(cost, problem, solution);
+    cost.set_noise(solution.noise);
+    if (!cost.SumOfSquares(solution.parameters, &solution.sum)) solution.usable = false;
+  }
+  if (cost.Readings(solution.parameters, &solution.readings, nullptr)) {
+    solution.log_likelihood = LogLikelihoodOf(problem, solution);
+  }
+}
+
+}  // namespace pendulum

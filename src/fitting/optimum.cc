@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/optimum.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Index>(values.size())};
+}
+
+/// Derivatives of the readings with respect to the free parameters, N x F.
+Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const std::vector<int>& free) {
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd jacobian;
+  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
+  return jacobian(Eigen::all, free);
+}
+
+/// Information of the priors over the free parameters.
+Eigen::MatrixXd PriorInformation(const TrajectoryCost& cost, const std::vector<int>& free) {
+  const auto size = static_cast<Index>(free.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+  for (const PriorTerm& prior : cost.priors()) {
+    const Index i = std::ranges::find(free, prior.parameter) - free.begin();
+    if (i < size) information(i, i) += prior.weight * prior.weight;
+  }
+  return information;
+}
+
+/// What the samples say, one by one: derivatives of their log-likelihood.
+struct SampleTerms {
+  Eigen::VectorXd score;        // N
+  Eigen::VectorXd information;  // N
+  Eigen::VectorXd mixed;        // N, with λ = log σ
+  double sigma_information = 0;
+};
+
+SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
+  const auto samples = static_cast<Index>(problem.data.value.size());
+  SampleTerms terms;
+  for (Eigen::VectorXd* column : {&terms.score, &terms.information, &terms.mixed}) column->resize(samples);
+  for (Index i = 0; i < samples; ++i) {
+    const double value = problem.data.value[static_cast<std::size_t>(i)];
+    const NoiseLikelihood l = solution.noise.LikelihoodAt(value, solution.readings[i]);
+    terms.score[i] = l.score;
+    terms.information[i] = l.information;
+    terms.mixed[i] = l.mixed;
+    terms.sigma_information += l.sigma_information;
+  }
+  return terms;
+}
+
+/// The inverse of a symmetric matrix scaled to unit diagonal; empty when it has none.
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& matrix) {
+  std::vector<int> all(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  return InvertInformation(matrix, all).matrix;
+}
+
+/// The likelihood's own covariance, σ estimated beside the parameters.
+void SetLikelihoodErrors(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
+                         const SampleTerms& terms, const Eigen::MatrixXd& jacobian, Errors& errors) {
+  const Index size = jacobian.cols();
+  Eigen::MatrixXd joint(size + 1, size + 1);
+  joint.topLeftCorner(size, size) =
+      jacobian.transpose() * terms.information.asDiagonal() * jacobian + PriorInformation(cost, optimum.free);
+  joint.col(size).head(size) = jacobian.transpose() * terms.mixed;
+  joint.row(size).head(size) = joint.col(size).head(size).transpose();
+  joint(size, size) = terms.sigma_information;
+  const Eigen::MatrixXd inverse = Inverse(joint);
+  if (inverse.size() == 0) return;
+  errors.covariance = inverse.topLeftCorner(size, size);
+  errors.sigma = solution.noise.sigma * std::sqrt(inverse(size, size));
+}
+
+/// Roots of what the samples are expected to inform, times their derivatives: the variance of their scores.
+Eigen::MatrixXd Weighted(const NoiseModel& noise, const SampleTerms& terms, const Eigen::MatrixXd& jacobian) {
+  if (noise.IsRobust()) return std::sqrt(terms.score.squaredNorm() / static_cast<double>(jacobian.rows())) * jacobian;
+  return terms.information.cwiseMax(0).cwiseSqrt().asDiagonal() * jacobian;
+}
+
+/// A^-1 B A^-1. A robust family's A is that of the mean information, for its B is that of the mean square score (P. J.
+/// Huber, Robust Statistics, Wiley 1981, section 7.6).
+Eigen::MatrixXd Sandwich(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
+                         const Optimum& optimum, const SampleTerms& terms, const Eigen::MatrixXd& jacobian,
+                         const Autocorrelation& correlation) {
+  const Eigen::MatrixXd prior = PriorInformation(cost, optimum.free);
+  const Eigen::MatrixXd weighted = Weighted(solution.noise, terms, jacobian);
+  Eigen::MatrixXd bread = optimum.inverse.matrix;
+  if (solution.noise.IsRobust()) {
+    bread = Inverse(terms.information.mean() * jacobian.transpose() * jacobian + prior);
+  }
+  const Eigen::MatrixXd meat = correlation.kind == Autocorrelation::Kind::kWhite
+                                   ? Eigen::MatrixXd(weighted.transpose() * weighted)
+                                   : CorrelatedSum(correlation, AsVector(problem.data.time), weighted);
+  return bread * (meat + prior) * bread;
+}
+
+std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation) {
+  if (correlation.kind != Autocorrelation::Kind::kWhite) {
+    return "sandwich: the residuals follow each other as " + correlation.Name() +
+           " noise does, and its autocovariance stands between two inverses of the information";
+  }
+  if (noise.IsRobust()) return "sandwich of the robust score, residuals taken as independent";
+  if (noise.IsPlain()) return "covariance sigma^2 (J'J)^-1, residuals taken as independent";
+  return "inverse observed information of the parameters and sigma, readings taken as independent";
+}
+
+/// Student's t and likelihoods for large samples alike: as if the F parameters had been counted.
+double SmallSampleFactor(const NoiseModel& noise, double samples, double free) {
+  return noise.IsPlain() ? 1.0 : samples / std::max(samples - free, 1.0);
+}
+
+}  // namespace
+
+std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+  Optimum optimum;
+  Eigen::MatrixXd sums;
+  if (!solution.usable || !cost.Sums(solution.parameters, &sums)) return std::nullopt;
+  const Index size = sums.rows() - 1;
+  optimum.information = sums.topLeftCorner(size, size);
+  optimum.gradient = sums.col(size).head(size);
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (problem.solve.fixed[i]) continue;
+    const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
+    const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
+    (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
+  }
+  optimum.inverse = InvertInformation(optimum.information, optimum.free);
+  return optimum;
+}
+
+double RemainingShift(const Optimum& optimum) {
+  const Eigen::VectorXd gradient = optimum.gradient(optimum.free);
+  return std::sqrt(gradient.dot(optimum.inverse.matrix * gradient));
+}
+
+Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                     const Optimum& optimum, const Autocorrelation& correlation) {
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const auto free = static_cast<double>(optimum.free.size());
+  const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
+  Errors errors;
+  errors.effective_samples = samples / std::max(correlation.VarianceInflation(), 1.0);
+  errors.freedom = std::max(errors.effective_samples - free, 1.0);
+  errors.method = MethodOf(solution.noise, correlation);
+  errors.covariance = optimum.inverse.matrix;
+  if (solution.noise.IsPlain()) errors.sigma = solution.noise.sigma / std::sqrt(2 * std::max(samples - free, 1.0));
+  if ((solution.noise.IsPlain() && white) || optimum.free.empty()) return errors;
+  const SampleTerms terms = TermsOf(problem, solution);
+  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum.free);
+  if (!solution.noise.IsPlain()) SetLikelihoodErrors(cost, solution, optimum, terms, jacobian, errors);
+  if (!white || solution.noise.IsRobust()) {
+    errors.covariance = Sandwich(cost, problem, solution, optimum, terms, jacobian, correlation);
+  }
+  errors.covariance *= SmallSampleFactor(solution.noise, samples, free);
+  return errors;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <boost/math/distributions/students_t.hpp>
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The likelihood along one parameter, the others following.
+class Profile {
+ public:
+  Profile(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution, Optimum optimum,
+          const Autocorrelation& correlation, int k)
+      : cost_(cost), problem_(problem), solution_(solution), optimum_(std::move(optimum)), k_(k) {
+    if (std::ranges::find(optimum_.free, k) == optimum_.free.end()) {
+      optimum_.free.push_back(k);
+      optimum_.inverse = InvertInformation(optimum_.information, optimum_.free);
+    }
+    if (!optimum_.inverse.identifiable) return;
+    const Index row = std::ranges::find(optimum_.free, k) - optimum_.free.begin();
+    const Errors errors = ComputeErrors(problem, cost, solution, optimum_, correlation);
+    const double t = boost::math::quantile(boost::math::students_t(errors.freedom), 0.975);
+    const double naive = optimum_.inverse.matrix(row, row);
+    length_ = t * std::sqrt(errors.covariance(row, row));
+    threshold_ = length_ * length_ / naive;
+    direction_ = optimum_.inverse.matrix.col(row) / naive;
+  }
+
+  bool is_defined() const { return threshold_ > 0 && std::isfinite(threshold_); }
+
+  /// How far the likelihood reaches on a side (-1 or 1), or nothing.
+  std::optional<double> Reach(double side) {
+    const auto index = static_cast<std::size_t>(k_);
+    const double bound = side < 0 ? problem_.solve.lower[index] : problem_.solve.upper[index];
+    const double farthest = std::min(std::abs(bound - At()), kFarthest * length_);
+    if (farthest == 0) return 0;
+    return Find(side, farthest);
+  }
+
+  double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
+
+ private:
+  static constexpr double kFarthest = 100;
+
+  /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
+  double RootAt(double distance, double side) {
+    SolveOptions options = problem_.solve;
+    options.fixed[static_cast<std::size_t>(k_)] = true;
+    std::vector<double> start = solution_.parameters;
+    for (std::size_t j = 0; j < optimum_.free.size(); ++j) {
+      const auto i = static_cast<std::size_t>(optimum_.free[j]);
+      const double moved = start[i] + side * distance * direction_[static_cast<Index>(j)];
+      start[i] = std::clamp(moved, options.lower[i], options.upper[i]);
+    }
+    start[static_cast<std::size_t>(k_)] = At() + side * distance;
+    const Solution other = Solve(cost_, start, options);
+    if (!other.usable) return kUnbounded;
+    return std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
+  }
+
+  /// Where the root is 1, by regula falsi between points on both sides; nothing when it stays below.
+  std::optional<double> Find(double side, double farthest) {
+    constexpr int kMostSolves = 25;
+    constexpr double kAccuracy = 0.01;
+    constexpr double kLongestStretch = 4;
+    double inside = 0;
+    double root_inside = 0;
+    double outside = kUnbounded;
+    double root_outside = kUnbounded;
+    double distance = std::min(length_, farthest);
+    for (int solve = 0; solve < kMostSolves; ++solve) {
+      const double root = RootAt(distance, side);
+      if (std::abs(root - 1) < kAccuracy) return distance;
+      if (root < 1) {
+        if (distance == farthest) return std::nullopt;
+        inside = distance;
+        root_inside = root;
+      } else {
+        outside = distance;
+        root_outside = root;
+      }
+      distance = Next(inside, root_inside, outside, root_outside, kLongestStretch);
+      distance = std::min(distance, farthest);
+    }
+    return distance;
+  }
+
+  static double Next(double inside, double root_inside, double outside, double root_outside, double longest_stretch) {
+    if (!std::isfinite(outside)) return inside * std::min(1 / std::max(root_inside, 1e-3), longest_stretch);
+    if (!std::isfinite(root_outside)) return 0.5 * (inside + outside);
+    const double share = (1 - root_inside) / (root_outside - root_inside);
+    return inside + std::clamp(share, 0.05, 0.95) * (outside - inside);
+  }
+
+  TrajectoryCost& cost_;
+  const FitProblem& problem_;
+  const Solution& solution_;
+  Optimum optimum_;
+  int k_;
+  double length_ = 0;          // of half the interval, were the likelihood a parabola
+  double threshold_ = 0;       // of the deviance's rise
+  Eigen::VectorXd direction_;  // how the free parameters follow
+};
+
+}  // namespace
+
+ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
+                                 const Optimum& optimum, const Autocorrelation& correlation, int k) {
+  const auto index = static_cast<std::size_t>(k);
+  Profile profile(cost, problem, solution, optimum, correlation, k);
+  ProfileInterval interval;
+  if (!profile.is_defined()) {
+    interval.open = "the recording does not determine it beside the others";
+    return interval;
+  }
+  const double lower = problem.solve.lower[index];
+  const double upper = problem.solve.upper[index];
+  const std::optional<double> down = profile.Reach(-1);
+  const std::optional<double> up = profile.Reach(1);
+  if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
+  if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
+  if (!interval.lower || !interval.upper) {
+    interval.open = "the likelihood does not fall far enough on that side, however far out";
+  }
+  return interval;
+}
+
+}  // namespace pendulum
