@@ -106,9 +106,14 @@ Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, con
   const Replicas replicas(problem, options, solution, quantile_residuals, correlation);
   std::vector<std::vector<double>> estimates(kBootstrapFits);
   std::atomic<int> next = 0;
+  constexpr int kReports = 10;
   const auto work = [&](bool reports) {
+    int said = 0;
     for (int i = next++; i < kBootstrapFits; i = next++) {
-      if (reports && options.progress) options.progress(i, kBootstrapFits);
+      if (reports && options.progress && i * kReports / kBootstrapFits > said) {
+        said = i * kReports / kBootstrapFits;
+        options.progress(i, kBootstrapFits);
+      }
       estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
     }
   };

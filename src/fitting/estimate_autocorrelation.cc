@@ -74,9 +74,13 @@ Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& res
   const auto samples = static_cast<double>(residual.size());
   const auto stretches = static_cast<double>(clock.stretches.size());
   const std::vector<double> reflection = ReflectionCoefficients(residual, clock.stretches, LongestOrder(samples));
+  constexpr double kRounding = 1e-8;  // of the variance left to innovations: smooth curves are no noise
   Autoregression best;
   double criterion = 0;
+  double left = 1;
   for (std::size_t order = 1; order <= reflection.size(); ++order) {
+    left *= 1 - reflection[order - 1] * reflection[order - 1];
+    if (left < kRounding) break;
     // The samples at a stretch's begin are predicted from fewer than p others: `order` of them without this one.
     const double predicted = samples - stretches * static_cast<double>(order);
     criterion += predicted * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);

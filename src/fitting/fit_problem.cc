@@ -161,6 +161,18 @@ Recording TrueTime(Recording recording) {
   return recording;
 }
 
+/// The recording with each value the median of five around it, so that lone outliers begin no motion.
+Recording WithoutOutliers(Recording recording) {
+  const Eigen::VectorXd value = recording.value;
+  for (Eigen::Index i = 2; i + 2 < value.size(); ++i) {
+    std::array<double, 5> five{};
+    std::copy_n(value.begin() + i - 2, five.size(), five.begin());
+    std::nth_element(five.begin(), five.begin() + 2, five.end());
+    recording.value[i] = five[2];
+  }
+  return recording;
+}
+
 tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   return Error(StatusCode::kDataLoss,
@@ -212,7 +224,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   std::optional<Recording> scaled;
   if (recording.clock_scale != 1) scaled = TrueTime(recording);
   const Recording& timed = scaled ? *scaled : recording;
-  const Result<StartValues> start = EstimateStartValues(timed, *model, options.start);
+  const Result<StartValues> start =
+      EstimateStartValues(options.loss == Loss::kNone ? timed : WithoutOutliers(timed), *model, options.start);
   if (!start)
     return Error(start.error().code,
                  recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);

@@ -78,27 +78,35 @@ void SetLikelihoodErrors(const TrajectoryCost& cost, const Solution& solution, c
   errors.sigma = solution.noise.sigma * std::sqrt(inverse(size, size));
 }
 
-/// Roots of what the samples are expected to inform, times their derivatives: the variance of their scores.
-Eigen::MatrixXd Weighted(const NoiseModel& noise, const SampleTerms& terms, const Eigen::MatrixXd& jacobian) {
-  if (noise.IsRobust()) return std::sqrt(terms.score.squaredNorm() / static_cast<double>(jacobian.rows())) * jacobian;
-  return terms.information.cwiseMax(0).cwiseSqrt().asDiagonal() * jacobian;
+/// The covariance of the scores, Σ_ij ∇m_i cov(s_i, s_j) ∇m_j'. Of different samples it is that of their quantile
+/// residuals over σ²: what randomizes these within a level is independent. Of one sample it is its information.
+Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
+                       const Eigen::MatrixXd& jacobian, const Autocorrelation& correlation) {
+  const Eigen::MatrixXd correlated = CorrelatedSum(correlation, AsVector(problem.data.time), jacobian);
+  if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(jacobian.rows()) * correlated;
+  const double variance = noise.sigma * noise.sigma;
+  const Eigen::VectorXd lost = 1 - variance * terms.information.array();
+  return (correlated - jacobian.transpose() * lost.asDiagonal() * jacobian) / variance;
 }
 
-/// A^-1 B A^-1. A robust family's A is that of the mean information, for its B is that of the mean square score (P. J.
-/// Huber, Robust Statistics, Wiley 1981, section 7.6).
-Eigen::MatrixXd Sandwich(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
-                         const Optimum& optimum, const SampleTerms& terms, const Eigen::MatrixXd& jacobian,
-                         const Autocorrelation& correlation) {
+/// A^-1 B A^-1, and what it says of the residuals.
+struct Sandwich {
+  Eigen::MatrixXd covariance;
+  double lost = 0;  // tr(A^-1 B): how much of N variances the parameters took from the residuals
+};
+
+/// A robust family's A is that of the mean information, for its B is that of the mean square score (P. J. Huber, Robust
+/// Statistics, Wiley 1981, section 7.6).
+Sandwich MakeSandwich(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
+                      const Optimum& optimum, const SampleTerms& terms, const Eigen::MatrixXd& jacobian,
+                      const Autocorrelation& correlation) {
   const Eigen::MatrixXd prior = PriorInformation(cost, optimum.free);
-  const Eigen::MatrixXd weighted = Weighted(solution.noise, terms, jacobian);
   Eigen::MatrixXd bread = optimum.inverse.matrix;
   if (solution.noise.IsRobust()) {
     bread = Inverse(terms.information.mean() * jacobian.transpose() * jacobian + prior);
   }
-  const Eigen::MatrixXd meat = correlation.kind == Autocorrelation::Kind::kWhite
-                                   ? Eigen::MatrixXd(weighted.transpose() * weighted)
-                                   : CorrelatedSum(correlation, AsVector(problem.data.time), weighted);
-  return bread * (meat + prior) * bread;
+  const Eigen::MatrixXd meat = MeatOf(problem, solution.noise, terms, jacobian, correlation);
+  return {bread * (meat + prior) * bread, (bread * meat).trace()};
 }
 
 std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation) {
@@ -109,11 +117,6 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
   if (noise.IsRobust()) return "sandwich of the robust score, residuals taken as independent";
   if (noise.IsPlain()) return "covariance sigma^2 (J'J)^-1, residuals taken as independent";
   return "inverse observed information of the parameters and sigma, readings taken as independent";
-}
-
-/// Student's t and likelihoods for large samples alike: as if the F parameters had been counted.
-double SmallSampleFactor(const NoiseModel& noise, double samples, double free) {
-  return noise.IsPlain() ? 1.0 : samples / std::max(samples - free, 1.0);
 }
 
 }  // namespace
@@ -155,10 +158,13 @@ Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, cons
   const SampleTerms terms = TermsOf(problem, solution);
   const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum.free);
   if (!solution.noise.IsPlain()) SetLikelihoodErrors(cost, solution, optimum, terms, jacobian, errors);
+  const double counted = solution.noise.IsPlain() ? free : 0;  // of the parameters, in σ
   if (!white || solution.noise.IsRobust()) {
-    errors.covariance = Sandwich(cost, problem, solution, optimum, terms, jacobian, correlation);
+    const Sandwich sandwich = MakeSandwich(cost, problem, solution, optimum, terms, jacobian, correlation);
+    errors.covariance = sandwich.covariance * (samples - counted) / std::max(samples - sandwich.lost, 1.0);
+  } else {
+    errors.covariance *= samples / std::max(samples - free, 1.0);
   }
-  errors.covariance *= SmallSampleFactor(solution.noise, samples, free);
   return errors;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "metadata.h"
 #include "pendulum/base/format.h"
 #include "pendulum/recording/recording.h"
+#include "pendulum/recording/resolution.h"
 
 /// From the numbers of a file's value column to what a Recording holds.
 namespace pendulum::csv {
@@ -43,24 +45,54 @@ inline bool AllWhole(const Eigen::VectorXd& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
 }
 
-/// Values that a unit alone turns into SI, or counts and volts as they are.
-inline void ScaleValues(const Unit& unit, const Metadata& metadata, Recording& recording) {
-  if (unit.ToSi(1) != 1) {
-    for (double& value : recording.value) value = unit.ToSi(value);
+/// The spacing of the values and who tells it: the user, the file, or the values themselves; whole counts are levels.
+inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
+                          Recording& recording) {
+  if (options.resolution || metadata.resolution) {
+    recording.resolution = options.resolution ? *options.resolution : *metadata.resolution;
+    recording.resolution_source = options.resolution ? "given" : "file";
+    return;
   }
-  recording.resolution = unit.ToSi(metadata.resolution.value_or(0));
-  if (metadata.range) {
-    recording.range = SensorRange{unit.ToSi(metadata.range->low), unit.ToSi(metadata.range->high)};
+  recording.resolution = FindResolution(recording.value);
+  if (recording.resolution == 0 && unit.name == "counts" && AllWhole(recording.value)) recording.resolution = 1;
+  recording.resolution_source = "found";
+}
+
+/// The range of a converter whose counts reach an end of it again and again.
+inline std::optional<SensorRange> ConverterRange(const Eigen::VectorXd& counts) {
+  constexpr std::array kFullScales = {1023.0, 4095.0, 16383.0, 65535.0};
+  constexpr Eigen::Index kOften = 2;
+  const double largest = counts.maxCoeff();
+  const auto full = std::ranges::find_if(kFullScales, [&](double scale) { return largest <= scale; });
+  if (full == kFullScales.end() || counts.minCoeff() < 0 || !AllWhole(counts)) return std::nullopt;
+  const bool reached = (counts.array() == 0).count() >= kOften || (counts.array() == *full).count() >= kOften;
+  return reached ? std::optional(SensorRange{0, *full}) : std::nullopt;
+}
+
+inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadata& metadata, Recording& recording) {
+  if (options.range) {
+    recording.range = options.range;
+  } else if (metadata.range) {
+    recording.range = SensorRange{metadata.range->low, metadata.range->high};
+  } else if (unit.name == "counts") {
+    recording.range = ConverterRange(recording.value);
   }
 }
 
+/// Values that a unit alone turns into SI, or counts and volts as they are.
+inline void ScaleValues(const Unit& unit, Recording& recording) {
+  if (unit.ToSi(1) == 1) return;
+  for (double& value : recording.value) value = unit.ToSi(value);
+  recording.resolution = unit.ToSi(recording.resolution);
+  if (recording.range) recording.range = SensorRange{unit.ToSi(recording.range->low), unit.ToSi(recording.range->high)};
+}
+
 /// Counts or volts through their calibration. The spacing of readings is that at the middle of the data.
-inline void Calibrate(const Calibration& calibration, const Metadata& metadata, Recording& recording) {
+inline void Calibrate(const Calibration& calibration, Recording& recording) {
   const auto [low, high] = std::minmax_element(recording.value.begin(), recording.value.end());
   const double slope = calibration.Slope(*low / 2 + *high / 2);
   recording.resolution *= std::abs(slope);
-  std::optional<SensorRange> ends = calibration.input_range;
-  if (metadata.range) ends = SensorRange{metadata.range->low, metadata.range->high};
+  const std::optional<SensorRange> ends = recording.range ? recording.range : calibration.input_range;
   recording.range.reset();
   if (ends) {
     const auto [first, last] = std::minmax({calibration.Angle(ends->low), calibration.Angle(ends->high)});
@@ -76,11 +108,11 @@ inline void SetValues(const Column& column, const ReadOptions& options, const Me
   const Unit& unit = *column.unit;
   recording.quantity = unit.kind == Kind::kRate ? Quantity::kRate : Quantity::kAngle;
   recording.unit = unit.name;
-  const bool is_whole = unit.name == "counts" && AllWhole(recording.value);
-  ScaleValues(unit, metadata, recording);
-  if (is_whole && !metadata.resolution) recording.resolution = 1;
+  SetResolution(unit, options, metadata, recording);
+  SetRange(unit, options, metadata, recording);
+  ScaleValues(unit, recording);
   const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
-  if (unit.kind == Kind::kRaw && calibration) Calibrate(*calibration, metadata, recording);
+  if (unit.kind == Kind::kRaw && calibration) Calibrate(*calibration, recording);
 }
 
 }  // namespace pendulum::csv

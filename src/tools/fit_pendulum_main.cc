@@ -52,6 +52,17 @@ DEFINE_string(fix, "", "Parameters to hold, name=value,... in SI (rad, s; torque
 DEFINE_string(init, "", "Where parameters begin, name=value,... as in --fix; default where the data say.");
 DEFINE_string(bounds, "", "Bounds of parameters, name=low:high,... as in --fix, either may be left out; default none.");
 DEFINE_string(prior, "", "What is known beforehand, name=mean:std_dev,... as in --fix; default nothing.");
+DEFINE_string(resolution, "",
+              "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.");
+DEFINE_string(range, "", "What the sensor can show, low,high in the file's unit; readings there are censored.");
+DEFINE_string(noise, "auto",
+              "Noise of the readings: gaussian, quantized (rounded to levels) or auto (quantized where rounding "
+              "matters); default auto.");
+DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: huber, student or none; default none.");
+DEFINE_string(interval, "auto",
+              "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
+DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
+DEFINE_string(threads, "", "Threads of the bootstrap, 0 for all cores; the result does not depend on it; default 0.");
 DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
 
@@ -91,6 +102,13 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.value_column = FLAGS_value_column;
   flags.unit = FLAGS_unit;
   flags.sample_rate_hz = FLAGS_sample_rate_hz;
+  flags.resolution = FLAGS_resolution;
+  flags.range = FLAGS_range;
+  flags.noise = FLAGS_noise;
+  flags.loss = FLAGS_loss;
+  flags.interval = FLAGS_interval;
+  flags.seed = FLAGS_seed;
+  flags.threads = FLAGS_threads;
   flags.positional = positional;
   return flags;
 }
@@ -184,10 +202,16 @@ tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path,
                                 status.message.substr(skip));
 }
 
+/// Now and then how far the bootstrap is.
+void SayProgress(int done, int total) {
+  Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
+}
+
 /// Fits the chosen swings of one recording one by one and appends their runs.
 void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwings one, bool among_others,
             std::vector<Result<Run>>& runs) {
   FitOptions fit_options = options.fit;
+  fit_options.progress = SayProgress;
   fit_options.rig = one.common.rig;
   const bool several = one.swings.chosen.size() > 1;
   for (const int release : one.swings.chosen) {

@@ -62,6 +62,70 @@ Result<StartChoice> ParseStart(const std::string& start) {
   return Wrong("--start is '" + start + "'; it must be auto, release or moving");
 }
 
+/// A word and what it stands for.
+template <typename Meaning>
+struct Word {
+  std::string_view word;
+  Meaning meaning;
+};
+
+template <typename Meaning, std::size_t kWords>
+Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
+                          const std::array<Word<Meaning>, kWords>& words) {
+  std::vector<std::string_view> names;
+  for (const auto& [word, meaning] : words) {
+    if (word == value) return meaning;
+    names.push_back(word);
+  }
+  return Wrong(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
+}
+
+constexpr std::array kNoises = {Word{"auto", NoiseChoice::kAuto}, Word{"gaussian", NoiseChoice::kGaussian},
+                                Word{"quantized", NoiseChoice::kQuantized}};
+constexpr std::array kLosses = {Word{"none", Loss::kNone}, Word{"huber", Loss::kHuber},
+                                Word{"student", Loss::kStudent}};
+constexpr std::array kIntervals = {Word{"auto", IntervalMethod::kAuto}, Word{"covariance", IntervalMethod::kCovariance},
+                                   Word{"profile", IntervalMethod::kProfile},
+                                   Word{"bootstrap", IntervalMethod::kBootstrap}};
+
+/// A whole number that a flag may give; `least` is what it must be at least.
+Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
+  if (value.empty()) return {};
+  constexpr double kLargest = 1e15;
+  const std::string meaning = "a whole number, at least " + NumberText(least);
+  const auto parsed = ParseNumber(flag, value, meaning);
+  if (!parsed) return tl::unexpected(parsed.error());
+  if (*parsed < least || *parsed != std::floor(*parsed) || *parsed > kLargest) {
+    return Wrong(std::string(flag) + " is '" + value + "'; it must be " + meaning);
+  }
+  number = *parsed;
+  return {};
+}
+
+/// How the noise is taken, and where intervals come from.
+Result<void> ParseNoise(const FitPendulumFlags& flags, FitOptions& options) {
+  const auto noise = ParseWord("--noise", flags.noise, kNoises);
+  if (!noise) return tl::unexpected(noise.error());
+  const auto loss = ParseWord("--loss", flags.loss, kLosses);
+  if (!loss) return tl::unexpected(loss.error());
+  const auto interval = ParseWord("--interval", flags.interval, kIntervals);
+  if (!interval) return tl::unexpected(interval.error());
+  if (*loss != Loss::kNone && *noise != NoiseChoice::kAuto) {
+    return Wrong("--loss " + flags.loss + " and --noise " + flags.noise + " exclude each other; give one of them");
+  }
+  auto seed = static_cast<double>(options.seed);
+  double threads = options.threads;
+  if (auto parsed = ParseWhole("--seed", flags.seed, 0, seed); !parsed) return parsed;
+  if (auto parsed = ParseWhole("--threads", flags.threads, 0, threads); !parsed) return parsed;
+  constexpr double kMostThreads = 1024;
+  options.noise = *noise;
+  options.loss = *loss;
+  options.interval = *interval;
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.threads = static_cast<int>(std::min(threads, kMostThreads));
+  return {};
+}
+
 /// Every parameter that a flag may name, whatever the start and the sensor turn out to be.
 std::vector<ParameterInfo> NameableParameters(const MotionModel& model) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);
@@ -125,6 +189,7 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
   options.initial = *std::move(initial);
   options.bounds = *std::move(bounds);
   options.priors = *std::move(priors);
+  if (auto parsed = ParseNoise(flags, options); !parsed) return parsed;
   return CheckContradictions(options);
 }
 
@@ -148,8 +213,30 @@ Result<void> CheckReadFlags(const FitPendulumFlags& flags) {
   return {};
 }
 
+/// What the sensor can show, in the unit of the file.
+Result<void> ParseSensor(const FitPendulumFlags& flags, ReadOptions& options) {
+  if (!flags.resolution.empty()) {
+    const auto resolution = ParseNumber("--resolution", flags.resolution, "a number, 0 or more, in the file's unit");
+    if (!resolution) return tl::unexpected(resolution.error());
+    if (*resolution < 0) return Wrong("--resolution is '" + flags.resolution + "'; it must be 0 or more");
+    options.resolution = *resolution;
+  }
+  if (flags.range.empty()) return {};
+  const std::string meaning = "two increasing numbers, low,high, in the file's unit";
+  const std::vector<std::string> ends = Split(flags.range, ',');
+  if (ends.size() != 2) return Wrong("--range is '" + flags.range + "'; it must be " + meaning);
+  const auto low = ParseNumber("--range", ends[0], meaning);
+  if (!low) return tl::unexpected(low.error());
+  const auto high = ParseNumber("--range", ends[1], meaning);
+  if (!high) return tl::unexpected(high.error());
+  if (*low >= *high) return Wrong("--range is '" + flags.range + "'; it must be " + meaning);
+  options.range = SensorRange{*low, *high};
+  return {};
+}
+
 Result<void> ParseReadOptions(const FitPendulumFlags& flags, ReadOptions& options) {
   if (auto checked = CheckReadFlags(flags); !checked) return checked;
+  if (auto parsed = ParseSensor(flags, options); !parsed) return parsed;
   options.time_column = flags.time_column;
   options.value_column = flags.value_column;
   options.unit = flags.unit;

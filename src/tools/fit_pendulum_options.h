@@ -32,6 +32,13 @@ struct FitPendulumFlags {
   std::string value_column;
   std::string unit;
   std::string sample_rate_hz;
+  std::string resolution;
+  std::string range;
+  std::string noise = "auto";
+  std::string loss = "none";
+  std::string interval = "auto";
+  std::string seed;
+  std::string threads;
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
 };
 

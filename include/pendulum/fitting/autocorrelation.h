@@ -38,7 +38,7 @@ inline constexpr double kGapIntervals = 1.5;
 /// The meat of a sandwich covariance, W' R W with R the N x N correlations of z at these times: the covariance of W'z.
 ///
 /// Written as Σ_k g_k g_k', where g_k is what the innovation e_k moves in W'z: the transpose of the process's filter,
-/// run backwards in time (MODEL.md, correlated residuals), so R is never formed and the sum is never indefinite. A gap
+/// run backwards in time, so R is never formed and the sum is never indefinite. A gap
 /// in an even clock is so many samples that were not taken: rounded to whole intervals, their weights are 0.
 ///
 /// time   N x 1, s, increasing.     weights   N x K.     Returns K x K, in the unit of weights squared.

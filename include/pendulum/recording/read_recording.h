@@ -19,6 +19,8 @@ struct ReadOptions {
   std::string unit;           ///< Of the values: rad, deg, rad_s, deg_s, counts or volts; empty: the header's.
   double sample_rate_hz = 0;  ///< Of a file without times, Hz; 0: its times, or its `# sample_rate_hz`.
   std::optional<Calibration> calibration;  ///< Of counts or volts; none: the file's own, if it has one.
+  std::optional<double> resolution;        ///< Spacing of the values, in the file's unit; 0: none; absent: the file's.
+  std::optional<SensorRange> range;        ///< What the sensor can show, in the file's unit; absent: the file's own.
 };
 
 /// Reads a recording from a CSV file; "-" is standard input. Cost: one pass, 16 bytes a row and one block.
@@ -30,7 +32,8 @@ struct ReadOptions {
 ///
 /// `# key: value` is metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows
 /// without time), `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines
-/// with # are comments. Whole counts have a resolution of 1. Warnings: those of RepairClock; incomplete_row, host_time,
+/// with # are comments. A resolution that nobody tells is looked for in the values (FindResolution), and counts that end
+/// at 0 or the full scale of 10, 12, 14 or 16 bits have that range. Warnings: those of RepairClock; incomplete_row, host_time,
 /// time_unit_assumed, lost_samples; metadata_not_applied, a calibration in a file of angles.
 /// kNotFound: no such file. kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the
 /// options contradict the file. kFailedPrecondition: fewer than kMinimumSamples rows. Messages begin "path:line:".

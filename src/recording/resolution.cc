@@ -1,0 +1,1 @@
+#include "pendulum/recording/resolution.h"
