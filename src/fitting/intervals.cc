@@ -158,7 +158,8 @@ bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) 
   const bool quiet = noise.family == NoiseFamily::kQuantized && noise.sigma < kQuietSigma * noise.resolution;
   const IntervalMethod asked = fitted.options.interval;
   const bool may = asked == IntervalMethod::kAuto || asked == IntervalMethod::kCovariance;
-  if (!quiet || !may || fitted.optimum.free.empty() || !fitted.optimum.at_bound.empty()) return false;
+  // Quantiles leave out a bound that may be the truth; profiles do not.
+  if (!quiet || !may || fitted.optimum.free.empty() || NearBound(fitted, errors)) return false;
   const Result<Posterior> posterior = SamplePosterior(LinearizedOf(fitted), fitted.options.seed);
   if (!posterior) return false;
   MoveTo(*posterior, fitted, report);

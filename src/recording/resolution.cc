@@ -1,1 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/resolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Levels = std::vector<double>;  // distinct readings, increasing
+
+constexpr std::size_t kFewestLevels = 5;
+constexpr double kLargestSpread = 0.12;  // rms distance to the levels, in steps; 0.29 by chance
+
+Levels SortedSample(const Eigen::VectorXd& value) {
+  constexpr Index kMost = 20000;
+  const Index count = std::min(value.size(), kMost);
+  Levels sample;
+  for (Index i = 0; i < count; ++i) sample.push_back(value[i * value.size() / count]);
+  std::ranges::sort(sample);
+  return sample;
+}
+
+/// Distinct readings; without those met once where nearly all are met more often: these stand on no level.
+Levels DistinctReadings(const Levels& sorted) {
+  constexpr double kRounding = 1e-12;  // of a conversion of units
+  constexpr double kNearlyAll = 0.9;
+  const double same = kRounding * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
+  Levels all;
+  Levels repeated;
+  std::size_t repeats = 0;
+  for (std::size_t i = 0; i < sorted.size();) {
+    std::size_t end = i + 1;
+    while (end < sorted.size() && sorted[end] - sorted[end - 1] <= same) ++end;
+    all.push_back(sorted[i]);
+    if (end - i > 1) repeated.push_back(sorted[i]);
+    repeats += end - i > 1 ? end - i : 0;
+    i = end;
+  }
+  const bool nearly_all = static_cast<double>(repeats) > kNearlyAll * static_cast<double>(sorted.size());
+  return nearly_all ? repeated : all;
+}
+
+/// Small gaps between neighbours and their parts: the step is one of them, nearly, if any two levels are close.
+Levels Candidates(const Levels& levels) {
+  Levels gaps;
+  for (std::size_t i = 1; i < levels.size(); ++i) gaps.push_back(levels[i] - levels[i - 1]);
+  std::ranges::sort(gaps);
+  Levels candidates;
+  for (const double share : {0.0, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5}) {
+    const double gap = gaps[static_cast<std::size_t>(share * static_cast<double>(gaps.size() - 1))];
+    for (const double part : {1, 2, 3, 4, 5, 6}) candidates.push_back(gap / part);
+  }
+  std::ranges::sort(candidates, std::greater<>());
+  return candidates;
+}
+
+/// Improves a step by the distances between levels within a reach of each other; none if these are no multiples of it.
+std::optional<double> Improved(const Levels& levels, double step, double reach) {
+  constexpr double kNear = 0.25;
+  constexpr double kMostFar = 0.3;  // of the pairs; a half by chance
+  constexpr double kOutliers = 2;
+  // Without the last ones, or all below would be paired with what may be outliers.
+  const double highest = levels[levels.size() - 1 - levels.size() / 50];
+  double moment = 0;
+  double inertia = 0;
+  double far = 0;
+  double pairs = 0;
+  for (std::size_t i = 0, j = 0; i < levels.size(); ++i) {
+    if (highest - levels[i] <= reach) break;
+    while (levels[j + 1] - levels[i] <= reach) ++j;
+    if (j <= i) {
+      j = i;
+      continue;
+    }
+    const double steps = (levels[j] - levels[i]) / step;
+    const double whole = std::round(steps);
+    ++pairs;
+    if (std::abs(steps - whole) > kNear || whole == 0) {
+      ++far;
+      continue;
+    }
+    moment += whole * (levels[j] - levels[i]);
+    inertia += whole * whole;
+  }
+  if (inertia == 0 || far > kMostFar * pairs + kOutliers) return std::nullopt;
+  return moment / inertia;
+}
+
+/// A step with offset by least squares, and the rms distance of all levels to it.
+struct Comb {
+  double step = 0;
+  double spread = 0;  ///< In steps.
+};
+
+/// Near the middle, where the phases of all levels agree best.
+double CommonOffset(const Levels& levels, double step) {
+  const double middle = levels[levels.size() / 2];
+  std::complex<double> sum = 0;
+  for (const double level : levels) sum += std::polar(1.0, 2 * kPi * (level - middle) / step);
+  return middle + step * std::arg(sum) / (2 * kPi);
+}
+
+Comb FitComb(const Levels& levels, double step) {
+  constexpr double kNear = 0.25;
+  double offset = CommonOffset(levels, step);
+  Comb comb{step, 0};
+  for (int pass = 0; pass < 3; ++pass) {
+    double count = 0, k = 0, v = 0, kk = 0, kv = 0, square = 0;
+    for (const double level : levels) {
+      const double steps = (level - offset) / comb.step;
+      const double whole = std::round(steps);
+      square += std::pow(steps - whole, 2);
+      if (std::abs(steps - whole) > kNear) continue;
+      const double distance = level - offset;
+      count += 1, k += whole, v += distance, kk += whole * whole, kv += whole * distance;
+    }
+    comb.spread = std::sqrt(square / static_cast<double>(levels.size()));
+    const double determinant = count * kk - k * k;
+    if (determinant <= 0 || pass == 2) break;
+    const double slope = (count * kv - k * v) / determinant;
+    offset += (v - slope * k) / count;
+    comb.step = slope;
+  }
+  return comb;
+}
+
+/// Improves a step over distances of twice the reach each time, so that every one can be told from its neighbours.
+std::optional<Comb> Refined(const Levels& levels, double step) {
+  const double span = levels.back() - levels.front();
+  for (double reach = 1.5 * step; reach < 0.6 * span; reach *= 2) {
+    const std::optional<double> improved = Improved(levels, step, reach);
+    if (!improved) return std::nullopt;
+    step = *improved;
+  }
+  return FitComb(levels, step);
+}
+
+/// Whether levels on a comb are beyond chance.
+bool IsBeyondChance(const Levels& levels, const Comb& comb) {
+  constexpr double kUniform = 0.2420;  // 1/sqrt(2 pi e): spread of the normal density with the entropy of a uniform one
+  constexpr double kLeastSpread = 1e-3;
+  constexpr double kEvidence = 16;
+  const double fitted = 2;  // step and offset
+  const double gain = std::log(kUniform / std::max(comb.spread, kLeastSpread));
+  return comb.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
+}
+
+/// Even spacing without gaps and without repeats.
+bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
+  constexpr double kNearlyAll = 0.9;
+  const double possible = (levels.back() - levels.front()) / comb.step + 1;
+  const auto met = static_cast<double>(levels.size());
+  return met > kNearlyAll * static_cast<double>(readings) && met > kNearlyAll * possible;
+}
+
+}  // namespace
+
+double FindResolution(const Eigen::VectorXd& value) {
+  constexpr double kFinest = 1e-6;
+  if (value.size() < static_cast<Index>(kFewestLevels)) return 0;
+  const Levels sorted = SortedSample(value);
+  const Levels levels = DistinctReadings(sorted);
+  if (levels.size() < kFewestLevels) return 0;
+  const double span = levels.back() - levels.front();
+  for (const double candidate : Candidates(levels)) {
+    if (candidate < kFinest * span) break;
+    const std::optional<Comb> comb = Refined(levels, candidate);
+    if (!comb || !IsBeyondChance(levels, *comb)) continue;
+    return IsRamp(levels, *comb, sorted.size()) ? 0 : comb->step;
+  }
+  return 0;
+}
+
+}  // namespace pendulum
