@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/burg.h"
+#include "burg.h"
 
 #include <algorithm>
 #include <cmath>

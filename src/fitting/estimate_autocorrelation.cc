@@ -14,7 +14,7 @@
 #include <boost/math/tools/minima.hpp>
 
 #include "pendulum/base/median.h"
-#include "pendulum/fitting/burg.h"
+#include "burg.h"
 
 namespace pendulum {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/bootstrap.h"
+#include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/posterior.h"
 #include "pendulum/fitting/profile.h"
 
@@ -134,6 +135,17 @@ std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& opt
   return names;
 }
 
+/// Noise so small that no parabola describes the likelihood: the few samples near the edges of levels tell all.
+bool IsQuiet(const FittedModel& fitted) {
+  constexpr double kFewAtEdges = 500;
+  constexpr double kAtSmallest = 1.05;
+  const NoiseModel& noise = fitted.solution.noise;
+  if (noise.family != NoiseFamily::kQuantized) return false;
+  const double levels = noise.sigma / noise.resolution;
+  const auto samples = static_cast<double>(fitted.problem.data.time.size());
+  return levels < kAtSmallest * kSmallestSigma || (levels < kQuietSigma && samples * levels < kFewAtEdges);
+}
+
 /// The estimates are the posterior's means.
 void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
   for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
@@ -154,12 +166,11 @@ void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& re
 }  // namespace
 
 bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
-  const NoiseModel& noise = fitted.solution.noise;
-  const bool quiet = noise.family == NoiseFamily::kQuantized && noise.sigma < kQuietSigma * noise.resolution;
+  if (!IsQuiet(fitted)) return false;
   const IntervalMethod asked = fitted.options.interval;
   const bool may = asked == IntervalMethod::kAuto || asked == IntervalMethod::kCovariance;
   // Quantiles leave out a bound that may be the truth; profiles do not.
-  if (!quiet || !may || fitted.optimum.free.empty() || NearBound(fitted, errors)) return false;
+  if (!may || fitted.optimum.free.empty() || NearBound(fitted, errors)) return false;
   const Result<Posterior> posterior = SamplePosterior(LinearizedOf(fitted), fitted.options.seed);
   if (!posterior) return false;
   MoveTo(*posterior, fitted, report);

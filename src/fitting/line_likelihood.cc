@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/line_likelihood.h"
+#include "line_likelihood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@ namespace pendulum {
 namespace {
 
 constexpr double kCertain = 8.5;   // σ within the edge: the probability is 1 to rounding
-constexpr double kImprobable = 8;  // σ outside: seldom asked for
-constexpr double kCellsPerSigma = 6;
+constexpr double kImprobable = 6;  // σ outside: seldom asked for
+constexpr double kCellsPerSigma = 4;
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -19,7 +18,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/covariance.h"
-#include "pendulum/fitting/line_likelihood.h"
+#include "line_likelihood.h"
 
 namespace pendulum {
 namespace {
@@ -88,8 +87,8 @@ Result<Frame> FirstFrame(const LinearizedFit& fit) {
   const InformationInverse inverse = InvertInformation(information, all);
   if (!inverse.identifiable) {
     std::string names;
-    for (const int j : inverse.direction) names += " " + std::to_string(j);
-    return Error(StatusCode::kFailedPrecondition, "a combination of the parameters" + names +
+    for (const int j : inverse.direction) names.append(" ").append(std::to_string(j));
+    return Error(StatusCode::kFailedPrecondition, "some combination of the parameters" + names +
                                                       " leaves no trace in the readings; hold one of them fixed");
   }
   return Frame{Eigen::VectorXd::Zero(fit.lower.size()), inverse.matrix.llt().matrixL()};
@@ -135,8 +134,10 @@ Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDe
   return {stretch.start, log_here};
 }
 
-/// The draws of a while: R x (F + 1), δ and log σ (σ in units of the resolution).
+/// R x (F + 1): δ and σ, the latter in units of the resolution.
 using Draws = Eigen::MatrixXd;
+
+constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolution
 
 /// The Markov chain. Lengths of readings in units of the resolution.
 class Chain {
@@ -167,15 +168,13 @@ class Chain {
   LevelSamples whitened_;       // slopes by w
   LevelSamples active_;         // those of them that may leave their level within these:
   double most_distance_ = 1e9;  // of w from 0
-  double most_sigma_ = 2;
+  double most_sigma_ = kMostSigma;
   LineLikelihood likelihood_;
   Eigen::VectorXd w_;
   double log_sigma_;
   double log_ = 0;             // likelihood and prior of δ
   Eigen::VectorXd positions_;  // of the active samples
 };
-
-constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolution
 
 Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed)
     : fit_(fit), generator_(seed), samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
@@ -274,7 +273,7 @@ Draws Chain::Run(int rounds) {
   Draws draws(rounds, w_.size() + 1);
   for (Eigen::Index k = 0; k < rounds; ++k) {
     Round();
-    draws.row(k) << Delta().transpose(), log_sigma_;
+    draws.row(k) << Delta().transpose(), std::exp(log_sigma_);
   }
   return draws;
 }
@@ -291,8 +290,9 @@ void Chain::Whiten(const Draws& draws) {
   covariance.diagonal().array() += kAsDraws * scale;
   covariance /= static_cast<double>(draws.rows()) + kAsDraws;
   most_distance_ = 4 * std::sqrt(static_cast<double>(parameters));
-  most_sigma_ = 1.5 * std::exp(draws.col(parameters).maxCoeff());
-  const Eigen::MatrixXd root = frame_.root * covariance.llt().matrixL().toDenseMatrix();
+  most_sigma_ = 1.5 * draws.col(parameters).maxCoeff();
+  const Eigen::MatrixXd turn = covariance.llt().matrixL();
+  const Eigen::MatrixXd root = frame_.root * turn;
   EnterFrame({mean, root}, Delta());
 }
 
@@ -317,14 +317,12 @@ double EffectiveDraws(const Eigen::VectorXd& draws) {
 
 double LeastEffectiveDraws(const Draws& draws) {
   double least = kInfinity;
-  const Eigen::Index parameters = draws.cols() - 1;
-  for (Eigen::Index j = 0; j < parameters; ++j) least = std::min(least, EffectiveDraws(draws.col(j)));
-  return std::min(least, EffectiveDraws(draws.col(parameters).array().exp()));
+  for (const auto& column : draws.colwise()) least = std::min(least, EffectiveDraws(column));
+  return least;
 }
 
-/// Between order statistics, so that of n independent draws the next one is below it with probability p.
-double Quantile(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
+/// Between sorted values, so that of n independent draws the next one is below it with probability p.
+double Quantile(const std::vector<double>& values, double p) {
   const auto n = static_cast<double>(values.size());
   const double rank = std::clamp(p * (n + 1) - 1, 0.0, n - 1);
   const auto below = static_cast<std::size_t>(rank);
@@ -332,34 +330,51 @@ double Quantile(std::vector<double> values, double p) {
   return values[below] + (rank - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-Posterior Summarize(const Draws& draws, double resolution) {
+Posterior Summarize(Draws draws, double resolution) {
   const Eigen::Index parameters = draws.cols() - 1;
   const auto n = static_cast<double>(draws.rows());
+  draws.col(parameters) *= resolution;
+  const Eigen::VectorXd mean = draws.colwise().mean().transpose();
+  const Eigen::MatrixXd centred = draws.rowwise() - mean.transpose();
   Posterior posterior;
-  posterior.draws = static_cast<int>(draws.rows());
-  posterior.mean = draws.leftCols(parameters).colwise().mean().transpose();
-  const Eigen::MatrixXd centred = draws.leftCols(parameters).rowwise() - posterior.mean.transpose();
-  posterior.covariance = centred.transpose() * centred / (n - 1);
+  posterior.mean = mean.head(parameters);
+  posterior.covariance = centred.leftCols(parameters).transpose() * centred.leftCols(parameters) / (n - 1);
   posterior.lower95.resize(parameters);
   posterior.upper95.resize(parameters);
   for (Eigen::Index j = 0; j < parameters; ++j) {
-    const std::vector<double> values(draws.col(j).begin(), draws.col(j).end());
+    std::vector<double> values(draws.col(j).begin(), draws.col(j).end());
+    std::sort(values.begin(), values.end());
     posterior.lower95[j] = Quantile(values, 0.025);
     posterior.upper95[j] = Quantile(values, 0.975);
   }
-  const Eigen::ArrayXd sigma = resolution * draws.col(parameters).array().exp();
-  posterior.sigma = sigma.mean();
-  posterior.sigma_std_dev = std::sqrt((sigma - posterior.sigma).square().sum() / (n - 1));
+  posterior.sigma = mean[parameters];
+  posterior.sigma_std_dev = std::sqrt(centred.col(parameters).squaredNorm() / (n - 1));
   posterior.effective_draws = LeastEffectiveDraws(draws);
+  posterior.draws = std::move(draws);
   return posterior;
 }
+
+constexpr double kMostWork = 1e9;  // samples looked at
 
 /// Runs ever longer, whitening in between, until the coordinates fit; what was drawn on the way is not used.
 void WarmUp(Chain& chain) {
   for (const int rounds : {10, 20, 40, 80, 160}) {
     const Draws draws = chain.Run(rounds);
     chain.Whiten(draws.bottomRows(rounds * 3 / 4));
+    if (chain.work() > kMostWork / 8) break;  // where samples are that many, the first coordinates are good
   }
+}
+
+Draws RunUntilEnough(Chain& chain) {
+  constexpr int kRounds = 150;
+  constexpr double kEnoughDraws = 500;
+  Draws draws = chain.Run(kRounds);
+  while (LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
+    const Draws more = chain.Run(kRounds);
+    draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
+    draws.bottomRows(kRounds) = more;
+  }
+  return draws;
 }
 
 }  // namespace
@@ -372,16 +387,7 @@ Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed) 
   if (!frame) return tl::unexpected(frame.error());
   Chain chain(fit, std::move(*frame), seed);
   WarmUp(chain);
-  constexpr int kRounds = 150;
-  constexpr double kEnoughDraws = 500;
-  constexpr double kMostWork = 1e9;
-  Draws draws = chain.Run(kRounds);
-  while (LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
-    const Draws more = chain.Run(kRounds);
-    draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
-    draws.bottomRows(kRounds) = more;
-  }
-  return Summarize(draws, fit.noise.resolution);
+  return Summarize(RunUntilEnough(chain), fit.noise.resolution);
 }
 
 }  // namespace pendulum

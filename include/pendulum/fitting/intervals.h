@@ -17,9 +17,9 @@ struct FittedModel {
   const Eigen::VectorXd& quantile_residuals;  // N
 };
 
-/// For quantized noise below kQuietSigma resolutions: takes estimates, covariance, σ and intervals from draws of the
-/// posterior (SamplePosterior) instead, for there no parabola describes the likelihood. False where that is not so, or
-/// intervals were asked for by another method.
+/// For quantized noise below kQuietSigma resolutions and fewer than some hundred samples near edges of levels: takes
+/// estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior) instead, for there no parabola
+/// describes the likelihood. False where that is not so, or intervals were asked for by another method.
 bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
 
 /// Sets the 95 % interval of every parameter that is not fixed by options.interval: estimate ± t std_error within the

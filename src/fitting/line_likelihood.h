@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,13 +11,13 @@
 namespace pendulum {
 
 /// Log-probability of a level, or of a censored reading, by how deep within its nearer edge the modelled value lies.
-/// Lengths in units of the resolution. Cubic between nodes σ/6 apart: to 2e-6.
+/// Lengths in units of the resolution. Cubic between nodes σ/4 apart: to 1e-5.
 class DepthTable {
  public:
   /// width: 1 of a level, infinite of a censored reading.
   explicit DepthTable(double width) : width_(width) {}
 
-  /// Some 100 evaluations of the exact probability. σ > 0.
+  /// Some 60 evaluations of the exact probability. σ > 0.
   void Build(double sigma);
 
   /// depth <= width / 2, negative outside the interval.
