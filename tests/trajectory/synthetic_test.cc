@@ -4,18 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
+#include "tests/trajectory/synthetic_support.h"
 
 namespace pendulum {
 namespace {
@@ -27,20 +25,6 @@ using testing::Ge;
 using testing::HasSubstr;
 using testing::Le;
 using testing::Not;
-
-// Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink): G = (M + m/2) g
-// l with M 0.380 kg, m 0.095 kg, l 0.43 m, g 9.81 m/s².
-constexpr double kTextbookGravityTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
-
-/// The published fit of that rig: I_O 0.079 kg m², b 0.003 N m s/rad, released at 1.9 s from 24.23 deg.
-SyntheticOptions TextbookRig() {
-  SyntheticOptions options;
-  options.model = {"viscous", "viscous", Gravity::kSine};
-  options.parameters = {0.079 / kTextbookGravityTorque, 0.003 / kTextbookGravityTorque};
-  options.release_angle = 0.423;
-  options.release_time = 1.9;
-  return options;
-}
 
 /// Small-angle pendulum with viscous friction, moving at once.
 SyntheticOptions LinearPendulum() {
@@ -60,18 +44,6 @@ std::pair<double, double> LinearSolution(double t) {
   const double p = 0.3, q = (-0.7 + decay * 0.3) / damped;
   const double c = std::cos(damped * t), s = std::sin(damped * t), envelope = std::exp(-decay * t);
   return {envelope * (p * c + q * s), envelope * ((q * damped - decay * p) * c - (p * damped + decay * q) * s)};
-}
-
-std::vector<double> Deviations(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
-  const Eigen::VectorXd difference = x - y;
-  return {difference.begin(), difference.end()};
-}
-
-/// Σ x² / σ² lies within the chi-square interval that excludes one seed in a million.
-void ExpectStandardDeviation(const std::vector<double>& x, double sigma) {
-  const boost::math::chi_squared distribution(static_cast<double>(x.size()));
-  const double statistic = std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / (sigma * sigma);
-  EXPECT_THAT(statistic, AllOf(Ge(quantile(distribution, 5e-7)), Le(quantile(complement(distribution, 5e-7)))));
 }
 
 /// Time and height of each maximum above `least`, by the parabola through its three highest samples.
@@ -228,95 +200,6 @@ TEST(SimulateRecording, ShowsOnlyLevelsOfTheSensorWithinItsRange) {
   EXPECT_THAT(at_the_top, Ge(100));     // the hold at 24.2 deg is cut at 20.7 deg
 }
 
-TEST(SimulateRecording, AddsWhiteNoiseOfTheStandardDeviationAskedFor) {
-  SyntheticOptions options = TextbookRig();
-  options.duration = 200;
-  const Result<Recording> clean = SimulateRecording(options);
-  options.noise = 0.0035;
-  const Result<Recording> noisy = SimulateRecording(options);
-  ASSERT_TRUE(clean && noisy);
-  const std::vector<double> noise = Deviations(noisy->value, clean->value);
-  const double limit = 5 / std::sqrt(20000.0);  // five standard errors of a mean and of a correlation of 20000 samples
-  ExpectStandardDeviation(noise, 0.0035);
-  EXPECT_THAT(std::accumulate(noise.begin(), noise.end(), 0.0) / 20000 / 0.0035, DoubleNear(0, limit));
-  const double lag1 =
-      std::inner_product(noise.begin() + 1, noise.end(), noise.begin(), 0.0) / 20000 / (0.0035 * 0.0035);
-  EXPECT_THAT(lag1, DoubleNear(0, limit));
-}
-
-/// The noise of a recording of 20000 samples: its readings less those without noise.
-std::vector<double> NoiseOf(SyntheticOptions options) {
-  options.duration = 200;
-  const Result<Recording> noisy = SimulateRecording(options);
-  options.noise = 0;
-  const Result<Recording> clean = SimulateRecording(options);
-  EXPECT_TRUE(noisy && clean);
-  return noisy && clean ? Deviations(noisy->value, clean->value) : std::vector<double>{};
-}
-
-// e_i = r e_(i-1) + sqrt(1 - r²) σ x_i with white x_i: taking r e_(i-1) away leaves white noise of σ sqrt(1 - r²).
-TEST(SimulateRecording, CorrelatesEachSamplesNoiseWithTheOneBefore) {
-  for (const double correlation : {0.9, 0.5, -0.7}) {
-    SyntheticOptions options = TextbookRig();
-    options.noise = 0.0035;
-    options.noise_correlation = correlation;
-    const std::vector<double> noise = NoiseOf(options);
-    std::vector<double> innovations;
-    for (std::size_t i = 1; i < noise.size(); ++i) innovations.push_back(noise[i] - correlation * noise[i - 1]);
-    ExpectStandardDeviation(innovations, 0.0035 * std::sqrt(1 - correlation * correlation));
-    const double lag1 = std::inner_product(innovations.begin() + 1, innovations.end(), innovations.begin(), 0.0) /
-                        std::inner_product(innovations.begin(), innovations.end(), innovations.begin(), 0.0);
-    EXPECT_THAT(lag1, DoubleNear(0, 5 / std::sqrt(20000.0))) << correlation;  // five of its standard errors
-  }
-}
-
-TEST(SimulateRecording, HasCorrelatedNoiseOfItsFullSizeFromTheFirstSampleOn) {
-  SyntheticOptions options = TextbookRig();
-  options.duration = 2.1;
-  options.noise = 1;
-  options.noise_correlation = 0.95;
-  std::vector<double> first;
-  std::vector<double> third;
-  for (options.seed = 1; options.seed <= 2000; ++options.seed) {
-    const Result<Recording> recording = SimulateRecording(options);
-    ASSERT_TRUE(recording) << recording.error().message;
-    first.push_back(recording->value[0] - 0.423);  // held
-    third.push_back(recording->value[2] - 0.423);
-  }
-  ExpectStandardDeviation(first, 1);
-  ExpectStandardDeviation(third, 1);
-}
-
-// The empirical distribution of n samples is within 2.7 / sqrt(n) of the true one but for one seed in a million
-// (Kolmogorov: 2 exp(-2 d² n)).
-TEST(SimulateRecording, DrawsStudentsNoiseOfTheScaleAskedFor) {
-  SyntheticOptions options = TextbookRig();
-  options.noise = 0.0035;
-  options.noise_freedom = 3;
-  std::vector<double> noise = NoiseOf(options);
-  std::sort(noise.begin(), noise.end());
-  const boost::math::students_t distribution(3);
-  double farthest = 0;
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    const double expected = cdf(distribution, noise[i] / 0.0035);
-    farthest =
-        std::max(farthest, std::abs(expected - (static_cast<double>(i) + 0.5) / static_cast<double>(noise.size())));
-  }
-  EXPECT_LT(farthest, 2.7 / std::sqrt(20000.0));
-}
-
-// A finely quantized sensor adds q²/12 to the variance (Widrow & Kollar, Quantization Noise, 2008).
-TEST(SimulateRecording, QuantizesAfterTheNoise) {
-  SyntheticOptions options = TextbookRig();
-  options.duration = 200;
-  const Result<Recording> clean = SimulateRecording(options);
-  options.noise = 0.0035;
-  options.resolution = 0.0035;
-  const Result<Recording> quantized = SimulateRecording(options);
-  ASSERT_TRUE(clean && quantized);
-  ExpectStandardDeviation(Deviations(quantized->value, clean->value), 0.0035 * std::sqrt(1 + 1.0 / 12));
-}
-
 // ---- Sampling ----------------------------------------------------------------------------------------------------
 
 TEST(SimulateRecording, TakesAJitteredSampleAtTheInstantOfItsStamp) {
@@ -355,19 +238,6 @@ TEST(SimulateRecording, RepeatsItselfForASeedAndNotForAnother) {
   EXPECT_EQ(once->time, again->time);
   EXPECT_NE(once->value, other->value);
   EXPECT_NE(once->time, other->time);
-}
-
-// The first numbers of boost::random::normal_distribution on mt19937_64 seeded with 1, as Boost 1.74 gives them with
-// g++ 12 and clang 14. datasets/ changes when they do.
-TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
-  SyntheticOptions options = TextbookRig();
-  options.release_angle = 0.25;
-  options.noise = 1;
-  const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_THAT(recording->value[0] - 0.25, DoubleNear(-0.22770229850701265, 1e-15));
-  EXPECT_THAT(recording->value[1] - 0.25, DoubleNear(-0.25937725029558445, 1e-15));
-  EXPECT_THAT(recording->value[2] - 0.25, DoubleNear(-0.61281862908331552, 1e-15));
 }
 
 TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
