@@ -92,7 +92,7 @@ CoverageScenario HeavyTails() {
   CoverageScenario scenario =
       Fine("student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
   scenario.run.noise_freedom = 3;
-  // Here: the robust loss of Student's t.
+  scenario.fit.loss = Loss::kStudent;
   return scenario;
 }
 
