@@ -31,7 +31,10 @@ DEFINE_double(rate, 100, "Sampling rate, Hz; default 100.");
 DEFINE_double(start_time, 0, "Clock at the first sample, s; default 0.");
 DEFINE_double(jitter, 0, "Standard deviation of the sampling instants, s, which the stamps tell truly; default 0.");
 DEFINE_string(unit, "deg", "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro); default deg.");
-DEFINE_double(noise, 0, "Standard deviation of white noise before quantization, in --unit; default 0.");
+DEFINE_double(noise, 0, "Standard deviation of the noise before quantization, in --unit; default 0.");
+DEFINE_double(noise_correlation, 0, "AR(1): correlation of each sample's noise with the one before; default 0, white.");
+DEFINE_double(noise_freedom, 0,
+              "Degrees of freedom, above 2, of Student's t noise, whose scale --noise then is; default 0, Gaussian.");
 DEFINE_double(resolution, 0, "Spacing of the sensor's levels, in --unit; default 0, none.");
 DEFINE_string(range, "", "What the sensor can show, low,high in --unit; its levels start at low; default unlimited.");
 
@@ -63,6 +66,8 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.jitter = FLAGS_jitter;
   flags.start_time = FLAGS_start_time;
   flags.noise = FLAGS_noise;
+  flags.noise_correlation = FLAGS_noise_correlation;
+  flags.noise_freedom = FLAGS_noise_freedom;
   flags.resolution = FLAGS_resolution;
   flags.range = FLAGS_range;
   flags.seed = FLAGS_seed;

@@ -136,6 +136,16 @@ struct NumberFlag {
   bool may_be_0;
 };
 
+Result<void> CheckNoiseLaw(const SimulateFlags& flags) {
+  const double correlation = flags.noise_correlation;
+  if (!(std::abs(correlation) < 1)) {
+    return BadFlag("--noise_correlation is " + NumberText(correlation) + "; it must be between -1 and 1");
+  }
+  const double freedom = flags.noise_freedom;
+  if (freedom == 0 || (std::isfinite(freedom) && freedom > 2)) return {};
+  return BadFlag("--noise_freedom is " + NumberText(freedom) + "; it must be 0 or above 2");
+}
+
 Result<void> CheckNumbers(const SimulateFlags& flags) {
   const std::array numbers = {
       NumberFlag{"--duration", flags.duration, false},    NumberFlag{"--rate", flags.rate, false},
@@ -147,7 +157,7 @@ Result<void> CheckNumbers(const SimulateFlags& flags) {
     return BadFlag(std::string(number.name) + " is " + NumberText(number.value) + "; it must be " +
                    (number.may_be_0 ? "0 or more" : "positive"));
   }
-  return {};
+  return CheckNoiseLaw(flags);
 }
 
 Result<void> CheckFiles(const SimulateFlags& flags) {
@@ -172,6 +182,8 @@ Result<void> ChooseSensor(const SimulateFlags& flags, SimulateOptions& options) 
   const double si = options.unit.si;
   SyntheticOptions& synthetic = options.synthetic;
   synthetic.noise = flags.noise * si;
+  synthetic.noise_correlation = flags.noise_correlation;
+  synthetic.noise_freedom = flags.noise_freedom;
   synthetic.resolution = flags.resolution * si;
   if (options.range) synthetic.range = SensorRange{options.range->low * si, options.range->high * si};
   synthetic.start_time = flags.start_time;

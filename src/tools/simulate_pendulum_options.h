@@ -28,6 +28,8 @@ struct SimulateFlags {
   double jitter = 0;         ///< s
   double start_time = 0;     ///< s
   double noise = 0;
+  double noise_correlation = 0;
+  double noise_freedom = 0;
   double resolution = 0;
   std::string range;  ///< "low,high"; empty is unlimited.
   std::uint64_t seed = 1;

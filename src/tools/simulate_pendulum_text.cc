@@ -107,6 +107,8 @@ std::string TruthJson(const SimulateOptions& options, std::uint64_t seed) {
   for (const auto& [name, value] : options.truth) json[name] = value;
   const std::string unit = options.unit.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
   json["sigma" + unit] = options.synthetic.noise;
+  if (options.synthetic.noise_correlation != 0) json["noise_correlation"] = options.synthetic.noise_correlation;
+  if (options.synthetic.noise_freedom > 0) json["noise_freedom"] = options.synthetic.noise_freedom;
   json["resolution" + unit] = options.synthetic.resolution;
   json["seed"] = seed;
   constexpr int kIndent = 2;

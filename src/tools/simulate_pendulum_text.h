@@ -15,7 +15,8 @@ namespace pendulum {
 std::string RecordingCsv(const SimulateOptions& options, const Recording& recording, std::uint64_t seed);
 
 /// The truth as a flat JSON object: the parameters' names, SI with a rig, then sigma_rad, resolution_rad and seed;
-/// sigma_rad_s and resolution_rad_s for a rate.
+/// sigma_rad_s and resolution_rad_s for a rate. noise_correlation and
+/// noise_freedom stand there where they are not 0; sigma is the scale of Student's t noise.
 std::string TruthJson(const SimulateOptions& options, std::uint64_t seed);
 
 }  // namespace pendulum

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <boost/random/normal_distribution.hpp>
+#include <boost/random/student_t_distribution.hpp>
 
 #include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
@@ -42,6 +43,15 @@ Result<void> CheckNumber(const NumberRule& rule) {
   return {};
 }
 
+/// The shape of the noise; its size is a number as others.
+Result<void> CheckNoiseLaw(const SyntheticOptions& options) {
+  const double correlation = options.noise_correlation;
+  if (!(std::abs(correlation) < 1)) return BadOption("noise_correlation", correlation, "between -1 and 1");
+  const double freedom = options.noise_freedom;
+  if (freedom == 0 || (std::isfinite(freedom) && freedom > 2)) return {};
+  return BadOption("noise_freedom", freedom, "0 or above 2");
+}
+
 Result<void> CheckNumbers(const SyntheticOptions& options) {
   using Domain = NumberRule::Domain;
   const std::array rules = {
@@ -60,7 +70,7 @@ Result<void> CheckNumbers(const SyntheticOptions& options) {
   for (const NumberRule& rule : rules) {
     if (Result<void> checked = CheckNumber(rule); !checked) return checked;
   }
-  return {};
+  return CheckNoiseLaw(options);
 }
 
 Result<void> CheckModel(const SyntheticOptions& options) {
@@ -129,8 +139,17 @@ Eigen::VectorXd SamplingInstants(const SyntheticOptions& options, Eigen::Index c
 
 Eigen::VectorXd NoiseSamples(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
   Eigen::VectorXd noise(count);
-  NormalDraws draw;
-  for (double& sample : noise) sample = options.noise * draw(generator);
+  if (options.noise_freedom > 0) {
+    boost::random::student_t_distribution<double> draw(options.noise_freedom);
+    for (double& sample : noise) sample = options.noise * draw(generator);
+  } else {
+    NormalDraws draw;
+    for (double& sample : noise) sample = options.noise * draw(generator);
+  }
+  const double correlation = options.noise_correlation;
+  if (correlation == 0) return noise;
+  const double rest = std::sqrt((1 - correlation) * (1 + correlation));
+  for (Eigen::Index i = 1; i < count; ++i) noise[i] = correlation * noise[i - 1] + rest * noise[i];
   return noise;
 }
 

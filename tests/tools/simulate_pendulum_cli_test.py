@@ -63,6 +63,14 @@ class SimulatePendulumTest(unittest.TestCase):
         self.assertEqual(once, again)
         self.assertNotEqual(once.splitlines()[4:], other.splitlines()[4:])
 
+    def test_noise_may_be_correlated_or_have_heavy_tails(self):
+        white = self.check_made(*NOISY, "--out", "-")
+        correlated = self.check_made(*NOISY, "--out", "-", "--noise_correlation", "0.9")
+        heavy = self.check_made(*NOISY, "--out", "-", "--noise_freedom", "3")
+        self.assertEqual(len({white, correlated, heavy}), 3)
+        self.check_refused(2, "--noise_correlation is 2", *NOISY, "--noise_correlation", "2", "--out", "run.csv")
+        self.check_refused(2, "--noise_freedom is 1", *NOISY, "--noise_freedom", "1", "--out", "run.csv")
+
     def test_count_numbers_the_files_and_counts_the_seeds_up(self):
         self.check_made(*NOISY, "--out", "run.csv", "--truth", "truth.json", "--count", "3", "--seed", "5")
         names = sorted(path.name for path in self.folder.iterdir())

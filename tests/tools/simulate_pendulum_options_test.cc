@@ -96,6 +96,16 @@ TEST(MakeSimulateOptions, ReadsTheSensorInTheUnitOfTheColumn) {
   EXPECT_THAT(options->synthetic.range->high, DoubleEq(45 * kRadPerDeg));
 }
 
+TEST(MakeSimulateOptions, HandsOnTheLawOfTheNoiseWithoutAUnit) {
+  SimulateFlags flags = Flags("inertia=0.04," + std::string(kRelease));
+  flags.noise_correlation = -0.5;
+  flags.noise_freedom = 3;
+  const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->synthetic.noise_correlation, -0.5);
+  EXPECT_EQ(options->synthetic.noise_freedom, 3);
+}
+
 TEST(MakeSimulateOptions, GivesAGyroARateBiasInsteadOfAZeroAngle) {
   SimulateFlags flags = Flags("inertia=0.04,rate_bias=0.02," + std::string(kRelease));
   flags.unit = "rad_s";
@@ -168,6 +178,9 @@ TEST(MakeSimulateOptions, RefusesWrongFlagsAndNamesThem) {
       {"--rate is -1; it must be positive", [](SimulateFlags& f) { f.rate = -1; }},
       {"--jitter is nan; it must be 0 or more", [](SimulateFlags& f) { f.jitter = std::nan(""); }},
       {"--noise is -1; it must be 0 or more", [](SimulateFlags& f) { f.noise = -1; }},
+      {"--noise_correlation is -1; it must be between", [](SimulateFlags& f) { f.noise_correlation = -1; }},
+      {"--noise_correlation is nan", [](SimulateFlags& f) { f.noise_correlation = std::nan(""); }},
+      {"--noise_freedom is 1.5; it must be 0 or above 2", [](SimulateFlags& f) { f.noise_freedom = 1.5; }},
       {"--resolution is -1; it must be 0 or more", [](SimulateFlags& f) { f.resolution = -1; }},
       {"no wider than --range", [](SimulateFlags& f) { (f.resolution = 10, f.range = "0,1"); }},
       {"--range is '5'; it must be low,high", [](SimulateFlags& f) { f.range = "5"; }},

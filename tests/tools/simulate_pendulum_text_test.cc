@@ -134,6 +134,16 @@ TEST(TruthJson, GivesParametersNoiseAndSeed) {
   EXPECT_THAT(text, EndsWith("}\n"));
 }
 
+TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
+  SimulateFlags flags;
+  flags.noise = 0.5;
+  flags.noise_correlation = 0.9;
+  flags.noise_freedom = 4;
+  const nlohmann::json truth = nlohmann::json::parse(TruthJson(Options(flags), 1));
+  EXPECT_EQ(truth.at("noise_correlation"), 0.9);
+  EXPECT_EQ(truth.at("noise_freedom"), 4);
+}
+
 TEST(TruthJson, GivesARateItsOwnNames) {
   SimulateFlags flags;
   flags.unit = "rad_s";

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
+#include "tests/trajectory/synthetic_support.h"
 
 namespace pendulum {
 namespace {
@@ -26,20 +25,6 @@ using testing::Ge;
 using testing::HasSubstr;
 using testing::Le;
 using testing::Not;
-
-// Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink): G = (M + m/2) g
-// l with M 0.380 kg, m 0.095 kg, l 0.43 m, g 9.81 m/s².
-constexpr double kTextbookGravityTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
-
-/// The published fit of that rig: I_O 0.079 kg m², b 0.003 N m s/rad, released at 1.9 s from 24.23 deg.
-SyntheticOptions TextbookRig() {
-  SyntheticOptions options;
-  options.model = {"viscous", "viscous", Gravity::kSine};
-  options.parameters = {0.079 / kTextbookGravityTorque, 0.003 / kTextbookGravityTorque};
-  options.release_angle = 0.423;
-  options.release_time = 1.9;
-  return options;
-}
 
 /// Small-angle pendulum with viscous friction, moving at once.
 SyntheticOptions LinearPendulum() {
@@ -59,18 +44,6 @@ std::pair<double, double> LinearSolution(double t) {
   const double p = 0.3, q = (-0.7 + decay * 0.3) / damped;
   const double c = std::cos(damped * t), s = std::sin(damped * t), envelope = std::exp(-decay * t);
   return {envelope * (p * c + q * s), envelope * ((q * damped - decay * p) * c - (p * damped + decay * q) * s)};
-}
-
-std::vector<double> Deviations(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
-  const Eigen::VectorXd difference = x - y;
-  return {difference.begin(), difference.end()};
-}
-
-/// Σ x² / σ² lies within the chi-square interval that excludes one seed in a million.
-void ExpectStandardDeviation(const std::vector<double>& x, double sigma) {
-  const boost::math::chi_squared distribution(static_cast<double>(x.size()));
-  const double statistic = std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / (sigma * sigma);
-  EXPECT_THAT(statistic, AllOf(Ge(quantile(distribution, 5e-7)), Le(quantile(complement(distribution, 5e-7)))));
 }
 
 /// Time and height of each maximum above `least`, by the parabola through its three highest samples.
@@ -227,34 +200,6 @@ TEST(SimulateRecording, ShowsOnlyLevelsOfTheSensorWithinItsRange) {
   EXPECT_THAT(at_the_top, Ge(100));     // the hold at 24.2 deg is cut at 20.7 deg
 }
 
-TEST(SimulateRecording, AddsWhiteNoiseOfTheStandardDeviationAskedFor) {
-  SyntheticOptions options = TextbookRig();
-  options.duration = 200;
-  const Result<Recording> clean = SimulateRecording(options);
-  options.noise = 0.0035;
-  const Result<Recording> noisy = SimulateRecording(options);
-  ASSERT_TRUE(clean && noisy);
-  const std::vector<double> noise = Deviations(noisy->value, clean->value);
-  const double limit = 5 / std::sqrt(20000.0);  // five standard errors of a mean and of a correlation of 20000 samples
-  ExpectStandardDeviation(noise, 0.0035);
-  EXPECT_THAT(std::accumulate(noise.begin(), noise.end(), 0.0) / 20000 / 0.0035, DoubleNear(0, limit));
-  const double lag1 =
-      std::inner_product(noise.begin() + 1, noise.end(), noise.begin(), 0.0) / 20000 / (0.0035 * 0.0035);
-  EXPECT_THAT(lag1, DoubleNear(0, limit));
-}
-
-// A finely quantized sensor adds q²/12 to the variance (Widrow & Kollar, Quantization Noise, 2008).
-TEST(SimulateRecording, QuantizesAfterTheNoise) {
-  SyntheticOptions options = TextbookRig();
-  options.duration = 200;
-  const Result<Recording> clean = SimulateRecording(options);
-  options.noise = 0.0035;
-  options.resolution = 0.0035;
-  const Result<Recording> quantized = SimulateRecording(options);
-  ASSERT_TRUE(clean && quantized);
-  ExpectStandardDeviation(Deviations(quantized->value, clean->value), 0.0035 * std::sqrt(1 + 1.0 / 12));
-}
-
 // ---- Sampling ----------------------------------------------------------------------------------------------------
 
 TEST(SimulateRecording, TakesAJitteredSampleAtTheInstantOfItsStamp) {
@@ -295,19 +240,6 @@ TEST(SimulateRecording, RepeatsItselfForASeedAndNotForAnother) {
   EXPECT_NE(once->time, other->time);
 }
 
-// The first numbers of boost::random::normal_distribution on mt19937_64 seeded with 1, as Boost 1.74 gives them with
-// g++ 12 and clang 14. datasets/ changes when they do.
-TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
-  SyntheticOptions options = TextbookRig();
-  options.release_angle = 0.25;
-  options.noise = 1;
-  const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_THAT(recording->value[0] - 0.25, DoubleNear(-0.22770229850701265, 1e-15));
-  EXPECT_THAT(recording->value[1] - 0.25, DoubleNear(-0.25937725029558445, 1e-15));
-  EXPECT_THAT(recording->value[2] - 0.25, DoubleNear(-0.61281862908331552, 1e-15));
-}
-
 TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
   SyntheticOptions options = TextbookRig();
   options.noise = 0.01;
@@ -343,6 +275,11 @@ TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
       {invalid, "jitter is -1; it must be 0 or more", [](SyntheticOptions& o) { o.jitter = -1; }},
       {invalid, "zero_angle is nan", [](SyntheticOptions& o) { o.zero = kNan; }},
       {invalid, "noise is -1; it must be 0 or more", [](SyntheticOptions& o) { o.noise = -1; }},
+      {invalid, "noise_correlation is 1; it must be between", [](SyntheticOptions& o) { o.noise_correlation = 1; }},
+      {invalid, "noise_correlation is nan", [](SyntheticOptions& o) { o.noise_correlation = kNan; }},
+      {invalid, "noise_freedom is 2; it must be 0 or above 2", [](SyntheticOptions& o) { o.noise_freedom = 2; }},
+      {invalid, "noise_freedom is -3", [](SyntheticOptions& o) { o.noise_freedom = -3; }},
+      {invalid, "noise_freedom is nan", [](SyntheticOptions& o) { o.noise_freedom = kNan; }},
       {invalid, "resolution is nan; it must be finite", [](SyntheticOptions& o) { o.resolution = kNan; }},
       {invalid, "the range is 1 to -1",
        [](SyntheticOptions& o) {

@@ -30,9 +30,11 @@ struct SyntheticOptions {
   double jitter = 0;         ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
 
   Quantity quantity = Quantity::kAngle;
-  double zero = 0;        ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
-  double noise = 0;       ///< Standard deviation of white Gaussian noise [rad or rad/s], before quantization.
-  double resolution = 0;  ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
+  double zero = 0;               ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
+  double noise = 0;              ///< Standard deviation of the noise [rad or rad/s], before quantization.
+  double noise_correlation = 0;  ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
+  double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
+  double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
   std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
@@ -45,7 +47,9 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 
 /// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
 /// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. Noise comes from
-/// mt19937_64 and Boost's normal distribution: a seed gives the same everywhere, whatever the jitter.
+/// mt19937_64 and Boost's distributions: a seed gives the same everywhere, whatever the jitter. Correlated noise is e_0
+/// = s x_0, e_i = r e_(i-1) + sqrt(1 - r²) s x_i with s = noise and independent x_i, normal or t: its standard
+/// deviation is that of s x_i from the first sample on, s or, for Student's t, s sqrt(ν / (ν - 2)); ν > 2 or 0.
 ///
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
 /// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.

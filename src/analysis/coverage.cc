@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/coverage.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <boost/math/distributions/binomial.hpp>
+
+#include "pendulum/analysis/cramer_rao.h"
+#include "pendulum/fitting/fit.h"
+
+namespace pendulum {
+namespace {
+
+/// One parameter of one recording: what is true, and what the fit said. Units of the report.
+struct ParameterOutcome {
+  double truth = 0;
+  std::optional<double> bound;  ///< Cramér-Rao
+  std::optional<double> estimate, std_error;
+  bool has_interval = false;
+  bool covered = false;
+};
+
+struct RunOutcome {
+  std::vector<ParameterOutcome> parameters;  ///< P
+  bool has_report = false;
+  bool converged = false;
+};
+
+std::vector<ParameterInfo> Parameters(const CoverageScenario& scenario) {
+  return FitParameters(scenario.run.model, scenario.run.start, scenario.run.quantity);
+}
+
+/// How many units of the report are one unit of G-relative values.
+double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
+  return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
+}
+
+/// The parameters a fit of that recording should find, in FitParameters' order.
+std::vector<double> Truth(const SyntheticOptions& run) {
+  std::vector<double> truth = run.parameters;
+  const bool released = run.start == StartKind::kRelease;
+  truth.push_back(released ? run.release_angle : run.initial_angle);
+  truth.push_back(released ? run.release_time : run.initial_rate);
+  truth.push_back(run.zero);
+  return truth;
+}
+
+void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) {
+  outcome.estimate = parameter.estimate;
+  outcome.std_error = parameter.std_error;
+  outcome.has_interval = parameter.lower95.has_value() || parameter.upper95.has_value();
+  outcome.covered = outcome.has_interval && parameter.lower95.value_or(-kUnbounded) <= outcome.truth &&
+                    outcome.truth <= parameter.upper95.value_or(kUnbounded);
+}
+
+Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {
+  const SyntheticOptions run = ScenarioRun(scenario, seed);
+  const Result<Recording> recording = SimulateRecording(run);
+  if (!recording) return tl::unexpected(recording.error());
+  const Result<FitReport> report = FitRecording(*recording, scenario.fit);
+  const std::vector<ParameterInfo> infos = Parameters(scenario);
+  const std::vector<double> truth = Truth(run);
+  const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording->time);
+  RunOutcome outcome;
+  outcome.has_report = report.has_value();
+  outcome.converged = report && report->termination == Termination::kConverged;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const double unit = ReportUnit(scenario, infos[i]);
+    ParameterOutcome parameter;
+    parameter.truth = unit * truth[i];
+    if (bounds[i]) parameter.bound = unit * *bounds[i];
+    const ParameterEstimate* found = outcome.converged ? report->Find(infos[i].name) : nullptr;
+    if (found != nullptr) AddEstimate(*found, parameter);
+    outcome.parameters.push_back(parameter);
+  }
+  return outcome;
+}
+
+/// All recordings, in the order of their seeds whoever fits them.
+std::vector<Result<RunOutcome>> RunAll(const CoverageScenario& scenario, const CoverageOptions& options) {
+  std::vector<Result<RunOutcome>> outcomes(static_cast<std::size_t>(options.count));
+  std::atomic<int> next = 0;
+  std::mutex reporting;
+  int done = 0;
+  const auto work = [&] {
+    for (int i = next++; i < options.count; i = next++) {
+      outcomes[static_cast<std::size_t>(i)] = RunOne(scenario, options.seed + static_cast<std::uint64_t>(i));
+      const std::lock_guard lock(reporting);
+      ++done;
+      if (options.progress) options.progress(done);
+    }
+  };
+  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  const int threads = std::min(options.threads > 0 ? options.threads : cores, options.count);
+  std::vector<std::jthread> workers;
+  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
+  work();
+  workers.clear();  // waits for them
+  return outcomes;
+}
+
+/// Running mean; absent without numbers.
+class Mean {
+ public:
+  void Add(double x) {
+    sum_ += x;
+    ++count_;
+  }
+  std::optional<double> value() const { return count_ == 0 ? std::nullopt : std::optional(sum_ / count_); }
+  std::optional<double> root() const { return count_ == 0 ? std::nullopt : std::optional(std::sqrt(sum_ / count_)); }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
+/// Sums over the recordings for parameter i.
+void Summarize(const std::vector<RunOutcome>& outcomes, std::size_t i, CoverageRow& row) {
+  Mean square, normalized_square, std_error, square_with_std_error;
+  for (const RunOutcome& outcome : outcomes) {
+    const ParameterOutcome& parameter = outcome.parameters[i];
+    row.covered += parameter.covered ? 1 : 0;
+    row.without_interval += parameter.has_interval ? 0 : 1;
+    if (!parameter.estimate) continue;
+    const double error = *parameter.estimate - parameter.truth;
+    square.Add(error * error);
+    if (parameter.bound && !row.at_bound) normalized_square.Add(std::pow(error / *parameter.bound, 2));
+    if (!parameter.std_error) continue;
+    std_error.Add(*parameter.std_error);
+    square_with_std_error.Add(error * error);
+  }
+  row.rms_error = square.root();
+  row.error_over_bound = normalized_square.root();
+  const std::optional<double> error = square_with_std_error.root();
+  if (error && *error > 0) row.std_error_over_error = *std_error.value() / *error;
+}
+
+void Judge(const CoverageScenario& scenario, int recordings, CoverageRow& row) {
+  const CoverageRule& rule = row.at_bound ? kAtBoundRule : scenario.rule;
+  const BinomialInterval interval = BinomialInterval95(row.covered, recordings);
+  row.coverage = static_cast<double>(row.covered) / recordings;
+  row.coverage_lower = interval.lower;
+  row.coverage_upper = interval.upper;
+  row.covers = interval.upper >= rule.lowest && interval.lower <= rule.highest;
+  row.precise = !row.error_over_bound || *row.error_over_bound <= rule.largest_error;
+}
+
+CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutcome>& outcomes, std::size_t i) {
+  const ParameterInfo info = Parameters(scenario)[i];
+  const double truth = outcomes.front().parameters[i].truth;
+  CoverageRow row;
+  row.parameter = info.name;
+  row.unit = scenario.fit.rig ? info.unit : info.relative_unit;
+  row.at_bound = truth == info.lower || truth == info.upper;
+  Summarize(outcomes, i, row);
+  Judge(scenario, static_cast<int>(outcomes.size()), row);
+  return row;
+}
+
+}  // namespace
+
+BinomialInterval BinomialInterval95(int successes, int trials) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  constexpr double kTail = 0.025;
+  return {Binomial::find_lower_bound_on_p(trials, successes, kTail),
+          Binomial::find_upper_bound_on_p(trials, successes, kTail)};
+}
+
+Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const CoverageOptions& options) {
+  if (options.count < 1) {
+    return Error(StatusCode::kInvalidArgument, "count is " + std::to_string(options.count) + "; it must be at least 1");
+  }
+  if (options.threads < 0) {
+    return Error(StatusCode::kInvalidArgument,
+                 "threads is " + std::to_string(options.threads) + "; it must be 0 or more");
+  }
+  CoverageStudy study{scenario, options.count, 0, 0, {}};
+  std::vector<RunOutcome> outcomes;
+  for (Result<RunOutcome>& outcome : RunAll(scenario, options)) {
+    if (!outcome) return tl::unexpected(outcome.error());
+    study.converged += outcome->converged ? 1 : 0;
+    study.failed += outcome->has_report ? 0 : 1;
+    outcomes.push_back(*std::move(outcome));
+  }
+  for (std::size_t i = 0; i < outcomes.front().parameters.size(); ++i) {
+    study.rows.push_back(MakeRow(scenario, outcomes, i));
+  }
+  return study;
+}
+
+}  // namespace pendulum

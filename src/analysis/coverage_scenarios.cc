@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/coverage_scenarios.h"
+
+#include <algorithm>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include <boost/random/uniform_real_distribution.hpp>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+// The rig of datasets/textbook_rig.json and its sensor: G = (M + m/2) g l, I_O and b as published, and dry friction.
+constexpr double kGravityTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
+constexpr double kInertiaTruth = 0.079;                               // kg m²
+constexpr double kViscousTruth = 0.003;                               // N m s/rad
+constexpr double kCoulombTruth = 0.004;                               // N m
+constexpr double kCount = 0.1985 * kRadFromDeg;                       // rad
+
+/// Held at 0.423 rad for 1.9 s, then 18 s of swing; the noise is given in counts, the sensor shows whole counts.
+CoverageScenario OnCounts(std::string name, std::string description, double noise) {
+  CoverageScenario scenario{std::move(name), std::move(description), {}, {}, {}};
+  SyntheticOptions& run = scenario.run;
+  run.parameters = {kInertiaTruth / kGravityTorque, kViscousTruth / kGravityTorque, kCoulombTruth / kGravityTorque};
+  run.release_angle = 0.423;
+  run.release_time = 1.9;
+  run.zero = 0.012;
+  run.noise = noise * kCount;
+  run.resolution = kCount;
+  scenario.fit.model = std::string(run.model.name);
+  scenario.fit.rig = Rig{{kGravityTorque, 0}, std::nullopt, {}};
+  return scenario;
+}
+
+/// The same from a sensor without counts.
+CoverageScenario Fine(std::string name, std::string description, double noise) {
+  CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
+  scenario.run.resolution = 0;
+  return scenario;
+}
+
+CoverageScenario NoNoise() {
+  CoverageScenario scenario = OnCounts("no_noise", "no noise at all: counts only; intervals may be too wide", 0);
+  scenario.rule.highest = 1;
+  return scenario;
+}
+
+CoverageScenario ToRest() {
+  CoverageScenario scenario = OnCounts("to_rest", "60 s, at rest before the end; noise of 0.25 count on counts", 0.25);
+  scenario.run.duration = 60;
+  return scenario;
+}
+
+/// Short enough that it is not at rest at the end, which is another scenario's matter.
+CoverageScenario SmallSwing() {
+  CoverageScenario scenario = OnCounts("small_swing", "a swing of 5 deg, 10 s; noise of 0.25 count on counts", 0.25);
+  scenario.run.release_angle = 5 * kRadFromDeg;
+  scenario.run.duration = 10;
+  return scenario;
+}
+
+CoverageScenario Moving() {
+  CoverageScenario scenario =
+      OnCounts("moving", "in motion when the recording begins; noise of 0.25 count on counts", 0.25);
+  scenario.run.start = StartKind::kMoving;
+  scenario.run.initial_angle = -0.2;
+  scenario.run.initial_rate = 1.5;
+  return scenario;
+}
+
+/// The hold at 24.9 deg is within the range, the first five or so turning points on the other side are not.
+CoverageScenario Saturated() {
+  CoverageScenario scenario =
+      OnCounts("saturated", "readings below -18 deg are cut off; noise of 0.25 count on counts", 0.25);
+  constexpr int kLevels = 1024;
+  const double low = -18 * kRadFromDeg;
+  scenario.run.range = SensorRange{low, low + (kLevels - 1) * kCount};
+  return scenario;
+}
+
+CoverageScenario Correlated(CoverageScenario scenario, double correlation, double lowest) {
+  scenario.run.noise_correlation = correlation;
+  scenario.rule.lowest = lowest;
+  return scenario;
+}
+
+CoverageScenario HeavyTails() {
+  CoverageScenario scenario =
+      Fine("student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
+  scenario.run.noise_freedom = 3;
+  scenario.fit.loss = Loss::kStudent;
+  return scenario;
+}
+
+/// `parameter` of SyntheticOptions is 0, its bound.
+CoverageScenario Without(std::size_t parameter, std::string name, std::string description) {
+  CoverageScenario scenario = OnCounts(std::move(name), std::move(description), 0.5);
+  scenario.run.parameters[parameter] = 0;
+  return scenario;
+}
+
+}  // namespace
+
+std::vector<CoverageScenario> CoverageScenarios() {
+  constexpr double kStrongLowest = 0.91;  // of the coverage at a correlation of 0.9, where few samples are independent
+  return {
+      OnCounts("white_2.5", "white noise of 2.5 counts on counts", 2.5),
+      OnCounts("white_0.5", "white noise of 0.5 count on counts", 0.5),
+      OnCounts("white_0.25", "white noise of 0.25 count on counts", 0.25),
+      OnCounts("white_0.1", "white noise of 0.1 count on counts", 0.1),
+      NoNoise(),
+      ToRest(),
+      SmallSwing(),
+      Moving(),
+      Saturated(),
+      Correlated(Fine("ar_0.5", "AR(1) noise of 0.5 count, correlation 0.5, fine", 0.5), 0.5, CoverageRule{}.lowest),
+      Correlated(Fine("ar_0.9", "AR(1) noise of 0.5 count, correlation 0.9, fine", 0.5), 0.9, kStrongLowest),
+      Correlated(OnCounts("ar_0.9_counts", "AR(1) noise of 0.5 count, correlation 0.9, on counts", 0.5), 0.9,
+                 kStrongLowest),
+      HeavyTails(),
+      Without(1, "no_viscous", "b = 0, at its bound; white noise of 0.5 count on counts"),
+      Without(2, "no_coulomb", "tau_c = 0, at its bound; white noise of 0.5 count on counts"),
+  };
+}
+
+Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& names) {
+  const std::vector<CoverageScenario> all = CoverageScenarios();
+  if (names == "all") return all;
+  std::vector<CoverageScenario> found;
+  for (std::size_t begin = 0; begin <= names.size();) {
+    const std::size_t end = std::min(names.find(',', begin), names.size());
+    const std::string name = names.substr(begin, end - begin);
+    const auto scenario = std::ranges::find(all, name, &CoverageScenario::name);
+    if (scenario == all.end()) {
+      return Error(StatusCode::kInvalidArgument,
+                   "there is no scenario '" + name + "'; the scenarios are " + NameList(all) + ", or all");
+    }
+    if (std::ranges::find(found, name, &CoverageScenario::name) != found.end()) {
+      return Error(StatusCode::kInvalidArgument, "scenario " + name + " is named twice");
+    }
+    found.push_back(*scenario);
+    begin = end + 1;
+  }
+  return found;
+}
+
+SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed) {
+  // Not the stream of the noise, which begins with the seed itself.
+  std::mt19937_64 generator(~seed);
+  boost::random::uniform_real_distribution<double> draw(-0.5, 0.5);
+  SyntheticOptions run = scenario.run;
+  run.seed = seed;
+  run.zero += kCount * draw(generator);
+  run.release_time += draw(generator) / run.sample_rate;
+  return run;
+}
+
+}  // namespace pendulum

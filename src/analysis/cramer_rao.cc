@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/cramer_rao.h"
+
+#include <cmath>
+#include <memory>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/analysis/reading_information.h"
+#include "pendulum/fitting/trajectory_cost.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Readings without noise (N) and their sensitivities (N x P).
+struct Sensitivities {
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd jacobian;
+};
+
+std::optional<Sensitivities> SensitivitiesAt(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
+  constexpr double kTolerance = 1e-12;  // rad
+  const bool released = truth.start == StartKind::kRelease;
+  TrajectoryData data;
+  data.quantity = truth.quantity;
+  for (const double instant : time) data.time.push_back(instant - time[0]);
+  data.value.assign(data.time.size(), 0.0);
+  data.natural_frequency = 1 / std::sqrt(truth.parameters.front());
+  data.latest_release = data.time.back();
+  std::vector<double> parameters = truth.parameters;
+  parameters.push_back(released ? truth.release_angle : truth.initial_angle);
+  parameters.push_back(released ? truth.release_time - time[0] : truth.initial_rate);
+  parameters.push_back(truth.zero);
+  const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(truth.model, truth.start, data);
+  cost->set_tolerance(kTolerance);
+  Sensitivities at;
+  if (!cost->Readings(parameters, &at.readings, &at.jacobian)) return std::nullopt;
+  return at;
+}
+
+/// Of the parameters and log σ, (P + 1) x (P + 1), from white Gaussian noise.
+Eigen::MatrixXd WhiteInformation(const SyntheticOptions& truth, const Sensitivities& at) {
+  const Index size = at.jacobian.cols();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  Eigen::MatrixXd weighted = at.jacobian;
+  for (Index i = 0; i < at.readings.size(); ++i) {
+    const Eigen::Matrix2d one = ReadingInformation(at.readings[i], truth.noise, truth.resolution, truth.range);
+    weighted.row(i) *= one(0, 0);
+    information.col(size).head(size) += one(0, 1) * at.jacobian.row(i).transpose();
+    information(size, size) += one(1, 1);
+  }
+  information.topLeftCorner(size, size) = at.jacobian.transpose() * weighted;
+  information.row(size).head(size) = information.col(size).head(size).transpose();
+  return information;
+}
+
+/// Jᵀ R^-1 J from the innovations of each of J's columns, R the covariance of AR(1) noise and white noise of variance
+/// q²/12. The size of Gaussian noise tells nothing of its mean: log σ would be a block of its own.
+Eigen::MatrixXd CorrelatedInformation(const SyntheticOptions& truth, const Sensitivities& at) {
+  const double correlation = truth.noise_correlation;
+  const double stationary = truth.noise * truth.noise;
+  const double white = truth.resolution * truth.resolution / 12;
+  Eigen::MatrixXd whitened(at.jacobian.rows(), at.jacobian.cols());
+  Eigen::RowVectorXd predicted = Eigen::RowVectorXd::Zero(at.jacobian.cols());
+  double variance = stationary;  // of the prediction of the AR(1) part
+  for (Index i = 0; i < whitened.rows(); ++i) {
+    const Eigen::RowVectorXd innovation = at.jacobian.row(i) - predicted;
+    const double gain = variance / (variance + white);
+    whitened.row(i) = innovation / std::sqrt(variance + white);
+    predicted = correlation * (predicted + gain * innovation);
+    variance = correlation * correlation * (1 - gain) * variance + (1 - correlation * correlation) * stationary;
+  }
+  return whitened.transpose() * whitened;
+}
+
+/// Lange, Little & Taylor, Journal of the American Statistical Association 84 (1989) 881, appendix B.
+Eigen::MatrixXd StudentInformation(const SyntheticOptions& truth, const Sensitivities& at) {
+  const double weight = (truth.noise_freedom + 1) / (truth.noise_freedom + 3) / (truth.noise * truth.noise);
+  return weight * (at.jacobian.transpose() * at.jacobian);
+}
+
+/// The information of the parameters, then possibly of the noise's size; none where it is not known in closed form.
+std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at) {
+  const bool has_levels = truth.resolution > 0;
+  const bool correlated = truth.noise_correlation != 0;
+  const bool student = truth.noise_freedom > 0;
+  if (truth.noise == 0 || (student && (has_levels || correlated))) return std::nullopt;
+  if (truth.range && (!has_levels || correlated || student)) return std::nullopt;
+  return student      ? StudentInformation(truth, at)
+         : correlated ? CorrelatedInformation(truth, at)
+                      : WhiteInformation(truth, at);
+}
+
+}  // namespace
+
+std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
+  const std::size_t count = truth.parameters.size() + 3;
+  std::vector<std::optional<double>> bounds(count);
+  const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
+  const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
+  if (!information) return bounds;
+  // A parameter that no reading depends on stands apart, and the others keep their bounds.
+  std::vector<Index> told;
+  for (Index i = 0; i < information->rows(); ++i) {
+    if ((*information)(i, i) > 0) told.push_back(i);
+  }
+  const Eigen::MatrixXd part = (*information)(told, told);
+  const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * part * scale.asDiagonal());
+  if (factor.info() != Eigen::Success) return bounds;
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    const auto row = static_cast<Index>(k);
+    if (static_cast<std::size_t>(told[k]) >= count) continue;
+    bounds[static_cast<std::size_t>(told[k])] = scale[row] * std::sqrt(inverse(row, row));
+  }
+  return bounds;
+}
+
+}  // namespace pendulum

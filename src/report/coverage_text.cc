@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/coverage_text.h"
+
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
+
+namespace pendulum {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+constexpr int kCoverageDecimals = 3;
+constexpr int kRatioDecimals = 2;
+constexpr int kWidth = 120;
+
+/// A table before it is laid out.
+struct Table {
+  std::vector<Column> columns;
+  std::vector<Cells> rows;  ///< One cell per column.
+};
+
+std::string RatioText(const std::optional<double>& ratio) { return ratio ? FixedText(*ratio, kRatioDecimals) : "-"; }
+
+std::string ErrorText(const CoverageRow& row) {
+  constexpr int kDigits = 3;
+  return row.rms_error ? NumberText(*row.rms_error, kDigits) + " " + row.unit : "-";
+}
+
+std::string VerdictText(const CoverageRow& row) {
+  if (row.passes()) return "pass";
+  return row.precise ? "coverage" : row.covers ? "error" : "coverage, error";
+}
+
+std::string RangeText(double lower, double upper) {
+  return "[" + FixedText(lower, kCoverageDecimals) + ", " + FixedText(upper, kCoverageDecimals) + "]";
+}
+
+Table ParameterTable(std::span<const CoverageStudy> studies) {
+  Table table{{{"scenario"},
+               {"parameter"},
+               {"coverage", true},
+               {"[95 %]"},
+               {"rms error"},
+               {"error/bound", true},
+               {"std error/error", true},
+               {"no interval", true},
+               {"verdict"}},
+              {}};
+  for (const CoverageStudy& study : studies) {
+    for (const CoverageRow& row : study.rows) {
+      table.rows.push_back({study.scenario.name, row.parameter, FixedText(row.coverage, kCoverageDecimals),
+                            RangeText(row.coverage_lower, row.coverage_upper), ErrorText(row),
+                            RatioText(row.error_over_bound), RatioText(row.std_error_over_error),
+                            std::to_string(row.without_interval), VerdictText(row)});
+    }
+  }
+  return table;
+}
+
+int Misses(const CoverageStudy& study) {
+  int misses = 0;
+  for (const CoverageRow& row : study.rows) misses += row.passes() ? 0 : 1;
+  return misses;
+}
+
+Table ScenarioTable(std::span<const CoverageStudy> studies) {
+  Table table{
+      {{"scenario"}, {"recordings", true}, {"converged", true}, {"no fit", true}, {"misses", true}, {"what it is"}},
+      {}};
+  for (const CoverageStudy& study : studies) {
+    table.rows.push_back({study.scenario.name, std::to_string(study.recordings), std::to_string(study.converged),
+                          std::to_string(study.failed), std::to_string(Misses(study)), study.scenario.description});
+  }
+  return table;
+}
+
+std::string MarkdownLine(const Cells& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) line += " " + cell + " |";
+  return line + "\n";
+}
+
+std::string MarkdownTable(const Table& table) {
+  Cells headers, rules;
+  for (const Column& column : table.columns) {
+    headers.push_back(column.header);
+    rules.emplace_back(column.right_aligned ? "---:" : "---");
+  }
+  std::string text = MarkdownLine(headers) + MarkdownLine(rules);
+  for (const Cells& row : table.rows) text += MarkdownLine(row);
+  return text;
+}
+
+std::string RuleText(const CoverageRule& rule) {
+  return "[" + FixedText(rule.lowest, kRatioDecimals) + ", " + FixedText(rule.highest, kRatioDecimals) + "]";
+}
+
+constexpr std::string_view kColumns =
+    "Coverage is the share of recordings whose 95 % interval contains the truth, with its own 95 % interval (Clopper "
+    "and "
+    "Pearson). A recording without an interval, because the fit did not converge or began otherwise, counts as not "
+    "covered. `rms error` is that of the estimates; `error/bound` compares each with the Cramér-Rao bound of its own "
+    "recording, by the noise really simulated; `std error/error` is the mean standard error over the rms error. Zero "
+    "and release vary from recording to recording, within a count and a sampling interval.";
+
+/// What passes, from the same numbers as the verdicts.
+std::string Rules(std::span<const CoverageStudy> studies) {
+  const CoverageRule usual;
+  std::string text = "A line passes when the interval of its coverage meets " + RuleText(usual);
+  for (const CoverageStudy& study : studies) {
+    const CoverageRule& rule = study.scenario.rule;
+    if (rule.lowest == usual.lowest && rule.highest == usual.highest) continue;
+    text += ", " + RuleText(rule) + " in `" + study.scenario.name + "`";
+  }
+  text += ", " + RuleText(kAtBoundRule) + " where the truth is at the parameter's bound, and error/bound is at most " +
+          FixedText(usual.largest_error, kRatioDecimals) + ".";
+  return Paragraph(text, "", kWidth);
+}
+
+}  // namespace
+
+std::string CoverageText(std::span<const CoverageStudy> studies) {
+  const Table parameters = ParameterTable(studies);
+  const Table scenarios = ScenarioTable(studies);
+  return AlignedTable(parameters.columns, parameters.rows, 0) + "\n" +
+         AlignedTable(scenarios.columns, scenarios.rows, 0);
+}
+
+std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string_view command) {
+  return "# Do the 95 % intervals contain the truth 95 % of the time?\n\n" + Paragraph(kColumns, "", kWidth) + "\n" +
+         Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" + MarkdownTable(ParameterTable(studies)) +
+         "\n" + MarkdownTable(ScenarioTable(studies));
+}
+
+std::string CoverageScenarioList(std::span<const CoverageScenario> scenarios) {
+  Table table{{{"scenario"}, {"what it is"}}, {}};
+  for (const CoverageScenario& scenario : scenarios) table.rows.push_back({scenario.name, scenario.description});
+  return AlignedTable(table.columns, table.rows, 0);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/coverage_study_options.h"
+
+#include <utility>
+
+namespace pendulum {
+namespace {
+
+constexpr int kMostRecordings = 1'000'000;
+constexpr int kMostThreads = 1024;
+
+tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
+
+Result<void> CheckWhole(const std::string& flag, int value, int least, int most) {
+  if (value >= least && value <= most) return {};
+  return BadFlag(flag + " is " + std::to_string(value) + "; it must be " + std::to_string(least) + " to " +
+                 std::to_string(most));
+}
+
+std::string Command(const CoverageFlags& flags) {
+  return "coverage_study --scenario " + flags.scenario + " --count " + std::to_string(flags.count) + " --seed " +
+         std::to_string(flags.seed);
+}
+
+}  // namespace
+
+std::vector<NamedFile> CoverageStudyOptions::Outputs() const {
+  if (list || markdown.empty()) return {};
+  return {{"--markdown", markdown}};
+}
+
+Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags) {
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (auto checked = CheckWhole("--count", flags.count, 1, kMostRecordings); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (auto checked = CheckWhole("--threads", flags.threads, 0, kMostThreads); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  CoverageStudyOptions options;
+  options.list = flags.list;
+  if (!flags.list && flags.scenario.empty()) {
+    return BadFlag("--scenario is missing: names of scenarios, comma-separated, or all; --list shows them");
+  }
+  auto scenarios = FindCoverageScenarios(flags.scenario.empty() ? "all" : flags.scenario);
+  if (!scenarios) return BadFlag("--scenario: " + scenarios.error().message);
+  options.scenarios = *std::move(scenarios);
+  options.study.count = flags.count;
+  options.study.seed = flags.seed;
+  options.study.threads = flags.threads;
+  options.markdown = flags.markdown;
+  options.command = Command(flags);
+  return options;
+}
+
+}  // namespace pendulum
