@@ -43,8 +43,9 @@ CoverageScenario Fine(std::string name, std::string description, double noise) {
   return scenario;
 }
 
-CoverageScenario NoNoise() {
-  CoverageScenario scenario = OnCounts("no_noise", "no noise at all: counts only; intervals may be too wide", 0);
+/// Noise so small that intervals come from the posterior: right on average over σ, and too wide where there is none.
+CoverageScenario AlmostNoNoise(std::string name, std::string description, double noise) {
+  CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.rule.highest = 1;
   return scenario;
 }
@@ -112,7 +113,9 @@ std::vector<CoverageScenario> CoverageScenarios() {
       OnCounts("white_0.5", "white noise of 0.5 count on counts", 0.5),
       OnCounts("white_0.25", "white noise of 0.25 count on counts", 0.25),
       OnCounts("white_0.1", "white noise of 0.1 count on counts", 0.1),
-      NoNoise(),
+      AlmostNoNoise("white_0.05", "white noise of 0.05 count on counts; intervals may be too wide", 0.05),
+      AlmostNoNoise("white_0.02", "white noise of 0.02 count on counts; intervals may be too wide", 0.02),
+      AlmostNoNoise("no_noise", "no noise at all: counts only; intervals may be too wide", 0),
       ToRest(),
       SmallSwing(),
       Moving(),
