@@ -52,7 +52,10 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
     cost.set_noise(solution.noise);
     const double prior = cost.PriorSum(solution.parameters);
     solution.sum = (solution.sum - prior) * ratio * ratio + prior;
-    for (Minimum& minimum : solution.other_minima) minimum.sum *= ratio * ratio;
+    for (Minimum& minimum : solution.other_minima) {
+      const double known = cost.PriorSum(minimum.parameters);
+      minimum.sum = (minimum.sum - known) * ratio * ratio + known;
+    }
     if (problem.priors.empty() || std::abs(ratio - 1) <= kSame) break;
     solution = Continue(cost, solution, problem.solve);
   }
@@ -101,6 +104,15 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   std::ranges::sort(near, {}, &Minimum::sum);
   if (near.size() > kMost) near.resize(kMost);
   return near;
+}
+
+/// The deviances of all minima under the noise that was found, so that they can be compared.
+void SumAgain(TrajectoryCost& cost, Solution& solution) {
+  cost.set_noise(solution.noise);
+  solution.usable = cost.SumOfSquares(solution.parameters, &solution.sum);
+  for (Minimum& minimum : solution.other_minima) {
+    if (!cost.SumOfSquares(minimum.parameters, &minimum.sum)) minimum.sum = std::numeric_limits<double>::infinity();
+  }
 }
 
 double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
@@ -162,8 +174,7 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     Alternate(cost, problem, solution);
     CompareMinima(cost, problem, near, solution);
     if (!near.empty()) Alternate(cost, problem, solution);
-    cost.set_noise(solution.noise);
-    if (!cost.SumOfSquares(solution.parameters, &solution.sum)) solution.usable = false;
+    SumAgain(cost, solution);
   }
   if (cost.Readings(solution.parameters, &solution.readings, nullptr)) {
     solution.log_likelihood = LogLikelihoodOf(problem, solution);

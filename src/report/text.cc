@@ -255,10 +255,10 @@ std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
     // An error beyond the value, of a quotient whose divisor may be 0, says nothing.
-    const bool tells =
-        quantity.std_error && *quantity.std_error > 0 && *quantity.std_error < std::abs(quantity.estimate);
-    ValueAndError text{NumberText(quantity.estimate, tells ? kDigits : 3), ""};
-    if (tells) text = PdgText(quantity.estimate, *quantity.std_error);
+    const double error = quantity.std_error.value_or(0);
+    const bool says_nothing = error >= std::abs(quantity.estimate);
+    ValueAndError text{NumberText(quantity.estimate, says_nothing ? 3 : kDigits), ""};
+    if (error > 0 && !says_nothing) text = PdgText(quantity.estimate, error);
     rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
                     DerivedInterval(quantity)});
   }
