@@ -31,6 +31,7 @@ double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, cons
   return std::max(solution.noise.sigma * std::sqrt(sum / freedom), kNegligible * problem.data.scale);
 }
 
+/// Of the readings that are not censored.
 double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
   Eigen::VectorXd readings;
   if (!cost.Readings(solution.parameters, &readings, nullptr)) return problem.data.scale;
@@ -39,7 +40,7 @@ double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const 
     const double value = problem.data.value[static_cast<std::size_t>(i)];
     if (!problem.noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
   }
-  return std::sqrt(sum / static_cast<double>(readings.size()));
+  return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(readings.size() - problem.censored, 1)));
 }
 
 /// Gaussian noise has σ in closed form.
@@ -160,7 +161,9 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   if (!solution.usable) return;
   const auto samples = static_cast<double>(problem.data.time.size());
   const double rms = RmsResidual(cost, problem, solution);
-  solution.noise.family = ChooseNoise(options, problem.resolution, rms).family;
+  ChosenNoise chosen = ChooseNoise(options, problem.resolution, rms);
+  solution.noise.family = chosen.family;
+  solution.noise_reason = std::move(chosen.why);
   solution.noise.resolution = solution.noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
   if (solution.noise.IsPlain()) {
     SettleGaussian(cost, problem, solution);

@@ -196,6 +196,31 @@ TEST(Judge, SaysInWordsWhatTheDataDoNotDependOn) {
   EXPECT_EQ(JudgedBlindly(Eigen::MatrixXd::Identity(6, 6)).termination, Termination::kConverged);
 }
 
+// ---- Noise ---------------------------------------------------------------------------------------------------------
+
+TEST(Judge, SaysWhyTheNoiseIsOfItsFamilyOfReadingsWithinTheRange) {
+  // 0.58 counts of noise, and a hold that seems to be 30 counts off.
+  SyntheticOptions run = NoisyRun();
+  run.resolution = kCount;
+  run.range = SensorRange{-0.32, 0.32};
+  const FitReport report = FitOwnModel(run);
+  EXPECT_EQ(report.noise.family, NoiseFamily::kQuantized);
+  EXPECT_THAT(report.noise.why, HasSubstr("the readings are levels, not numbers"));
+  EXPECT_THAT(report.noise.sigma / run.noise, DoubleNear(1, 0.1));
+}
+
+TEST(Judge, StatisticsOfQuietReadingsAreThoseOfTheResidualsShown) {
+  // Estimates are means of the posterior here, not the likeliest.
+  SyntheticOptions run = TextbookRun("viscous");
+  run.resolution = kCount;
+  run.noise = 0.05 * kCount;
+  const FitReport report = FitOwnModel(run);
+  ASSERT_THAT(report.std_error_method, HasSubstr("posterior"));
+  const double rms = std::sqrt(report.residual.squaredNorm() / static_cast<double>(report.residual.size()));
+  EXPECT_THAT(report.statistics.rms_residual / rms, DoubleNear(1, 1e-12));
+  EXPECT_THAT(std::sqrt(report.covariance(1, 1)) / report.parameters[1].std_error.value(), DoubleNear(1, 1e-12));
+}
+
 // ---- Fixed parameters ----------------------------------------------------------------------------------------------
 
 TEST(Judge, AFixedParameterKeepsItsValueAndHasNoError) {

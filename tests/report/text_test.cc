@@ -88,7 +88,7 @@ TEST(ToText, SaysWhichIntervalIsOpen) {
   const std::string text = ToText(report);
   EXPECT_THAT(text, HasSubstr("    Intervals: profile likelihood. That of viscous is open: its likelihood does not "
                               "fall.\n"));
-  EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040] "));
+  EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 
 TEST(ToText, SaysWhoTellsTheResolution) {
@@ -103,7 +103,7 @@ TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
   RunReport report = ExampleReport();
   report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
                             {"natural_frequency", "rad/s", 4.7781234}};
-  EXPECT_THAT(ToText(report), HasSubstr("    quality_factor         123  1      [0, ?]\n"
+  EXPECT_THAT(ToText(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
                                         "    natural_frequency  4.77812  rad/s\n"));
 }
 
