@@ -160,6 +160,8 @@ void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& re
     const Eigen::Map<const Eigen::VectorXd> value(fitted.problem.data.value.data(), fitted.solution.readings.size());
     report.fitted = fitted.solution.readings;
     report.residual = value - report.fitted;
+    report.statistics.rms_residual =
+        std::sqrt(report.residual.squaredNorm() / static_cast<double>(report.residual.size()));
   }
 }
 

@@ -12,7 +12,6 @@
 #include "pendulum/fitting/estimate_autocorrelation.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
-#include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/systematic.h"
 
 namespace pendulum {
@@ -211,13 +210,12 @@ Autocorrelation MemoryOf(const Recording& recording, const TrajectoryCost& cost,
   return EstimateAutocorrelation(recording.time, z, jacobian(Eigen::all, optimum.free) / solution.noise.sigma);
 }
 
-NoiseEstimate DescribeNoise(const FitOptions& options, const FitProblem& problem, const Solution& solution,
-                            const FitReport& report, const Eigen::VectorXd& z) {
+NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution, const Eigen::VectorXd& z) {
   NoiseEstimate noise;
   noise.family = solution.noise.family;
   noise.sigma = solution.noise.sigma;
   noise.censored = problem.censored;
-  noise.why = ChooseNoise(options, problem.resolution, report.statistics.rms_residual).why;
+  noise.why = solution.noise_reason;
   noise.lag1_correlation = Lag1Correlation(z);
   return noise;
 }
@@ -268,7 +266,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.trace_error = solution.trace_error;
   report.statistics =
       ComputeStatistics(report.residual, z, solution.log_likelihood, static_cast<int>(optimum->free.size()));
-  report.noise = DescribeNoise(options, problem, solution, report, z);
+  report.noise = DescribeNoise(problem, solution, z);
   const TraceSummary trace = cost.Trace(solution.parameters);
   const bool correlated = !IsRounding(recording, report) &&
                           (FollowEachOther(z, PeriodLags(problem)) ||

@@ -31,6 +31,7 @@ double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, cons
   return std::max(solution.noise.sigma * std::sqrt(sum / freedom), kNegligible * problem.data.scale);
 }
 
+/// Of the readings that are not censored.
 double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
   Eigen::VectorXd readings;
   if (!cost.Readings(solution.parameters, &readings, nullptr)) return problem.data.scale;
@@ -39,7 +40,7 @@ double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const 
     const double value = problem.data.value[static_cast<std::size_t>(i)];
     if (!problem.noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
   }
-  return std::sqrt(sum / static_cast<double>(readings.size()));
+  return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(readings.size() - problem.censored, 1)));
 }
 
 /// Gaussian noise has σ in closed form.
@@ -52,7 +53,10 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
     cost.set_noise(solution.noise);
     const double prior = cost.PriorSum(solution.parameters);
     solution.sum = (solution.sum - prior) * ratio * ratio + prior;
-    for (Minimum& minimum : solution.other_minima) minimum.sum *= ratio * ratio;
+    for (Minimum& minimum : solution.other_minima) {
+      const double known = cost.PriorSum(minimum.parameters);
+      minimum.sum = (minimum.sum - known) * ratio * ratio + known;
+    }
     if (problem.priors.empty() || std::abs(ratio - 1) <= kSame) break;
     solution = Continue(cost, solution, problem.solve);
   }
@@ -103,6 +107,15 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   return near;
 }
 
+/// The deviances of all minima under the noise that was found, so that they can be compared.
+void SumAgain(TrajectoryCost& cost, Solution& solution) {
+  cost.set_noise(solution.noise);
+  solution.usable = cost.SumOfSquares(solution.parameters, &solution.sum);
+  for (Minimum& minimum : solution.other_minima) {
+    if (!cost.SumOfSquares(minimum.parameters, &minimum.sum)) minimum.sum = std::numeric_limits<double>::infinity();
+  }
+}
+
 double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
 
 /// Of Gaussian noise with the likeliest σ, whose square is RSS / N.
@@ -148,7 +161,9 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   if (!solution.usable) return;
   const auto samples = static_cast<double>(problem.data.time.size());
   const double rms = RmsResidual(cost, problem, solution);
-  solution.noise.family = ChooseNoise(options, problem.resolution, rms).family;
+  ChosenNoise chosen = ChooseNoise(options, problem.resolution, rms);
+  solution.noise.family = chosen.family;
+  solution.noise_reason = std::move(chosen.why);
   solution.noise.resolution = solution.noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
   if (solution.noise.IsPlain()) {
     SettleGaussian(cost, problem, solution);
@@ -162,8 +177,7 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     Alternate(cost, problem, solution);
     CompareMinima(cost, problem, near, solution);
     if (!near.empty()) Alternate(cost, problem, solution);
-    cost.set_noise(solution.noise);
-    if (!cost.SumOfSquares(solution.parameters, &solution.sum)) solution.usable = false;
+    SumAgain(cost, solution);
   }
   if (cost.Readings(solution.parameters, &solution.readings, nullptr)) {
     solution.log_likelihood = LogLikelihoodOf(problem, solution);

@@ -164,6 +164,7 @@ Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions
   solution.iterations += from.iterations;
   solution.other_minima = from.other_minima;
   solution.noise = from.noise;
+  solution.noise_reason = from.noise_reason;
   solution.log_likelihood = from.log_likelihood;
   return solution;
 }

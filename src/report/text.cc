@@ -105,6 +105,8 @@ std::vector<Column> ParameterColumns() {
           {""}};
 }
 
+constexpr int kDigitsWithoutError = 4;
+
 /// Shows the numbers that belong to one parameter alike: to the decimal of its standard error, if it has one.
 class ParameterNumbers {
  public:
@@ -121,7 +123,6 @@ class ParameterNumbers {
   std::string Error() const { return text_.error.empty() ? "" : "± " + text_.error; }
 
   std::string Number(double x) const {
-    constexpr int kDigitsWithoutError = 4;
     return rounding_ ? RoundedText(factor_ * x, *rounding_) : NumberText(factor_ * x, kDigitsWithoutError);
   }
 
@@ -241,12 +242,18 @@ std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig) 
 
 // --- what follows from the parameters -----------------------------------------------------------------------------
 
+/// An error beyond the value, of a quotient whose divisor may be 0, says nothing.
+bool SaysNothing(const DerivedQuantity& quantity) {
+  return quantity.std_error.value_or(0) >= std::abs(quantity.estimate);
+}
+
 std::string DerivedInterval(const DerivedQuantity& quantity) {
   if (!quantity.lower95 && !quantity.upper95) return "";
   const auto number = [&](const std::optional<double>& end) -> std::string {
     if (!end) return "?";
-    if (!(quantity.std_error.value_or(0) > 0)) return NumberText(*end, kDigits);
-    return RoundedText(*end, PdgRounding(quantity.estimate, *quantity.std_error));
+    const double error = quantity.std_error.value_or(0);
+    if (!(error > 0) || SaysNothing(quantity)) return NumberText(*end, kDigitsWithoutError);
+    return RoundedText(*end, PdgRounding(quantity.estimate, error));
   };
   return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
 }
@@ -254,11 +261,9 @@ std::string DerivedInterval(const DerivedQuantity& quantity) {
 std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
-    // An error beyond the value, of a quotient whose divisor may be 0, says nothing.
-    const bool tells =
-        quantity.std_error && *quantity.std_error > 0 && *quantity.std_error < std::abs(quantity.estimate);
-    ValueAndError text{NumberText(quantity.estimate, tells ? kDigits : 3), ""};
-    if (tells) text = PdgText(quantity.estimate, *quantity.std_error);
+    const bool nothing = SaysNothing(quantity);
+    ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kDigits), ""};
+    if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
     rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
                     DerivedInterval(quantity)});
   }

@@ -132,9 +132,10 @@ TEST(Bounds, AreNamedInTheWarningOfAParameterThatStandsAtOne) {
   ASSERT_THAT(fit.warnings, testing::Contains(testing::Field(&Warning::code, "at_bound")));
   for (const Warning& warning : fit.warnings) {
     if (warning.code != "at_bound") continue;
-    EXPECT_EQ(warning.message,
-              "at a bound that was given: viscous; the error bars of the other parameters take that as exact: widen "
-              "--bounds");
+    EXPECT_EQ(
+        warning.message,
+        "at a bound that was given: viscous; the standard errors of the others take that as exact, the intervals by "
+        "profile likelihood do not; widen --bounds");
   }
 }
 

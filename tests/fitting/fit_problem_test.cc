@@ -179,5 +179,50 @@ TEST(MakeFitProblem, AcceptsFrictionFixedAtItsBound) {
   EXPECT_EQ(problem.first_guess[2], 0);
 }
 
+// ---- Noise ---------------------------------------------------------------------------------------------------------
+
+Status NoiseRefusal(double resolution, Loss loss) {
+  Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
+  recording.resolution = resolution;
+  FitOptions options = ModelOptions("viscous");
+  options.noise = NoiseChoice::kQuantized;
+  options.loss = loss;
+  const auto refused = MakeFitProblem(recording, options);
+  return refused ? Status{StatusCode::kInternal, "accepted"} : refused.error();
+}
+
+TEST(MakeFitProblem, RefusesQuantizedNoiseWithoutAResolution) {
+  const Status status = NoiseRefusal(0, Loss::kNone);
+  EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(status.message,
+            "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
+}
+
+TEST(MakeFitProblem, RefusesQuantizedNoiseWithARobustLoss) {
+  for (const Loss loss : {Loss::kHuber, Loss::kStudent}) {
+    const Status status = NoiseRefusal(0.001, loss);
+    EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
+    EXPECT_EQ(status.message, "--noise quantized and --loss exclude each other; give one of them");
+  }
+}
+
+TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {
+  SyntheticOptions run = NoisyRun();
+  run.resolution = kCount;
+  run.range = SensorRange{-0.32, 0.32};  // 92.4 levels to each side of 0
+  Recording recording = Must(SimulateRecording(run));
+  const FitProblem cut = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
+  const double highest = recording.value.maxCoeff();
+  const double lowest = recording.value.minCoeff();
+  EXPECT_EQ(cut.censored, (recording.value.array() == highest).count() + (recording.value.array() == lowest).count());
+  EXPECT_GT(cut.censored, 190);  // the hold
+  EXPECT_THAT(cut.noise.high, testing::AllOf(testing::Lt(highest), testing::Gt(highest - kCount)));
+  EXPECT_THAT(cut.noise.low, testing::AllOf(testing::Gt(lowest), testing::Lt(lowest + kCount)));
+  recording.range = SensorRange{-1, 1};  // nothing comes near
+  const FitProblem whole = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
+  EXPECT_EQ(whole.censored, 0);
+  EXPECT_TRUE(whole.noise.IsPlain());
+}
+
 }  // namespace
 }  // namespace pendulum

@@ -2,6 +2,7 @@
 #include "pendulum/fitting/fit_warnings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ std::vector<std::string> Codes(const FitReport& report) {
   std::vector<std::string> codes;
   for (const Warning& warning : report.warnings) codes.push_back(warning.code);
   return codes;
+}
+
+double NumberAfter(const std::string& words, const std::string& message) {
+  const std::size_t found = message.find(words);
+  EXPECT_NE(found, std::string::npos) << message;
+  return found == std::string::npos ? 0 : std::stod(message.substr(found + words.size()));
 }
 
 TEST(FitWarnings, SayNothingOfAGoodFit) {
@@ -53,7 +60,13 @@ TEST(FitWarnings, TellAModelThatDoesNotDescribeTheData) {
   const Recording recording = Must(SimulateRecording(run));
   const FitReport poor = Fit(recording, ModelOptions("viscous"));
   EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit"));
-  EXPECT_THAT(poor.warnings[0].message, HasSubstr("too small"));
+  const std::string& message = poor.warnings[0].message;
+  EXPECT_THAT(message, HasSubstr("the error bars are conditional on a model that may be wrong"));
+  // Beyond the noise, and in its share of the residuals: two digits.
+  const double rms = poor.statistics.rms_residual;
+  EXPECT_THAT(NumberAfter("the residuals are ", message) / (rms / 0.002), testing::DoubleNear(1, 0.05));
+  EXPECT_THAT(NumberAfter("each other, by ", message) / std::sqrt(rms * rms - 0.002 * 0.002),
+              testing::DoubleNear(1, 0.05));
 }
 
 TEST(FitWarnings, TellResidualsThatFollowEachOther) {
@@ -77,10 +90,14 @@ TEST(FitWarnings, TellASensorWhoseNoiseDoesNotReachItsResolution) {
     SyntheticOptions run = TextbookRun("coulomb");
     run.resolution = kCount;
     run.noise = counts * kCount;
-    const std::vector<std::string> codes = Codes(FitOwnModel(run));
+    FitOptions options = ModelOptions("coulomb");
+    options.noise = NoiseChoice::kGaussian;
+    const std::vector<std::string> codes = Codes(Fit(Must(SimulateRecording(run)), options));
     const bool warned = std::find(codes.begin(), codes.end(), "quiet_sensor") != codes.end();
     // Rounding adds a twelfth to the variance: half a count of rms is 0.41 counts of noise.
     EXPECT_EQ(warned, counts < 0.4) << counts;
+    // Left to itself the fit takes the readings for what they are.
+    EXPECT_THAT(Codes(FitOwnModel(run)), testing::Not(testing::Contains("quiet_sensor"))) << counts;
   }
 }
 
@@ -90,7 +107,8 @@ TEST(FitWarnings, TellATrajectoryThatIsNotComputedWellEnoughForItsNoise) {
   FitReport report = Fit(recording, ModelOptions("coulomb"));
   for (const double share : {0.001, 0.1}) {
     report.trace_error = share * report.noise.sigma;
-    const std::vector<Warning> warnings = FitWarnings(recording, problem, Solution{}, TraceSummary{}, false, report);
+    const std::vector<Warning> warnings =
+        FitWarnings(recording, problem, Solution{}, TraceSummary{}, report.residual, false, report);
     ASSERT_EQ(warnings.size(), share > 0.01 ? 1 : 0);
     for (const Warning& warning : warnings) EXPECT_EQ(warning.code, "trace_accuracy");
   }
@@ -117,7 +135,8 @@ TEST(FitWarnings, TellAReleaseAtAnEndOfTheHold) {
   report.parameters[1].estimate = 0;
   Solution solution;
   solution.parameters = Truth(NoisyRun());
-  const std::vector<Warning> warnings = FitWarnings(recording, problem, solution, TraceSummary{}, false, report);
+  const std::vector<Warning> warnings =
+      FitWarnings(recording, problem, solution, TraceSummary{}, report.residual, false, report);
   ASSERT_EQ(warnings.size(), 2);
   EXPECT_THAT(warnings[0].message, HasSubstr("release_time is at an end of the hold"));
   EXPECT_THAT(warnings[1].message, HasSubstr("at the bound 0: viscous;"));
@@ -135,7 +154,7 @@ TEST(FitWarnings, TellAnotherMinimumAndAStopOnAKink) {
   Solution solution;
   solution.parameters = Truth(NoisyRun());
   solution.sum = 1000;
-  Minimum other{solution.parameters, 1005};  // N ln(1005 / 1000) = 5
+  Minimum other{solution.parameters, 1005};  // 5 in -2 log L
   other.parameters[2] += 2 * error;
   solution.other_minima = {other};
   TraceSummary trace;
@@ -143,13 +162,14 @@ TEST(FitWarnings, TellAnotherMinimumAndAStopOnAKink) {
   trace.smallest_reversal_margin = 2 * error;
   const auto codes = [&] {
     std::vector<std::string> found;
-    for (const Warning& w : FitWarnings(recording, problem, solution, trace, false, report)) found.push_back(w.code);
+    for (const Warning& w : FitWarnings(recording, problem, solution, trace, report.residual, false, report))
+      found.push_back(w.code);
     return found;
   };
   EXPECT_THAT(codes(), ElementsAre("another_minimum", "stop_is_a_kink"));
   trace.smallest_reversal_margin = 4 * error;
   EXPECT_THAT(codes(), ElementsAre("another_minimum"));
-  solution.other_minima[0].sum = 1010;  // 9.95
+  solution.other_minima[0].sum = 1010;
   EXPECT_THAT(codes(), IsEmpty());
 }
 

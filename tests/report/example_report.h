@@ -49,11 +49,20 @@ inline FitReport ExampleFit() {
   zero.fixed = true;
   zero.reason = "fixed";
   fit.parameters.push_back(zero);
-  fit.derived = {{"natural_frequency", "rad/s", 4.778, 0.0075}, {"damping_ratio", "1", 0.004, std::nullopt}};
+  fit.derived = {{"natural_frequency", "rad/s", 4.778, 0.0075, 4.763, 4.793}, {"damping_ratio", "1", 0.004}};
   fit.covariance_names = {"inertia", "viscous", "release_angle"};
   fit.covariance = Eigen::Matrix3d{{6.25e-8, 6.25e-8, 0}, {6.25e-8, 2.5e-7, 0}, {0, 0, 4e-8}};
-  fit.noise = {0.0035, 0.125};
-  fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75};
+  fit.std_error_method = "sandwich, as the residuals are AR(2)";
+  fit.interval_method = "profile likelihood";
+  fit.systematic_names = {"inertia"};
+  fit.systematic_covariance = Eigen::MatrixXd::Constant(1, 1, 1e-6);
+  fit.identifiability = {
+      {"inertia", Identifiability::Verdict::kIdentifiable, {}, ""},
+      {"viscous", Identifiability::Verdict::kWeakly, {"viscous", "coulomb"}, "let it swing for longer"},
+      {"coulomb", Identifiability::Verdict::kWeakly, {}, "let it come to rest"},
+      {"release_angle", Identifiability::Verdict::kIdentifiable, {}, ""}};
+  fit.noise = {NoiseFamily::kQuantized, 0.0035, 0.0001, 12, "the residuals are 0.8 resolutions", 0.125, "AR(2)"};
+  fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75, 0.04, 0.25, 1200.25};
   fit.solver = {7, 15, "Convergence. (made up)"};
   fit.trace_error = 2e-10;
   fit.warnings = {{"lack_of_fit", "the residuals are not white; friction may be of another kind"}};
@@ -70,6 +79,7 @@ inline RunReport ExampleReport() {
   report.data.from = 1.5;
   report.data.to = 19.5;
   report.data.resolution = kRadFromDeg / 4;
+  report.data.resolution_source = "found";
   report.data.begins = "held, then released";
   report.data.ends = "the end of the recording";
   report.data.releases = {{1.5, 19.5}};
@@ -88,6 +98,7 @@ inline RunReport ExampleRateReport() {
   report.rig.reset();
   report.data.unit = "rad/s";
   report.data.resolution = 0;
+  report.data.resolution_source.clear();
   FitReport& fit = report.fits.front();
   fit.quantity = Quantity::kRate;
   fit.reading_unit = "rad/s";
@@ -105,6 +116,12 @@ inline RunReport ExampleRateReport() {
   fit.derived.clear();
   fit.covariance_names.clear();
   fit.covariance.resize(0, 0);
+  fit.std_error_method.clear();
+  fit.interval_method.clear();
+  fit.systematic_names.clear();
+  fit.systematic_covariance.resize(0, 0);
+  fit.identifiability.clear();
+  fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, "the readings stand on no levels", 0.125, "white"};
   return report;
 }
 

@@ -4,6 +4,9 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +43,8 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
   const Json json = ToJson(ExampleReport());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "warnings"));
   EXPECT_THAT(Keys(json["fits"][0]), ElementsAre("model", "status", "reason", "parameters", "derived", "covariance",
-                                                 "correlation", "noise", "std_error_method", "statistics", "solver"));
+                                                 "correlation", "noise", "systematic_covariance", "std_error_method",
+                                                 "interval_method", "identifiability", "statistics", "solver"));
   EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
               ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
   EXPECT_EQ(json["tool"]["version"], kVersion);
@@ -62,6 +66,42 @@ TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 
+TEST(ToJson, SaysWhyAnIntervalIsOpen) {
+  RunReport report = ExampleReport();
+  ParameterEstimate& viscous = report.fits[0].parameters[1];
+  viscous.lower95.reset();
+  viscous.open_interval = "its likelihood does not fall";
+  const Json json = ToJson(report)["fits"][0]["parameters"]["viscous"];
+  EXPECT_EQ(json["interval95"], Json::array({nullptr, 0.004}));
+  EXPECT_EQ(json["reason"], "the interval is open: its likelihood does not fall");
+}
+
+TEST(ToJson, GivesIntervalsOfDerivedQuantitiesEndByEnd) {
+  RunReport report = ExampleReport();
+  report.fits[0].derived[1].upper95 = 0.005;
+  const Json derived = ToJson(report)["fits"][0]["derived"];
+  EXPECT_EQ(derived["natural_frequency"]["interval95"], Json::array({4.763, 4.793}));
+  EXPECT_EQ(derived["damping_ratio"]["interval95"], Json::array({nullptr, 0.005}));
+}
+
+TEST(ToJson, NamesTheNoiseFamily) {
+  RunReport report = ExampleReport();
+  const std::pair<NoiseFamily, const char*> named[] = {{NoiseFamily::kGaussian, "gaussian"},
+                                                       {NoiseFamily::kQuantized, "quantized"},
+                                                       {NoiseFamily::kHuber, "huber"},
+                                                       {NoiseFamily::kStudent, "student"}};
+  for (const auto& [family, name] : named) {
+    report.fits[0].noise.family = family;
+    EXPECT_EQ(ToJson(report)["fits"][0]["noise"]["model"], name);
+  }
+  EXPECT_TRUE(ToJson(ExampleRateReport())["fits"][0]["noise"]["sigma_std_error"].is_null());
+}
+
+TEST(ToJson, SaysWhoTellsTheResolution) {
+  EXPECT_EQ(ToJson(ExampleReport())["data"]["resolution_source"], "found");
+  EXPECT_TRUE(ToJson(ExampleRateReport())["data"]["resolution_source"].is_null());
+}
+
 TEST(ToJson, GivesARateItsOwnUnits) {
   const Json json = ToJson(ExampleRateReport());
   EXPECT_TRUE(json["rig"].is_null());
@@ -79,6 +119,8 @@ TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
   EXPECT_EQ(fit["parameters"]["inertia"]["reason"], "the fit did not converge");
   EXPECT_EQ(fit["covariance"]["matrix"], Json::array());
   EXPECT_TRUE(fit["std_error_method"].is_null());
+  EXPECT_TRUE(fit["interval_method"].is_null());
+  EXPECT_EQ(fit["identifiability"], Json::array());
 }
 
 TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {

@@ -19,6 +19,7 @@ TEST(SummarizeData, TellsTheWindowFromTheWhole) {
   recording.time = Eigen::VectorXd::LinSpaced(101, 0, 10);
   recording.value = Eigen::VectorXd::Zero(101);
   recording.resolution = 0.5;
+  recording.resolution_source = "file";
   const DataSummary data = SummarizeData(recording, *SelectWindow(recording, 1.95, 4.05));
   EXPECT_EQ(data.path, "a.csv");
   EXPECT_EQ(data.samples, 101);
@@ -28,6 +29,9 @@ TEST(SummarizeData, TellsTheWindowFromTheWhole) {
   EXPECT_DOUBLE_EQ(data.duration(), 2);
   EXPECT_DOUBLE_EQ(data.sample_rate(), 10);
   EXPECT_EQ(data.resolution, 0.5);
+  EXPECT_EQ(data.resolution_source, "file");
+  recording.resolution = 0;
+  EXPECT_EQ(SummarizeData(recording, recording).resolution_source, "");
 }
 
 TEST(AllWarnings, SaysEachOnceDataFirst) {

@@ -20,7 +20,7 @@ TEST(ToText, GivesTheWholeReport) {
     window      1.5 s to 19.5 s, 100 Hz on average
     begins      held, then released
     ends        the end of the recording
-    resolution  0.00436 rad (0.25 deg)
+    resolution  0.00436 rad (0.25 deg), found in the values
 [[Fit]]
     model  coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0
     start  held at an angle, then released
@@ -35,18 +35,24 @@ TEST(ToText, GivesTheWholeReport) {
     zero_angle     z           0.01              rad                                                       fixed
                            0.572958              deg
     No standard error of coulomb: the estimate is at its lower bound 0.
-    Standard errors: covariance sigma^2 (J'J)^-1, residuals taken as independent.
+    Standard errors: sandwich, as the residuals are AR(2).
+    Intervals: profile likelihood.
+    viscous is weakly identifiable (traded for coulomb): let it swing for longer.
+    coulomb is weakly identifiable: let it come to rest.
     The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger.
 [[Derived quantities]]
-    natural_frequency  4.778 ± 0.008  rad/s
+    natural_frequency  4.778 ± 0.008  rad/s  [4.763, 4.793]
     damping_ratio      0.004          1
 [[Correlations]] (those below 0.1 in size are not listed)
     inertia, viscous  0.500
 [[Noise and statistics]]
-    noise              Gaussian, sigma 0.0035 rad (0.201 deg)
+    noise              quantized, sigma 0.00350 ± 0.00010 rad (0.201 deg)
+    because            the residuals are 0.8 resolutions
     rms residual       0.00349 rad (0.2 deg)
     lag-1 correlation  0.125
     Durbin-Watson      1.750
+    Ljung-Box, runs    p 0.04, 0.25
+    memory             AR(2); the samples count as 1200 independent ones
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50
     solver             7 iterations, 15 trajectories, accurate to 2e-10 rad
@@ -72,6 +78,33 @@ TEST(ToText, GivesARateInDegreesPerSecondToo) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    rate_bias  z          0.25  rad/s\n                       14.3239  deg/s\n"));
   EXPECT_THAT(text, HasSubstr("sigma 0.0035 rad/s (0.201 deg/s)"));
+}
+
+TEST(ToText, SaysWhichIntervalIsOpen) {
+  RunReport report = ExampleReport();
+  ParameterEstimate& viscous = report.fits[0].parameters[1];
+  viscous.lower95.reset();
+  viscous.open_interval = "its likelihood does not fall";
+  const std::string text = ToText(report);
+  EXPECT_THAT(text, HasSubstr("    Intervals: profile likelihood. That of viscous is open: its likelihood does not "
+                              "fall.\n"));
+  EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
+}
+
+TEST(ToText, SaysWhoTellsTheResolution) {
+  RunReport report = ExampleReport();
+  report.data.resolution_source = "file";
+  EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
+  report.data.resolution_source = "given";
+  EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), as given\n"));
+}
+
+TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
+  RunReport report = ExampleReport();
+  report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
+                            {"natural_frequency", "rad/s", 4.7781234}};
+  EXPECT_THAT(ToText(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
+                                        "    natural_frequency  4.77812  rad/s\n"));
 }
 
 TEST(ToText, SaysAReasonOnceForAllParametersItConcerns) {

@@ -41,7 +41,9 @@ class Schema(unittest.TestCase):
 
     def test_wants_every_key_and_no_other(self):
         for path in ([], ["tool"], ["data"], ["fits", 0], ["fits", 0, "parameters", "viscous"], ["fits", 0, "noise"],
-                     ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"], ["warnings", 0]):
+                     ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"],
+                     ["fits", 0, "systematic_covariance"], ["fits", 0, "identifiability", 0],
+                     ["fits", 0, "derived", "natural_frequency"], ["warnings", 0]):
             part = EXAMPLE
             for step in path:
                 part = part[step]
@@ -66,6 +68,16 @@ class Schema(unittest.TestCase):
 
     def test_knows_four_outcomes(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="ok"))
+
+    def test_knows_four_kinds_of_noise(self):
+        for model in ("gaussian", "quantized", "huber", "student"):
+            result = copy.deepcopy(EXAMPLE)
+            result["fits"][0]["noise"]["model"] = model
+            VALIDATOR.validate(result)
+        self.assert_refused(lambda result: result["fits"][0]["noise"].update(model="cauchy"))
+
+    def test_knows_three_verdicts(self):
+        self.assert_refused(lambda result: result["fits"][0]["identifiability"][0].update(verdict="perhaps"))
 
     def test_wants_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))

@@ -34,7 +34,8 @@ struct Solution {
   bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
   std::string message;
-  NoiseModel noise;                   ///< Set by MaximizeLikelihood, as is the next.
+  NoiseModel noise;                   ///< Set by MaximizeLikelihood, as are the next two.
+  std::string noise_reason;           ///< Why this family, in words.
   double log_likelihood = 0;          ///< Probability per sample; a density is multiplied with the resolution (or 1).
   Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
   double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.
