@@ -53,18 +53,20 @@ IntervalProbability AroundZero(double a, double b) {
   return {outside < 0.5 ? std::log1p(-outside) : std::log(inside), Density(a) / inside, Density(b) / inside};
 }
 
-/// An interval shorter than this is a density times its length, to (b - a)⁴.
-constexpr double kShort = 1e-4;
+/// The density is tilted this little along an interval, or the interval is a tenth of this long: it is a density times
+/// its length, to the fourth power of either.
+constexpr double kShort = 4e-3;
 
 IntervalProbability Short(double a, double b) {
   const double length = b - a;
   const double middle = 0.5 * (a + b);
   const double curvature = (middle * middle - 1) * length * length / 24;
-  const double tilt = 0.5 * middle * length;  // of the density, to either side
+  const double tilt = 0.5 * middle * length;  // of log φ, to either side
+  const double sag = 0.125 * length * length + curvature;
   IntervalProbability interval;
   interval.log = -0.5 * middle * middle - kLogRootTwoPi + std::log(length) + curvature;
-  interval.lower = (1 + tilt) / length;
-  interval.upper = (1 - tilt) / length;
+  interval.lower = std::exp(tilt - sag) / length;
+  interval.upper = std::exp(-tilt - sag) / length;
   return interval;
 }
 
@@ -84,8 +86,7 @@ IntervalProbability GaussianInterval(double a, double b) {
     const IntervalProbability mirrored = GaussianInterval(-b, -a);
     return {mirrored.log, mirrored.upper, mirrored.lower};
   }
-  constexpr double kNotFarOut = 10;
-  if (b - a < kShort && a < kNotFarOut) return Short(a, b);
+  if ((b - a) * std::max(a, 10.0) < kShort) return Short(a, b);
   return a >= 0 ? UpperTail(a, b) : AroundZero(a, b);
 }
 

@@ -39,7 +39,7 @@ Eigen::MatrixXd FollowCalibration(const Calibration& calibration, const FitProbl
   for (Index i = 0; i < readings.size(); ++i) {
     const double value = problem.data.value[static_cast<std::size_t>(i)];
     input = calibration.Reading(value, input);
-    const double weight = std::max(solution.noise.LikelihoodAt(value, readings[i]).information, 0.0);
+    const double weight = solution.noise.At(value, readings[i]).weight;
     const Eigen::VectorXd row = jacobian.row(i)(optimum.free);
     double power = weight * calibration.RadFromUnit();
     for (Index k = 0; k < size; ++k, power *= input) sums.col(k) += power * row;

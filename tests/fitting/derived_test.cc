@@ -133,5 +133,62 @@ TEST(DerivedQuantities, AreOnlyThoseOfTheModelsParameters) {
   EXPECT_EQ(quantities.size(), 6);
 }
 
+// ---- Intervals -----------------------------------------------------------------------------------------------------
+
+/// The drag model's quantities with intervals from I in [0.0361, 0.0484] s², b and τ_c as given; c has no interval.
+Quantities WithIntervals(const IntervalEnds& viscous, const IntervalEnds& coulomb,
+                         const IntervalEnds& inertia = {0.0361, 0.0484}) {
+  const std::vector<ParameterInfo> infos =
+      FitParameters(Must(FindMotionModel("drag")), StartKind::kMoving, Quantity::kAngle);
+  std::vector<DerivedQuantity> derived = DerivedQuantities(infos, kParameters, nullptr, {});
+  SetDerivedIntervals(infos, kParameters, {inertia, viscous, coulomb, {}, {}, {}, {}}, derived);
+  Quantities quantities;
+  for (const DerivedQuantity& quantity : derived) quantities[quantity.name] = quantity;
+  return quantities;
+}
+
+void ExpectInterval(const DerivedQuantity& quantity, double lower, double upper) {
+  ASSERT_TRUE(quantity.lower95 && quantity.upper95) << quantity.name;
+  EXPECT_THAT(*quantity.lower95, DoubleNear(lower, 1e-9 * std::abs(upper))) << quantity.name;
+  EXPECT_THAT(*quantity.upper95, DoubleNear(upper, 1e-9 * std::abs(upper))) << quantity.name;
+}
+
+/// Roots of I: 0.19, 0.2, 0.22 s; a rising I lowers ω0 and lengthens the period.
+TEST(SetDerivedIntervals, CarriesTheEndsOfOneParameterOver) {
+  const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
+  ExpectInterval(quantities.at("natural_frequency"), 1 / 0.22, 1 / 0.19);
+  ExpectInterval(quantities.at("small_angle_period"), 0.38 * kPi, 0.44 * kPi);
+  ExpectInterval(quantities.at("gravity_over_inertia"), 1 / 0.0484, 1 / 0.0361);
+  ExpectInterval(quantities.at("coulomb_over_inertia"), 0.003 / 0.0484, 0.003 / 0.0361);  // τ_c is held
+}
+
+TEST(SetDerivedIntervals, AddsTheDistancesOfTwoParametersInSquares) {
+  const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
+  // ζ = b / (2 sqrt(I)): 0.005; by b 0.0025 to 0.0075, by I 0.001 / 0.22 to 0.001 / 0.19.
+  ExpectInterval(quantities.at("damping_ratio"), 0.005 - std::hypot(0.0025, 0.005 - 0.001 / 0.22),
+                 0.005 + std::hypot(0.0025, 0.001 / 0.19 - 0.005));
+  // Q = sqrt(I) / b: 100; by b 66.7 to 200, by I 95 to 110.
+  ExpectInterval(quantities.at("quality_factor"), 100 - std::hypot(100 - 200.0 / 3, 5), 100 + std::hypot(100, 10));
+  // b / I: 0.05; by b 0.025 to 0.075.
+  ExpectInterval(quantities.at("viscous_over_inertia"), 0.05 - std::hypot(0.025, 0.05 - 0.002 / 0.0484),
+                 0.05 + std::hypot(0.025, 0.002 / 0.0361 - 0.05));
+}
+
+TEST(SetDerivedIntervals, AQualityFactorHasNoUpperEndWhereTheFrictionMayBeNone) {
+  const DerivedQuantity quality = WithIntervals({0.0, 0.004}, {0.003, 0.003}).at("quality_factor");
+  EXPECT_FALSE(quality.upper95);
+  EXPECT_THAT(*quality.lower95, DoubleNear(100 - std::hypot(50, 5), 1e-9));
+}
+
+TEST(SetDerivedIntervals, AMissingEndLeavesOpenWhatItIsCarriedTo) {
+  const Quantities quantities = WithIntervals({0.001, {}}, {0.003, 0.003});
+  EXPECT_TRUE(quantities.at("damping_ratio").lower95);
+  EXPECT_FALSE(quantities.at("damping_ratio").upper95);
+  EXPECT_FALSE(quantities.at("quality_factor").lower95);
+  EXPECT_TRUE(quantities.at("quality_factor").upper95);
+  EXPECT_TRUE(quantities.at("natural_frequency").lower95 && quantities.at("natural_frequency").upper95);
+  EXPECT_FALSE(quantities.at("drag_over_inertia").lower95 || quantities.at("drag_over_inertia").upper95);
+}
+
 }  // namespace
 }  // namespace pendulum

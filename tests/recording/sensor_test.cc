@@ -78,6 +78,31 @@ TEST(Calibration, OfHigherOrderHasTheSlopeOfItsCurve) {
   EXPECT_DOUBLE_EQ(cubic.Slope(2), 62);  // 2 + 12 + 48
 }
 
+TEST(Calibration, FindsTheReadingThatShowsAnAngle) {
+  const Calibration line = CalibrationOf(With("coefficients", "[-49.6077, 0.1985]"));
+  EXPECT_NEAR(line.Reading(2.2008 * kDegree, 0), 261, 1e-9);
+  // x³ + 2 x rises everywhere: 12 at 2, -33 at -3.
+  const Calibration cubic = CalibrationOf(R"({"input": "volts", "angle_unit": "rad", "coefficients": [0, 2, 0, 1]})");
+  EXPECT_NEAR(cubic.Reading(12, 0), 2, 1e-12);
+  EXPECT_NEAR(cubic.Reading(-33, 5), -3, 1e-12);
+  for (double reading = -4; reading <= 4; reading += 0.25) {
+    EXPECT_NEAR(cubic.Reading(cubic.Angle(reading), reading + 0.3), reading, 1e-12);
+  }
+}
+
+TEST(Calibration, FindsTheReadingNextToWhereItIsSought) {
+  // x² - 1 is 3 at 2 and at -2.
+  const Calibration parabola = CalibrationOf(With("coefficients", "[-1, 0, 1]"));
+  EXPECT_NEAR(parabola.Reading(3 * kDegree, 1.5), 2, 1e-12);
+  EXPECT_NEAR(parabola.Reading(3 * kDegree, -1.5), -2, 1e-12);
+  EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // flat there: no side is nearer
+}
+
+TEST(Calibration, KnowsItsUnit) {
+  EXPECT_DOUBLE_EQ(CalibrationOf(With("angle_unit", "\"deg\"")).RadFromUnit(), kDegree);
+  EXPECT_EQ(CalibrationOf(With("angle_unit", "\"rad\"")).RadFromUnit(), 1);
+}
+
 TEST(ParseCalibration, NamesTheKeyThatIsUnknownOrMissing) {
   EXPECT_THAT(FaultOf(With("offset", "1")), StartsWith(R"(cal.json: "offset" is not a key of a calibration; )"));
   EXPECT_THAT(FaultOf(R"({"input": "counts", "angle_unit": "deg"})"),
