@@ -13,8 +13,8 @@
 #include <Eigen/QR>
 #include <boost/math/tools/minima.hpp>
 
-#include "pendulum/base/median.h"
 #include "burg.h"
+#include "pendulum/base/median.h"
 
 namespace pendulum {
 namespace {

@@ -210,9 +210,9 @@ Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& o
   const bool traded = optimum.inverse.identifiable && row < static_cast<Index>(optimum.free.size()) &&
                       optimum.inverse.matrix(row, row) * optimum.information(parameter, parameter) > kTraded &&
                       estimate.std_error.value_or(0) > kImprecise * std::abs(estimate.estimate);
-  const bool reaches_bound =
-      estimate.at_bound || (estimate.lower95 && *estimate.lower95 <= problem.Reported(i, problem.solve.lower[i])) ||
-      (estimate.upper95 && *estimate.upper95 >= problem.Reported(i, problem.solve.upper[i]));
+  const bool reaches_bound = estimate.at_bound ||
+                             (estimate.lower95 && *estimate.lower95 <= problem.Reported(i, problem.solve.lower[i])) ||
+                             (estimate.upper95 && *estimate.upper95 >= problem.Reported(i, problem.solve.upper[i]));
   if (std::ranges::find(unseen, parameter) != unseen.end()) {
     known.verdict = Identifiability::Verdict::kNotIdentifiable;
     for (const int other : unseen) known.direction.emplace_back(problem.infos[static_cast<std::size_t>(other)].name);

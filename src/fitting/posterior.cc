@@ -16,9 +16,9 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 
+#include "line_likelihood.h"
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/covariance.h"
-#include "line_likelihood.h"
 
 namespace pendulum {
 namespace {

@@ -35,7 +35,9 @@ FitReport Judged(const SyntheticOptions& run, const std::vector<double>& paramet
   solution.parameters = parameters;
   solution.usable = usable;
   solution.message = "what the solver says";
-  if (usable) EXPECT_TRUE(cost->SumOfSquares(parameters, &solution.sum));
+  if (usable) {
+    EXPECT_TRUE(cost->SumOfSquares(parameters, &solution.sum));
+  }
   MaximizeLikelihood(*cost, problem, options, solution);  // Gaussian noise: finds sigma, moves nothing
   EXPECT_EQ(solution.parameters, parameters);
   return Judge(recording, options, problem, *cost, solution);

@@ -121,8 +121,8 @@ constexpr auto kEnso = [](const auto* b, const auto* x) {
   const auto year = 2 * kPi * x[0] / 12;
   const auto second = 2 * kPi * x[0] / b[3];
   const auto third = 2 * kPi * x[0] / b[6];
-  return b[0] + b[1] * cos(year) + b[2] * sin(year) + b[4] * cos(second) + b[5] * sin(second) +
-         b[7] * cos(third) + b[8] * sin(third);
+  return b[0] + b[1] * cos(year) + b[2] * sin(year) + b[4] * cos(second) + b[5] * sin(second) + b[7] * cos(third) +
+         b[8] * sin(third);
 };
 
 // ---- Solution -------------------------------------------------------------------------------------------------------

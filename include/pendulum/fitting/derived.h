@@ -16,8 +16,9 @@ struct DerivedQuantity {
   std::string name;
   std::string unit;
   double estimate = 0;
-  std::optional<double> std_error;
-  std::optional<double> lower95, upper95;
+  std::optional<double> std_error = std::nullopt;
+  std::optional<double> lower95 = std::nullopt;
+  std::optional<double> upper95 = std::nullopt;
 };
 
 /// Ends of a parameter's interval; one may be missing.

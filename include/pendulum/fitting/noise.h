@@ -17,8 +17,8 @@ struct IntervalProbability {
   double upper = 0;
 };
 
-/// Without cancellation in both tails: the error of log is below 1e-13, absolute or relative, the densities' relative one
-/// below 1e-11, and mostly a thousandth of these. a < b, each may be infinite.
+/// Without cancellation in both tails: the error of log is below 1e-13, absolute or relative, the densities' relative
+/// one below 1e-11, and mostly a thousandth of these. a < b, each may be infinite.
 IntervalProbability GaussianInterval(double a, double b);
 
 /// How samples scatter about the trajectory.

@@ -32,11 +32,11 @@ struct ReadOptions {
 ///
 /// `# key: value` is metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows
 /// without time), `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines
-/// with # are comments. A resolution that nobody tells is looked for in the values (FindResolution), and counts that end
-/// at 0 or the full scale of 10, 12, 14 or 16 bits have that range. Warnings: those of RepairClock; incomplete_row, host_time,
-/// time_unit_assumed, lost_samples; metadata_not_applied, a calibration in a file of angles.
-/// kNotFound: no such file. kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the
-/// options contradict the file. kFailedPrecondition: fewer than kMinimumSamples rows. Messages begin "path:line:".
+/// with # are comments. A resolution that nobody tells is looked for in the values (FindResolution), and counts that
+/// end at 0 or the full scale of 10, 12, 14 or 16 bits have that range. Warnings: those of RepairClock; incomplete_row,
+/// host_time, time_unit_assumed, lost_samples; metadata_not_applied, a calibration in a file of angles. kNotFound: no
+/// such file. kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options
+/// contradict the file. kFailedPrecondition: fewer than kMinimumSamples rows. Messages begin "path:line:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from text in memory; `name` stands for the path in messages and in Recording::path. Not kNotFound.
