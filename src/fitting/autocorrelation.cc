@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
+
+#include "pendulum/base/physics.h"
 
 namespace pendulum {
 
@@ -25,6 +28,23 @@ double Autocorrelation::VarianceInflation() const {
   // The spectrum at frequency 0.
   const double memory = std::accumulate(autoregressive.begin(), autoregressive.end(), 0.0);
   return innovation_variance * std::pow((1 + moving_average) / (1 - memory), 2);
+}
+
+double Autocorrelation::SquaredInflation() const {
+  if (kind == Kind::kWhite) return 1;
+  if (kind == Kind::kContinuous) {
+    return 1 + 2 * std::pow(1 - white_share, 2) / std::expm1(2 * interval / decay_time);
+  }
+  // The mean square of the spectrum (Parseval), by the midpoint rule over half a turn.
+  constexpr int kFrequencies = 1 << 13;
+  double sum = 0;
+  for (int i = 0; i < kFrequencies; ++i) {
+    const std::complex<double> back = std::polar(1.0, -kPi * (i + 0.5) / kFrequencies);
+    std::complex<double> memory = 0;
+    for (std::size_t j = autoregressive.size(); j-- > 0;) memory = back * (memory + autoregressive[j]);
+    sum += std::pow(innovation_variance * std::norm(1.0 + moving_average * back) / std::norm(1.0 - memory), 2);
+  }
+  return sum / kFrequencies;
 }
 
 namespace {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,5 +28,59 @@ std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const s
 
 /// The φ of an autoregression with these reflection coefficients (Levinson 1947, Durbin 1960).
 std::vector<double> FromReflection(const std::vector<double>& reflection);
+
+// -----------------------------------------------------------------------------------------------------------------
+
+/// Prediction errors of Burg's lattice, of all stretches one after the other. Order p predicts sample t from the p
+/// before it, with the error forward[t], and sample t - p from the p after it, with the error backward[t - p].
+struct Lattice {
+  Eigen::VectorXd forward, backward;
+};
+
+/// The reflection coefficient that takes the lattice to this order, and the lattice taken there.
+inline double Reflect(const std::vector<Stretch>& stretches, Eigen::Index order, Lattice* lattice) {
+  double product = 0;
+  double energy = 0;
+  for (const Stretch& stretch : stretches) {
+    const Eigen::Index size = std::max<Eigen::Index>(stretch.size - order, 0);
+    const auto forward = lattice->forward.segment(stretch.begin + stretch.size - size, size);
+    const auto backward = lattice->backward.segment(stretch.begin, size);
+    product += 2 * forward.dot(backward);
+    energy += forward.squaredNorm() + backward.squaredNorm();
+  }
+  const double reflection = energy > 0 ? product / energy : 0;
+  for (const Stretch& stretch : stretches) {
+    for (Eigen::Index i = 0; i < stretch.size - order; ++i) {
+      double& forward = lattice->forward[stretch.begin + i + order];
+      double& backward = lattice->backward[stretch.begin + i];
+      const double before = forward;
+      forward -= reflection * backward;
+      backward -= reflection * before;
+    }
+  }
+  return reflection;
+}
+
+inline std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<Stretch>& stretches,
+                                                  int longest) {
+  Lattice lattice{value, value};
+  std::vector<double> reflection;
+  for (int order = 1; order <= longest; ++order) {
+    const double next = Reflect(stretches, order, &lattice);
+    if (!(std::abs(next) < 1)) break;
+    reflection.push_back(next);
+  }
+  return reflection;
+}
+
+inline std::vector<double> FromReflection(const std::vector<double>& reflection) {
+  std::vector<double> memory;
+  for (const double last : reflection) {
+    const std::vector<double> before = memory;
+    for (std::size_t j = 0; j < before.size(); ++j) memory[j] -= last * before[before.size() - 1 - j];
+    memory.push_back(last);
+  }
+  return memory;
+}
 
 }  // namespace pendulum

@@ -279,7 +279,8 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   } else {
     SetDerived(problem, *optimum, Errors{}, solution, report);
   }
-  SetIdentifiability(problem, *optimum, report);
+  const bool is_told = report.termination == Termination::kConverged || !optimum->inverse.identifiable;
+  if (is_told) SetIdentifiability(problem, *optimum, report);
   report.warnings = FitWarnings(recording, problem, solution, trace, z, correlated, report);
   report.solver.evaluations = cost.traces();
   return report;

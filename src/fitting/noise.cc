@@ -241,6 +241,7 @@ namespace {
 struct SigmaSums {
   double score = 0;
   double information = 0;
+  double square = 0;  // of the scores
 };
 
 SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
@@ -252,14 +253,12 @@ SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vector
       std::erf(kRootHalf * kWidth) - 2 * kWidth * Density(kWidth) + kWidth * kWidth * std::erfc(kRootHalf * kWidth);
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const NoiseLikelihood l = noise.LikelihoodAt(value[i], readings[i]);
-    if (noise.family == NoiseFamily::kHuber) {
-      const double psi = noise.sigma * l.score;
-      sums.score += psi * psi - normal;
-      sums.information += 2 * psi * psi * (l.information > 0 ? 1 : 0);
-    } else {
-      sums.score += l.sigma_score;
-      sums.information += l.sigma_information;
-    }
+    const bool huber = noise.family == NoiseFamily::kHuber;
+    const double psi = noise.sigma * l.score;
+    const double score = huber ? psi * psi - normal : l.sigma_score;
+    sums.score += score;
+    sums.square += score * score;
+    sums.information += !huber ? l.sigma_information : l.information > 0 ? 2 * psi * psi : 0.0;
   }
   return sums;
 }
@@ -288,6 +287,12 @@ double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>&
     if (made < kConverged) break;
   }
   return std::exp(lambda);
+}
+
+double RobustSigmaError(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                        const Eigen::Ref<const Eigen::VectorXd>& readings) {
+  const SigmaSums sums = SumsOver(noise, value, readings);
+  return noise.sigma * std::sqrt(sums.square) / sums.information;
 }
 
 }  // namespace pendulum

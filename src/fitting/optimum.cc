@@ -158,6 +158,10 @@ Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, cons
   const SampleTerms terms = TermsOf(problem, solution);
   const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum.free);
   if (!solution.noise.IsPlain()) SetLikelihoodErrors(cost, solution, optimum, terms, jacobian, errors);
+  if (solution.noise.IsRobust()) {
+    errors.sigma = RobustSigmaError(solution.noise, AsVector(problem.data.value), solution.readings);
+  }
+  if (errors.sigma) *errors.sigma *= std::sqrt(correlation.SquaredInflation());
   const double counted = solution.noise.IsPlain() ? free : 0;  // of the parameters, in σ
   if (!white || solution.noise.IsRobust()) {
     const Sandwich sandwich = MakeSandwich(cost, problem, solution, optimum, terms, jacobian, correlation);

@@ -30,6 +30,9 @@ struct Autocorrelation {
   /// Variance of the mean of many samples, over that of as many independent ones: 1 + 2 Σ ρ_k. N samples tell of a
   /// constant as much as N over this number would that are independent.
   double VarianceInflation() const;
+
+  /// The same of the variance of many samples: 1 + 2 Σ ρ_k².
+  double SquaredInflation() const;
 };
 
 /// A step beyond this many intervals is a gap in the clock, not jitter.

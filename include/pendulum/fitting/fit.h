@@ -118,7 +118,7 @@ struct FitReport {
   std::string interval_method;   ///< In words.
   std::vector<std::string> systematic_names;     ///< Parameters with a systematic error.
   Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
-  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed, in their order.
+  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;

@@ -92,4 +92,8 @@ double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vect
 double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                       const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest);
 
+/// The standard error of a robust family's σ, by the scatter of what each sample says of it.
+double RobustSigmaError(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                        const Eigen::Ref<const Eigen::VectorXd>& readings);
+
 }  // namespace pendulum
