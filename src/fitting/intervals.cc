@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/bootstrap.h"
 #include "pendulum/fitting/maximum_likelihood.h"
@@ -48,11 +46,11 @@ bool NearBound(const FittedModel& fitted, const Errors& errors) {
 }
 
 void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
-  const double t = boost::math::quantile(boost::math::students_t(errors.freedom), 0.975);
   const SolveOptions& solve = fitted.problem.solve;
   for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
     const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
-    const double length = t * std::sqrt(errors.covariance(static_cast<Index>(row), static_cast<Index>(row)));
+    const auto k = static_cast<Index>(row);
+    const double length = errors.t95[k] * std::sqrt(errors.covariance(k, k));
     const double at = fitted.solution.parameters[i];
     const double lowest = i == 0 ? 0.0 : solve.lower[i];  // inertia is positive
     SetInterval(fitted.problem, fitted.optimum.free[row], std::max(at - length, lowest),
@@ -66,7 +64,10 @@ void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, Fit
     SetInterval(fitted.problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at),
                 report);
   }
-  report.interval_method = "estimate ± " + NumberText(t, 4) + " standard errors";
+  if (errors.t95.size() == 0) return;
+  const std::string least = NumberText(errors.t95.minCoeff(), 4);
+  const std::string most = NumberText(errors.t95.maxCoeff(), 4);
+  report.interval_method = "estimate ± " + (least == most ? least : least + " to " + most) + " standard errors";
 }
 
 void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {

@@ -9,49 +9,10 @@
 
 #include <Eigen/Core>
 
+#include "depth_table.h"
 #include "pendulum/fitting/noise.h"
 
 namespace pendulum {
-
-/// Log-probability of a level, or of a censored reading, by how deep within its nearer edge the modelled value lies.
-/// Lengths in units of the resolution. Cubic between nodes σ/4 apart: to 1e-5.
-class DepthTable {
- public:
-  /// width: 1 of a level, infinite of a censored reading.
-  explicit DepthTable(double width) : width_(width) {}
-
-  /// Some 60 evaluations of the exact probability. σ > 0.
-  void Build(double sigma);
-
-  /// depth <= width / 2, negative outside the interval.
-  double operator()(double depth) const {
-    if (depth >= last_) return end_;
-    if (depth < first_) return Exactly(depth);
-    const double position = (depth - first_) * cells_per_length_;
-    const auto cell = static_cast<int>(position);
-    const double s = position - static_cast<double>(cell);
-    const Cubic& c = cells_[static_cast<std::size_t>(cell)];
-    return c.constant + s * (c.linear + s * (c.quadratic + s * c.cubic));
-  }
-
- private:
-  struct Cubic {
-    double constant;
-    double linear;
-    double quadratic;
-    double cubic;
-  };
-
-  double Exactly(double depth) const;
-
-  double width_;
-  double sigma_ = 1;
-  double first_ = 0;
-  double last_ = 0;
-  double end_ = 0;
-  double cells_per_length_ = 0;
-  std::vector<Cubic> cells_;
-};
 
 /// Samples of rounded readings as a linear model sees them, in units of the resolution: position + slope · w. Equal
 /// samples are one, counted.
@@ -95,40 +56,6 @@ class LineLikelihood {
 };
 
 // -----------------------------------------------------------------------------------------------------------------
-
-inline constexpr double kCertain = 8.5;   // σ within the edge: the probability is 1 to rounding
-inline constexpr double kImprobable = 6;  // σ outside: seldom asked for
-inline constexpr double kCellsPerSigma = 4;
-
-inline double DepthTable::Exactly(double depth) const {
-  return GaussianInterval(-depth / sigma_, (width_ - depth) / sigma_).log;
-}
-
-inline void DepthTable::Build(double sigma) {
-  sigma_ = sigma;
-  first_ = -kImprobable * sigma;
-  last_ = std::min(0.5 * width_, kCertain * sigma);
-  const double length = last_ - first_;
-  const auto cells = static_cast<std::size_t>(std::ceil(length / sigma * kCellsPerSigma));
-  cells_per_length_ = static_cast<double>(cells) / length;
-  cells_.resize(cells + 1);
-  const double step = 1 / cells_per_length_;
-  double log_before = 0;
-  double slope_before = 0;
-  for (std::size_t i = 0; i <= cells; ++i) {
-    const double depth = first_ + static_cast<double>(i) * step;
-    const IntervalProbability p = GaussianInterval(-depth / sigma, (width_ - depth) / sigma);
-    const double slope = (p.lower - p.upper) / sigma * step;
-    if (i > 0) {
-      const double rise = p.log - log_before;
-      cells_[i - 1] = {log_before, slope_before, 3 * rise - 2 * slope_before - slope, slope_before + slope - 2 * rise};
-    }
-    log_before = p.log;
-    slope_before = slope;
-  }
-  cells_[cells] = {log_before, 0, 0, 0};  // where rounding puts a depth just short of the last
-  end_ = log_before;
-}
 
 inline LevelSamples LevelSamples::Near(double depth, double reach) const {
   std::vector<std::pair<double, Eigen::Index>> near;

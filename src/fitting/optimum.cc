@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/students_t.hpp>
+
 namespace pendulum {
 namespace {
 
@@ -143,14 +145,26 @@ double RemainingShift(const Optimum& optimum) {
   return std::sqrt(gradient.dot(optimum.inverse.matrix * gradient));
 }
 
-Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                     const Optimum& optimum, const Autocorrelation& correlation) {
+namespace {
+
+/// A parameter's own number of effective samples: memory that inflates a mean may leave a swing's phase alone.
+Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& optimum, double samples, bool white) {
+  const auto free = static_cast<double>(optimum.free.size());
+  Eigen::VectorXd t95(covariance.rows());
+  for (Index i = 0; i < t95.size(); ++i) {
+    const double share = white ? 1.0 : std::min(optimum.inverse.matrix(i, i) / covariance(i, i), 1.0);
+    t95[i] = boost::math::quantile(boost::math::students_t(std::max(share * samples - free, 1.0)), 0.975);
+  }
+  return t95;
+}
+
+Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                        const Optimum& optimum, const Autocorrelation& correlation) {
   const auto samples = static_cast<double>(problem.data.time.size());
   const auto free = static_cast<double>(optimum.free.size());
   const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
   Errors errors;
-  errors.effective_samples = samples / std::max(correlation.VarianceInflation(), 1.0);
-  errors.freedom = std::max(errors.effective_samples - free, 1.0);
+  errors.effective_samples = std::max(samples / std::max(correlation.VarianceInflation(), 1.0), 1.0);
   errors.method = MethodOf(solution.noise, correlation);
   errors.covariance = optimum.inverse.matrix;
   if (solution.noise.IsPlain()) errors.sigma = solution.noise.sigma / std::sqrt(2 * std::max(samples - free, 1.0));
@@ -169,6 +183,16 @@ Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, cons
   } else {
     errors.covariance *= samples / std::max(samples - free, 1.0);
   }
+  return errors;
+}
+
+}  // namespace
+
+Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                     const Optimum& optimum, const Autocorrelation& correlation) {
+  Errors errors = CovarianceErrors(problem, cost, solution, optimum, correlation);
+  const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
+  errors.t95 = StudentT95(errors.covariance, optimum, static_cast<double>(problem.data.time.size()), white);
   return errors;
 }
 

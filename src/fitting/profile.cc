@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/students_t.hpp>
-
 namespace pendulum {
 namespace {
 
@@ -24,9 +22,8 @@ class Profile {
     if (!optimum_.inverse.identifiable) return;
     const Index row = std::ranges::find(optimum_.free, k) - optimum_.free.begin();
     const Errors errors = ComputeErrors(problem, cost, solution, optimum_, correlation);
-    const double t = boost::math::quantile(boost::math::students_t(errors.freedom), 0.975);
     const double naive = optimum_.inverse.matrix(row, row);
-    length_ = t * std::sqrt(errors.covariance(row, row));
+    length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
     threshold_ = length_ * length_ / naive;
     direction_ = optimum_.inverse.matrix.col(row) / naive;
   }

@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
 
+#include "depth_table.h"
+#include "lanes.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
@@ -19,60 +21,6 @@ namespace {
 /// some 12.
 constexpr double kStepsPerRadian = 20;
 constexpr double kMostSteps = 10'000;
-
-/// Samples are evaluated side by side in lanes: their Horner chains do not wait for each other and fill vector
-/// registers.
-constexpr int kLanes = 8;
-using Lanes = std::array<double, kLanes>;
-
-/// Polynomials in τ of everything that is wanted at a sample: W columns, the same order.
-template <int W>
-struct Columns {
-  int order = 0;
-  std::array<std::array<double, W>, kMaxOrder + 1> coefficient;
-
-  void Evaluate(const Lanes& tau, std::array<Lanes, W>& out) const {
-    for (int w = 0; w < W; ++w) {
-      Lanes sum;
-      sum.fill(coefficient[order][w]);
-      for (int k = order - 1; k >= 0; --k) {
-        for (int i = 0; i < kLanes; ++i) sum[i] = sum[i] * tau[i] + coefficient[k][w];
-      }
-      out[w] = sum;
-    }
-  }
-};
-
-/// Sums over samples of all products of W columns, in four partial sums each.
-template <int W>
-class Products {
- public:
-  void Add(const std::array<Lanes, W>& columns) {
-    int pair = 0;
-    for (int i = 0; i < W; ++i) {
-      for (int j = 0; j <= i; ++j, ++pair) {
-        for (int lane = 0; lane < kLanes; ++lane) sums_[pair][lane % kParts] += columns[i][lane] * columns[j][lane];
-      }
-    }
-  }
-
-  Eigen::MatrixXd Matrix() const {
-    Eigen::MatrixXd matrix(W, W);
-    int pair = 0;
-    for (int i = 0; i < W; ++i) {
-      for (int j = 0; j <= i; ++j, ++pair) {
-        double sum = 0;
-        for (const double part : sums_[pair]) sum += part;
-        matrix(i, j) = matrix(j, i) = sum;
-      }
-    }
-    return matrix;
-  }
-
- private:
-  static constexpr int kParts = 4;
-  std::array<std::array<double, kParts>, W*(W + 1) / 2> sums_{};
-};
 
 /// R, R^-T J'r and the rest of |r| from the sums (MODEL.md eq. (19)), by a pivoted Cholesky factor of J'J scaled to
 /// unit diagonal: a direction that the data do not see gets a row of zeros, which Levenberg-Marquardt leaves alone.
@@ -124,8 +72,13 @@ class TrajectoryCostFor final : public TrajectoryCost {
   void set_used_samples(std::size_t count) override { used_samples_ = count; }
 
   void set_noise(const NoiseModel& noise) override {
+    if (noise_.IsPlain() && noise.IsPlain()) {
+      last_.sums *= std::pow(noise_.sigma / noise.sigma, 2);
+    } else {
+      last_.parameters.clear();
+    }
     noise_ = noise;
-    last_.parameters.clear();
+    if (noise_.family == NoiseFamily::kQuantized) levels_.Build(noise_.sigma / noise_.resolution);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -154,7 +107,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         const double value = data_.value[first + i];
         const double reading = model[0][i] + Zero(p, first + i);
         const double residual = (value - reading) * inverse_sigma;
-        squares[i] += plain ? residual * residual : noise_.At(value, reading).deviance;
+        squares[i] += plain ? residual * residual : At(value, reading).deviance;
       }
     };
     if (!VisitSamples<double>(p, add)) return false;
@@ -209,6 +162,16 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return data_.drifts ? p[kZero] + p[kZero + 1] * data_.time[i] : p[kZero];
   }
 
+  /// As noise_.At, without an exponential and an error function for every sample of a level.
+  SampleLikelihood At(double value, double reading) const {
+    if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.At(value, reading);
+    const double per_level = 1 / noise_.resolution;
+    const double position = (value - reading) * per_level;
+    const DepthTable::Curve level = levels_.At(0.5 - std::abs(position));
+    return {std::max(2 * (levels_.best() - level.log), 0.0), std::copysign(level.slope * per_level, position),
+            std::max(-level.curvature, 0.0) * per_level * per_level};
+  }
+
   /// kBaseline parameters for the zero: itself, and its drift.
   template <int kBaseline>
   bool AddUp(std::span<const double> p, Eigen::MatrixXd* sums) const {
@@ -225,7 +188,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         double root_weight = inverse_sigma;
         columns[kResidual][i] = (value - reading) * inverse_sigma;
         if (!plain) {
-          const SampleLikelihood sample = noise_.At(value, reading);
+          const SampleLikelihood sample = At(value, reading);
           deviances[i] += sample.deviance;
           root_weight = std::sqrt(sample.weight);
           columns[kResidual][i] = root_weight > 0 ? sample.score / root_weight : 0.0;
@@ -342,6 +305,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   int count_;  // of parameters
   double tolerance_ = 1e-10;
   NoiseModel noise_;
+  DepthTable levels_{1};  // of quantized noise_
 
   /// Sums and where they were taken: solver, active set and judgement ask for them at the same point, one by one.
   struct SumsAt {

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -66,6 +67,21 @@ void Fit(benchmark::State& state, int samples) {
   Report(state, *fit);
   // The optimum is that of the reference run.
   if (samples != kSamples) state.counters.erase("std_errors_from_optimum");
+}
+
+/// The same readings with noise of so many counts, taken as numbers or as levels.
+void FitCounts(benchmark::State& state, double counts, NoiseChoice noise) {
+  const Recording recording = ReferenceRecording(kSamples, counts);
+  FitOptions options = ReferenceOptions();
+  options.noise = noise;
+  Result<FitReport> fit;
+  for (auto _ : state) {
+    fit = FitRecording(recording, options);
+    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (fit->termination != Termination::kConverged) return state.SkipWithError(fit->reason.c_str());
+  }
+  Report(state, *fit);
+  state.counters.erase("std_errors_from_optimum");
 }
 
 void ParseCsv(benchmark::State& state) {
@@ -136,6 +152,13 @@ void RegisterFitBenchmarks() {
   benchmark::RegisterBenchmark("start_values", FindStartValues)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("find_window", FindWindow)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("fit", Fit, kSamples)->Unit(benchmark::kMicrosecond);
+  for (const auto& [name, counts] : {std::pair{"0.5", 0.5}, std::pair{"0.25", 0.25}}) {
+    for (const NoiseChoice noise : {NoiseChoice::kGaussian, NoiseChoice::kQuantized}) {
+      const std::string family = noise == NoiseChoice::kGaussian ? "gaussian" : "quantized";
+      benchmark::RegisterBenchmark(("fit/counts:" + std::string(name) + "/" + family).c_str(), FitCounts, counts, noise)
+          ->Unit(benchmark::kMicrosecond);
+    }
+  }
   benchmark::RegisterBenchmark("parse_csv", ParseCsv)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("file_to_json", FileToJson)->Unit(benchmark::kMicrosecond);
   for (const int samples : {1'000, 10'000, 100'000, 1'000'000}) {

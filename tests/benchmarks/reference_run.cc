@@ -68,7 +68,7 @@ const Rig& ReferenceRig() {
   return rig;
 }
 
-Recording ReferenceRecording(int samples) {
+Recording ReferenceRecording(int samples, double counts) {
   SyntheticOptions options;
   const double torque = ReferenceRig().gravity_torque.value;
   options.parameters = {kTruth[0] / torque, kTruth[1] / torque, kTruth[2] / torque};
@@ -76,7 +76,7 @@ Recording ReferenceRecording(int samples) {
   options.release_time = kTruth[4];
   options.zero = kTruth[5];
   options.sample_rate = samples / options.duration;
-  options.noise = kCount;
+  options.noise = counts * kCount;
   options.resolution = kCount;
   return Expect(SimulateRecording(options));
 }

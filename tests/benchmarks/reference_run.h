@@ -38,8 +38,8 @@ T Expect(Result<T> result) {
 /// The rig of the Control Tutorials' activity: a bob of 0.380 kg on a rod of 0.095 kg and 0.43 m.
 const Rig& ReferenceRig();
 
-/// The reference run: Coulomb friction, white noise of one count, rounded to counts of 0.1985 deg.
-Recording ReferenceRecording(int samples = kSamples);
+/// The reference run: Coulomb friction, white noise of one count, or so many, rounded to counts of 0.1985 deg.
+Recording ReferenceRecording(int samples = kSamples, double counts = 1);
 
 /// That recording as a CSV file's text.
 std::string ReferenceCsv();

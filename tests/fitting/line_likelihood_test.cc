@@ -21,9 +21,27 @@ TEST(DepthTable, AgreesWithTheExactProbability) {
       for (int i = 0; i <= 1000; ++i) {
         const double depth = -10 * sigma + i / 1000.0 * (last + 10 * sigma);
         const double exact = GaussianInterval(-depth / sigma, (width - depth) / sigma).log;
-        // The remainder of a cubic: (1/4)⁴ / 384 of a fourth derivative that is less than 1.
-        ASSERT_NEAR(table(depth), exact, 1e-5) << sigma << " " << width << " " << depth;
+        // The remainder of a quintic: (1/4)⁶ / 46080 of a sixth derivative of a few.
+        ASSERT_NEAR(table(depth), exact, 1e-7) << sigma << " " << width << " " << depth;
+        ASSERT_EQ(table(depth), table.At(depth).log);
       }
+    }
+  }
+}
+
+TEST(DepthTable, HasTheDerivativesOfTheNoiseModel) {
+  NoiseModel noise;
+  noise.family = NoiseFamily::kQuantized;
+  noise.resolution = 1;
+  for (const double sigma : {0.05, 0.25, 1.0}) {
+    noise.sigma = sigma;
+    DepthTable table(1);
+    table.Build(sigma);
+    for (int i = 1; i < 1000; ++i) {
+      const double depth = -8 * sigma + i / 1000.0 * (0.5 + 8 * sigma);
+      const NoiseLikelihood exact = noise.LikelihoodAt(0, depth - 0.5);  // below the level: deeper is more
+      ASSERT_NEAR(table.At(depth).slope, exact.score, 1e-6 / sigma) << sigma << " " << depth;
+      ASSERT_NEAR(-table.At(depth).curvature, exact.information, 1e-4 / (sigma * sigma)) << sigma << " " << depth;
     }
   }
 }

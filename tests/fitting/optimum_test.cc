@@ -151,11 +151,10 @@ std::vector<Scatter> ScatterOver(int seeds, const std::function<FitReport(std::u
   return scatter;
 }
 
-/// Ratios of deviation to standard error within four standard deviations of a deviation's own scatter. `blur`: what the
-/// standard errors do not know either.
-void ExpectTrueErrors(const std::vector<Scatter>& scatter, bool sigma_too, double blur = 0) {
-  const double allowed = 4 / std::sqrt(2 * scatter[0].count) + blur;
-  for (std::size_t i = 0; i + (sigma_too ? 0 : 1) < scatter.size(); ++i) {
+/// Ratios of deviation to standard error within four standard deviations of a deviation's own scatter.
+void ExpectTrueErrors(const std::vector<Scatter>& scatter) {
+  const double allowed = 4 / std::sqrt(2 * scatter[0].count);
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
     EXPECT_NEAR(scatter[i].Ratio(), 1, allowed) << (i + 1 == scatter.size() ? "sigma" : "parameter ") << i;
   }
 }
@@ -169,18 +168,17 @@ TEST(ComputeErrors, OfLevelsAreTheScatterOfEstimatesAndOfSigma) {
     options.noise = NoiseChoice::kQuantized;
     options.interval = IntervalMethod::kCovariance;
     ExpectTrueErrors(
-        ScatterOver(kSeeds, [&](std::uint64_t seed) { return Fit(ShortSwingInCounts(noise, seed), options); }), true);
+        ScatterOver(kSeeds, [&](std::uint64_t seed) { return Fit(ShortSwingInCounts(noise, seed), options); }));
   }
 }
 
 TEST(ComputeErrors, OfWhiteNoiseAreTheScatterOfSigmaToo) {
-  ExpectTrueErrors(ScatterOver(kSeeds,
-                               [](std::uint64_t seed) {
-                                 SyntheticOptions run = ShortSwing();
-                                 run.seed = seed;
-                                 return FitOwnModel(run);
-                               }),
-                   true);
+  const auto fit = [](std::uint64_t seed) {
+    SyntheticOptions run = ShortSwing();
+    run.seed = seed;
+    return FitOwnModel(run);
+  };
+  ExpectTrueErrors(ScatterOver(kSeeds, fit));
 }
 
 /// The short swing without noise.
@@ -202,18 +200,18 @@ TEST(ComputeErrors, OfRobustFamiliesAreTheScatterUnderNoiseWithOutliers) {
       boost::random::student_t_distribution<double> student(3);
       return Fit(WithNoise(quiet, seed, [&](auto& generator) { return 0.001 * student(generator); }), options);
     };
-    ExpectTrueErrors(ScatterOver(kSeeds, fit), false);
+    ExpectTrueErrors(ScatterOver(kSeeds, fit));
   }
 }
 
-TEST(ComputeErrors, OfNoiseThatRemembersAreTheScatterOfEstimates) {
+TEST(ComputeErrors, OfNoiseThatRemembersAreTheScatterOfEstimatesAndOfSigma) {
   const Recording quiet = QuietShortSwing(16);
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kCovariance;
   const auto fit = [&](std::uint64_t seed) {
     return Fit(WithNoise(quiet, seed, RememberingNoise(0.8, 0.002)), options);
   };
-  ExpectTrueErrors(ScatterOver(kSeeds, fit), false);
+  ExpectTrueErrors(ScatterOver(kSeeds, fit));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ double RemainingShift(const Optimum& optimum);
 struct Errors {
   Eigen::MatrixXd covariance;    ///< F x F
   std::optional<double> sigma;   ///< Standard error of σ, rad or rad/s.
-  double freedom = 1;            ///< Of Student's t: (effective) samples - F.
+  Eigen::VectorXd t95;           ///< F, Student's t of N_k - F degrees of freedom, N_k / N as naive / true variance.
   double effective_samples = 0;  ///< N over the variance inflation 1 + 2 Σ ρ_k, at most N.
   std::string method;            ///< In words.
 };
