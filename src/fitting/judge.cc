@@ -214,6 +214,7 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
   NoiseEstimate noise;
   noise.family = solution.noise.family;
   noise.sigma = solution.noise.sigma;
+  noise.resolution = problem.resolution;
   noise.censored = problem.censored;
   noise.why = solution.noise_reason;
   noise.lag1_correlation = Lag1Correlation(z);

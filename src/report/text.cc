@@ -291,18 +291,27 @@ std::string CorrelationText(const FitReport& fit) {
          AlignedTable({{""}, {"", true}}, rows, kIndent);
 }
 
+/// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
+std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
+  constexpr int kReadingDigits = 3;
+  std::string also;
+  if (const auto degrees = Degrees(unit)) {
+    also = NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit);
+  }
+  if (noise.resolution > 0) {
+    also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.resolution, kReadingDigits) + " resolutions";
+  }
+  return also.empty() ? "" : " (" + also + ")";
+}
+
 std::string NoiseText(const FitReport& fit) {
   const NoiseEstimate& noise = fit.noise;
   std::string text(NoiseFamilyName(noise.family));
   text += noise.family == NoiseFamily::kStudent ? "'s t, 4 degrees of freedom, scale " : ", sigma ";
-  if (!noise.sigma_std_error) return text + ReadingText(noise.sigma, fit.reading_unit);
-  const ValueAndError sigma = PdgText(noise.sigma, *noise.sigma_std_error);
-  const std::optional<Conversion> degrees = Degrees(fit.reading_unit);
-  text += sigma.value + (sigma.error.empty() ? "" : " ± " + sigma.error) + " " + fit.reading_unit;
-  if (!degrees) return text;
-  constexpr int kReadingDigits = 3;
-  return text + " (" + NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit) +
-         ")";
+  const ValueAndError sigma = PdgText(noise.sigma, noise.sigma_std_error.value_or(0));
+  text +=
+      noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
+  return text + " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
 }
 
 std::string StatisticsText(const FitReport& fit) {

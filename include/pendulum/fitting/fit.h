@@ -89,6 +89,7 @@ struct NoiseEstimate {
   double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), otherwise the likeliest; the scale
                      ///< of a robust family.
   std::optional<double> sigma_std_error;  ///< Same unit.
+  double resolution = 0;                  ///< Of the readings, same unit; 0: none.
   Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
   std::string why;                        ///< Why this family, in words.
   double lag1_correlation = 0;            ///< Of the quantile residuals.
