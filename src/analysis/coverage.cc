@@ -164,6 +164,7 @@ CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutco
 
 }  // namespace
 
+/// Each end errs at most 2.5 % of the time (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 BinomialInterval BinomialInterval95(int successes, int trials) {
   using Binomial = boost::math::binomial_distribution<double>;
   constexpr double kTail = 0.025;

@@ -151,6 +151,7 @@ Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& n
   return found;
 }
 
+/// A truth of its own for every seed, uniformly about the scenario's: the counts' phase is never the same.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed) {
   // Not the stream of the noise, which begins with the seed itself.
   std::mt19937_64 generator(~seed);

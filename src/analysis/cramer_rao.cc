@@ -57,7 +57,8 @@ Eigen::MatrixXd WhiteInformation(const SyntheticOptions& truth, const Sensitivit
 }
 
 /// Jᵀ R^-1 J from the innovations of each of J's columns, R the covariance of AR(1) noise and white noise of variance
-/// q²/12. The size of Gaussian noise tells nothing of its mean: log σ would be a block of its own.
+/// q²/12: on levels the bound of the best linear estimate, as near as the quantization noise is white (Widrow & Kollár,
+/// Quantization Noise, 2008). The size of Gaussian noise tells nothing of its mean: log σ would be a block of its own.
 Eigen::MatrixXd CorrelatedInformation(const SyntheticOptions& truth, const Sensitivities& at) {
   const double correlation = truth.noise_correlation;
   const double stationary = truth.noise * truth.noise;

@@ -35,6 +35,8 @@ double Probability(const Edge& a, const Edge& b) {
 
 }  // namespace
 
+/// Level k comes with probability p_k = Φ(b_k) - Φ(a_k), a_k and b_k its edges less x over σ, and the information is
+/// Σ_k ∇p_k ∇p_kᵀ / p_k, summed exactly.
 Eigen::Matrix2d ReadingInformation(double x, double sigma, double resolution, const std::optional<SensorRange>& range) {
   if (resolution == 0) return Eigen::Vector2d(1 / (sigma * sigma), 2).asDiagonal();
   constexpr double kReach = 9;        // standard deviations; beyond them a level tells less than 1e-16 of the whole

@@ -78,6 +78,8 @@ class LossEquations {
 
 }  // namespace
 
+/// At a turning point the energy is U = 1 - cos A; between two, friction takes ∫ T(ω(θ)) dθ with ω(θ) = ω0 sqrt(2 (cos
+/// θ - cos A)) and A the mean amplitude.
 EnergyBalance BalanceEnergy(const MotionModel& model, const HalfSwingTable& table, double natural_frequency) {
   EnergyBalance balance;
   FrictionModels::Visit(model.friction, [&]<typename F>() {

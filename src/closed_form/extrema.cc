@@ -67,6 +67,7 @@ Extremum Vertex(const Recording& recording, Index point, double half_width) {
 
 }  // namespace
 
+/// The 68 % quantile of the distances over sqrt(1 + w² + (1-w)²), w the interpolation's weight.
 double SuccessiveDifferenceNoise(const Recording& recording) {
   const Eigen::VectorXd& t = recording.time;
   const Eigen::VectorXd& y = recording.value;

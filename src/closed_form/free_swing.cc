@@ -107,7 +107,8 @@ std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
   return SteadyPart(table, begin, LastWithin(recording, end, level, band));
 }
 
-/// After a fall from near the upright, or turns over the top: the next turning point.
+/// After a fall from near the upright, which tells nothing of the release, or turns over the top: the next turning
+/// point.
 std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   constexpr double kOverTheTop = 185 * kRadFromDeg;

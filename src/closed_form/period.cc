@@ -40,7 +40,7 @@ std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const 
   return {phase, time};
 }
 
-/// ω0 from the slope of the crossings, with amplitudes as they are at another ω0.
+/// ω0 from the slope of the crossings, one over all runs without gaps, with amplitudes as they are at another ω0.
 double FrequencyAtAmplitudesOf(const HalfSwingTable& table, double natural_frequency) {
   const auto [phase, time] = CrossingsAgainstPhase(table, natural_frequency);
   double phase_phase = 0, phase_time = 0;

@@ -49,7 +49,9 @@ double Autocorrelation::SquaredInflation() const {
 
 namespace {
 
-/// Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, which are fed from the last sample backwards.
+/// Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, which are fed from the last sample backwards:
+/// g_k is what the innovation e_k moves in W'z, by the transpose of the process's filter, so R is never formed and the
+/// sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
 class BackwardFilter {
  public:
   BackwardFilter(const Autocorrelation& correlation, Eigen::Index columns)

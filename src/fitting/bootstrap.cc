@@ -57,7 +57,8 @@ class Replicas {
   }
 
  private:
-  /// Noise of N samples, in σ.
+  /// Noise of N samples, in σ: from its model (parametric bootstrap), or circular blocks of the quantile residuals,
+  /// long enough to hold their memory (D. N. Politis and J. P. Romano, "A circular block-resampling procedure", 1992).
   Eigen::VectorXd Draw(std::mt19937_64& generator) const {
     const Index samples = residuals_.size();
     Eigen::VectorXd noise(samples);

@@ -7,6 +7,7 @@
 
 namespace pendulum {
 
+/// Scaled to unit diagonal, so that parameters of very different size do not look dependent.
 InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
   InformationInverse inverse;
   inverse.identifiable = free.empty();

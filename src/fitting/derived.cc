@@ -102,6 +102,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
   return derived;
 }
 
+/// Each end of a parameter is carried over with the others at their estimates, and the distances are added in squares.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
   const std::vector<PowerProduct> products = Products(infos, parameters);

@@ -57,7 +57,7 @@ Clock FindClock(const Eigen::VectorXd& time) {
 
 int LongestOrder(double samples) { return static_cast<int>(std::min({30.0, samples / 20, 10 * std::log10(samples)})); }
 
-/// Schwarz's criterion of white residuals.
+/// Schwarz's criterion N ln σ_e² + p ln N of white residuals (G. Schwarz, Annals of Statistics 6:461, 1978).
 double WhiteCriterion(const Eigen::VectorXd& residual) {
   const auto samples = static_cast<double>(residual.size());
   return samples * std::log(residual.squaredNorm() / samples);
@@ -69,7 +69,7 @@ struct Autoregression {
   double criterion = std::numeric_limits<double>::infinity();
 };
 
-/// The best of AR(1), AR(2), ...
+/// The best of AR(1), AR(2), ... (J. P. Burg, Maximum entropy spectral analysis, 1975).
 Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& residual) {
   const auto samples = static_cast<double>(residual.size());
   const auto stretches = static_cast<double>(clock.stretches.size());
@@ -108,7 +108,8 @@ struct Innovations {
   double log_determinant = 0;  // Σ ln variance_i
 };
 
-/// Of ARMA(1,1) by Brockwell and Davis' recursion, exact from the first sample of each stretch on.
+/// Of ARMA(1,1), exact from the first sample of each stretch on (P. J. Brockwell and R. A. Davis, Time Series: Theory
+/// and Methods, section 5.3, 1991).
 void PredictMixed(const Clock& clock, double phi, double theta, Innovations* innovations) {
   constexpr double kSettled = 1e-12;
   innovations->keep.setConstant(phi);
@@ -241,7 +242,9 @@ Vertex LowestOnLine(const std::function<double(double)>& height, double from, do
   return {{place, 0}, lowest};
 }
 
-/// Orthonormal columns that span the weights, and the residual behind them.
+/// Orthonormal columns that span the weights, and the residual behind them. A fit takes of the residuals what its
+/// parameters can follow, and so the slowest part of their memory; the likelihood of what parameters cannot follow
+/// gives it back (H. D. Patterson and R. Thompson, Biometrika 58:545, 1971).
 Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
   constexpr Eigen::Index kFew = 100'000;  // beyond, what the parameters took is nothing beside what they left
   if (weights.cols() == 0 || residual.size() > kFew) return residual;

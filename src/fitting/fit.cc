@@ -89,7 +89,8 @@ bool Explains(const TrajectoryData& data, const Solution& solution) {
          kExplained * (value.array() - value.mean()).matrix().squaredNorm();
 }
 
-/// A short hold may be a turning point, and what a release does not explain may have begun in motion.
+/// With StartChoice::kAuto: a short hold may be a turning point, and what a release does not explain may have begun in
+/// motion.
 bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
   const StartValues& start = attempt.problem->start;
   return options.start == StartChoice::kAuto && start.start == StartKind::kRelease &&

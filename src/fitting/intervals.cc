@@ -45,6 +45,7 @@ bool NearBound(const FittedModel& fitted, const Errors& errors) {
   return !fitted.optimum.at_bound.empty();
 }
 
+/// Estimate ± t std_error, within the bounds.
 void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
   const SolveOptions& solve = fitted.problem.solve;
   for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
@@ -168,6 +169,7 @@ void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& re
 
 }  // namespace
 
+/// Where no parabola describes the likelihood.
 bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
   if (!IsQuiet(fitted)) return false;
   const IntervalMethod asked = fitted.options.interval;

@@ -139,6 +139,8 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
 
 }  // namespace
 
+/// Below one resolution rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008,
+/// section 5.1).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
   constexpr double kDrowned = 1;  // resolutions
   if (options.loss == Loss::kHuber) return {NoiseFamily::kHuber, "asked for by --loss"};
@@ -155,6 +157,9 @@ ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double res
           "the residuals are " + NumberText(ratio, 2) + " resolutions: rounding drowns in the noise"};
 }
 
+/// Parameters (Solve) and σ in turn, until σ stays the same. The other minima that came near are solved as well, and
+/// the likeliest wins. Of Gaussian noise nothing is solved again unless priors weigh in. Below kSmallestSigma the
+/// likelihood has no maximum inside, and SamplePosterior has the say.
 void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
                         Solution& solution) {
   solution.noise = problem.noise;

@@ -158,6 +158,8 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   return t95;
 }
 
+/// Of a robust family Huber's sandwich; where the residuals remember, W'RW between two inverses, W the roots of the
+/// samples' information times the Jacobian and R the autocorrelation.
 Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                         const Optimum& optimum, const Autocorrelation& correlation) {
   const auto samples = static_cast<double>(problem.data.time.size());

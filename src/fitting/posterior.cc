@@ -139,7 +139,9 @@ using Draws = Eigen::MatrixXd;
 
 constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolution
 
-/// The Markov chain. Lengths of readings in units of the resolution.
+/// The Markov chain: slice sampling along orthogonal directions, turned at random before every round, of coordinates in
+/// which earlier draws are white, for without noise the posterior is uniform on a polytope; then along log σ. Lengths
+/// of readings in units of the resolution.
 class Chain {
  public:
   Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed);
@@ -296,7 +298,7 @@ void Chain::Whiten(const Draws& draws) {
   EnterFrame({mean, root}, Delta());
 }
 
-/// Of one quantity's draws: Geyer's initial monotone sequence.
+/// Of one quantity's draws: the initial monotone sequence (C. J. Geyer, Stat. Sci. 7:473, 1992).
 double EffectiveDraws(const Eigen::VectorXd& draws) {
   const Eigen::Index n = draws.size();
   const Eigen::VectorXd centred = draws.array() - draws.mean();
@@ -354,7 +356,9 @@ Posterior Summarize(Draws draws, double resolution) {
   return posterior;
 }
 
-constexpr double kMostWork = 1e9;  // samples looked at
+// Samples looked at. It is little for 1e5 samples with a σ that leaves few of them certain, but the posterior is then
+// normal, and need not be sampled.
+constexpr double kMostWork = 1e9;
 
 /// Runs ever longer, whitening in between, until the coordinates fit; what was drawn on the way is not used.
 void WarmUp(Chain& chain) {

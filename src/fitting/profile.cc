@@ -9,7 +9,9 @@ namespace {
 
 using Eigen::Index;
 
-/// The likelihood along one parameter, the others following.
+/// The likelihood along one parameter, the others following. The interval ends where the deviance, the others solved
+/// anew, has risen by Student's t², as MINOS does, times the variance of ComputeErrors over that of the likelihood at
+/// fixed σ, which accounts for σ and for residuals that remember.
 class Profile {
  public:
   Profile(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution, Optimum optimum,

@@ -21,6 +21,8 @@ double Lag1Correlation(const Eigen::VectorXd& residual) {
   return sum > 0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / sum : 0.0;
 }
 
+/// The portmanteau N Σ ρ_k² over lags k spaced as squares is six standard deviations above its mean. Noise that
+/// remembers shows at the first lags, a misfit that swings with the pendulum at some lag within one period.
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag) {
   constexpr int kMostLags = 50;
   constexpr double kDeviations = 6;
@@ -97,6 +99,8 @@ bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, cons
   return Exceeds(all, 2.0 * count) || Exceeds(slow, 2.0 * cosines);
 }
 
+/// Φ⁻¹ of the distribution function at the reading, at a random place within the jump that a level or a censored
+/// reading makes.
 Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                                   const Eigen::Ref<const Eigen::VectorXd>& readings) {
   if (noise.IsPlain()) return (value - readings) / noise.sigma;

@@ -143,7 +143,9 @@ Solution Refine(TrajectoryCost& cost, const TrajectoryData& data, const Solution
   return DescendBasins(cost, solution, options);
 }
 
-/// Solves from `start`, over growing parts of the recording where they are needed to find the way.
+/// Solves from `start`; where that does not explain the data, over the first three cycles, then twice as many and so
+/// on. A recording that reaches rest has a minimum per number of half swings before the stop: it is fitted over 30, 60
+/// and 85 percent of the motion first.
 Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                     const SolveOptions& options) {
   Solution solution;

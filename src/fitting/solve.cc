@@ -132,6 +132,8 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value) {
   return value >= options.upper[i] ? 1 : 0;
 }
 
+/// An active-set method: a parameter whose step lands on its bound, or would, is held there, and let go when the cost
+/// pulls it inwards at the others' optimum.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;

@@ -146,6 +146,8 @@ double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
 
 }  // namespace
 
+/// A held part gives release angle (its mean) and release time (a quarter period before the first crossing; half a
+/// period before the first turn of a rate); otherwise a parabola through the first samples gives angle and rate.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model, StartChoice choice) {
   Result<HalfSwingTable> table = TabulateHalfSwings(recording);
   if (!table) return tl::unexpected(table.error());

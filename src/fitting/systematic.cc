@@ -50,6 +50,9 @@ Eigen::MatrixXd FollowCalibration(const Calibration& calibration, const FitProbl
 
 }  // namespace
 
+/// One source after the other: the rig's gravity torque is a common factor of inertia and friction; the clock's scale
+/// enters by the powers of time in a parameter; the calibration's coefficients move every reading, and the estimates
+/// follow as the least squares around the optimum do.
 Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                      const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
                                      const Eigen::VectorXd& estimates) {

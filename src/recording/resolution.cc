@@ -144,7 +144,8 @@ std::optional<Comb> Refined(const Levels& levels, double step) {
   return FitComb(levels, step);
 }
 
-/// Whether levels on a comb are beyond chance.
+/// Whether levels on a comb are beyond chance: their distance to it, as a normal density against a uniform one, is a
+/// likelihood ratio above e^16.
 bool IsBeyondChance(const Levels& levels, const Comb& comb) {
   constexpr double kUniform = 0.2420;  // 1/sqrt(2 pi e): spread of the normal density with the entropy of a uniform one
   constexpr double kLeastSpread = 1e-3;
@@ -154,7 +155,7 @@ bool IsBeyondChance(const Levels& levels, const Comb& comb) {
   return comb.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
 }
 
-/// Even spacing without gaps and without repeats.
+/// Even spacing without gaps and without repeats: readings of a ramp, not levels.
 bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
   constexpr double kNearlyAll = 0.9;
   const double possible = (levels.back() - levels.front()) / comb.step + 1;
@@ -164,6 +165,8 @@ bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
 
 }  // namespace
 
+/// Where readings halfway between the levels are more than one in twenty of the distinct ones (averages of two
+/// readings) it is the finer spacing, else the sensor's own.
 double FindResolution(const Eigen::VectorXd& value) {
   constexpr double kFinest = 1e-6;
   if (value.size() < static_cast<Index>(kFewestLevels)) return 0;

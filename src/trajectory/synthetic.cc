@@ -137,6 +137,9 @@ Eigen::VectorXd SamplingInstants(const SyntheticOptions& options, Eigen::Index c
   return time;
 }
 
+/// mt19937_64 and Boost's distributions, which are the same everywhere. Correlated noise is e_0 = s x_0, e_i = r
+/// e_(i-1) + sqrt(1 - r²) s x_i with s = noise and independent x_i, normal or t, so that its standard deviation is that
+/// of s x_i from the first sample on.
 Eigen::VectorXd NoiseSamples(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
   Eigen::VectorXd noise(count);
   if (options.noise_freedom > 0) {

@@ -14,29 +14,26 @@ namespace pendulum {
 
 /// How a coverage study is made.
 struct CoverageOptions {
-  int count = 1000;        ///< Recordings, at least 1.
-  std::uint64_t seed = 1;  ///< Recording i (0-based) has seed + i.
-  int threads = 0;         ///< 0: as many as there are cores. The result does not depend on it.
-  /// Called with the recordings done so far, by one thread at a time.
-  std::function<void(int done)> progress;
+  int count = 1000;                        ///< Recordings, at least 1.
+  std::uint64_t seed = 1;                  ///< Recording i (0-based) has seed + i.
+  int threads = 0;                         ///< 0: as many as there are cores. The result does not depend on it.
+  std::function<void(int done)> progress;  ///< Called with the recordings done so far, by one thread at a time.
 };
 
 /// What the fits of all recordings make of one parameter.
 struct CoverageRow {
   std::string parameter;
   std::string unit;
-  bool at_bound = false;                          ///< The truth is at the parameter's bound.
-  int covered = 0;                                ///< Recordings whose 95 % interval contains the truth.
-  int without_interval = 0;                       ///< Recordings without an interval, which count as not covered.
-  double coverage = 0;                            ///< covered / recordings
-  double coverage_lower = 0, coverage_upper = 1;  ///< Its 95 % interval, binomial (Clopper & Pearson 1934).
+  bool at_bound = false;                  ///< The truth is at the parameter's bound.
+  int covered = 0, without_interval = 0;  ///< Recordings whose 95 % interval contains the truth; that have none.
+  double coverage = 0;                    ///< covered / recordings
+  double coverage_lower = 0, coverage_upper = 1;  ///< Its BinomialInterval95.
   std::optional<double> rms_error;                ///< Of the estimates of converged fits, in `unit`.
   /// Root mean square of error / Cramér-Rao bound of its recording, of converged fits; absent where there is no bound.
   std::optional<double> error_over_bound;
   /// Mean standard error / rms error, of the fits that give a standard error.
   std::optional<double> std_error_over_error;
-  bool covers = false;   ///< The coverage is as the scenario's rule asks.
-  bool precise = false;  ///< So is the error.
+  bool covers = false, precise = false;  ///< Coverage and error are as the scenario's rule asks.
 
   bool passes() const { return covers && precise; }
 };
@@ -50,16 +47,13 @@ struct CoverageStudy {
   std::vector<CoverageRow> rows;  ///< P, in FitParameters' order.
 };
 
-/// Does the 95 % interval of each parameter contain the truth as often as it says? Simulates the recordings of a
-/// scenario and fits each with FitRecording, from start values found in its data. An interval with one end is unbounded
-/// on the other side. A parameter that the report does not have, because it found another start, has no interval.
-///
+/// Simulates the recordings of a scenario and fits each with FitRecording, from start values found in its data. An
+/// interval with one end is unbounded on the other side; none, or no such parameter in the report, does not cover.
 /// kInvalidArgument, kFailedPrecondition: as SimulateRecording, of the first recording that cannot be made; count or
 /// threads out of their domain. Cost: some milliseconds a recording.
 Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const CoverageOptions& options);
 
-/// The 95 % interval of a probability after `successes` of `trials`, each of whose ends errs at most 2.5 % of the time
-/// (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
+/// 95 % interval of a probability after `successes` of `trials` (Clopper & Pearson, Biometrika 26:404, 1934).
 struct BinomialInterval {
   double lower = 0, upper = 1;
 };

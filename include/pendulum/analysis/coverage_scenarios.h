@@ -26,7 +26,7 @@ struct CoverageScenario {
   std::string name;         ///< As in --scenario: words and numbers, "white_0.25".
   std::string description;  ///< One line.
   SyntheticOptions run;     ///< Units of G; seed, zero and release_time vary from recording to recording.
-  FitOptions fit;           ///< Its rig turns ratios into SI.
+  FitOptions fit;
   CoverageRule rule;
 };
 
@@ -35,12 +35,10 @@ struct CoverageScenario {
 std::vector<CoverageScenario> CoverageScenarios();
 
 /// The scenarios of a list of names, "white_2.5,no_noise", in that order, or `all`.
-///
 /// kInvalidArgument: an empty list, a name that is none (the message lists those there are) or that comes twice.
 Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& names);
 
-/// The recording of a seed: its noise, and with it a truth of its own, the zero drawn uniformly within ± half a count
-/// and the release within ± half a sampling interval of the scenario's. So the counts' phase is never the same.
+/// The recording of a seed: its own noise, and zero and release within ± half a count and ± half a sampling interval.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed);
 
 }  // namespace pendulum

@@ -11,16 +11,12 @@
 namespace pendulum {
 
 /// The Cramér-Rao bound of each parameter of a simulated recording: no unbiased estimate has a smaller standard
-/// deviation. It is that of the noise actually simulated, at the truth, with the noise's size unknown as well:
-///
+/// deviation. Of the noise actually simulated, its size unknown; J (N x P): the readings' sensitivities at the truth.
 ///   white Gaussian noise     JᵀJ / σ², or with levels Σ of ReadingInformation, cut off by the range
 ///   AR(1) noise              Jᵀ R^-1 J; levels of spacing q count as additional white noise of variance q²/12
 ///   Student's t noise        (ν + 1) / (ν + 3) JᵀJ / s², s its scale
 ///
-/// J (N x P) are the sensitivities of the readings. That of correlated noise on levels is thus the bound of the best
-/// linear estimate, as near as the quantization noise is white (Widrow & Kollar, Quantization Noise, 2008).
-///
-/// time  N, s, increasing: the instants of the samples, from SimulateRecording.
+/// time N, s, increasing: the instants of the samples, from SimulateRecording.
 /// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of G). Absent, all of them,
 /// for no noise, a range with other than white Gaussian noise on levels, Student's t noise that is correlated or on
 /// levels, and a motion that cannot be traced; absent, each, where the readings do not tell the parameter.

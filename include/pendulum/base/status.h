@@ -34,7 +34,6 @@ inline tl::unexpected<Status> Error(StatusCode code, std::string message) {
 }
 
 /// The process exit code of an error; 0 and 1 belong to fits that ran (see ExitCode(Termination) in fit.h).
-///
 /// kInvalidArgument 2, kNotFound 3, kDataLoss 4, kFailedPrecondition 5, kCannotWrite 73, kInternal 70.
 int ExitCode(StatusCode code);
 

@@ -5,8 +5,7 @@
 
 namespace pendulum {
 
-/// The version of this library and its tools; project(VERSION) in CMakeLists.txt says the same, and a test compares
-/// them.
+/// The same as project(VERSION) in CMakeLists.txt; a test compares them.
 inline constexpr std::string_view kVersion = "0.1.0";
 
 }  // namespace pendulum

@@ -10,12 +10,8 @@
 
 namespace pendulum {
 
-/// The energy lost between turning points, as a linear least squares for the parameters of a friction law.
-///
-/// At a turning point the energy is U = 1 - cos A; between two, friction takes ∫ T(ω(θ)) dθ with ω(θ) = ω0 sqrt(2 (cos
-/// θ - cos A)) and A the mean amplitude (MODEL.md eq. (22)). That is linear in the parameters of a law that is linear
-/// in them, and holds at any amplitude. After Feeny & Liang, J. Sound Vib. 195:149 (1996) and their energy-balance
-/// sequels.
+/// The energy lost between turning points, as a linear least squares for the parameters of a friction law that is
+/// linear in them, at any amplitude (MODEL.md eq. (22)). After Feeny & Liang, J. Sound Vib. 195:149 (1996) and sequels.
 struct EnergyBalance {
   Eigen::MatrixXd normal;  ///< K x K, normal equations over the accumulated losses, K friction parameters.
   Eigen::VectorXd right;   ///< K
@@ -23,8 +19,7 @@ struct EnergyBalance {
 
 EnergyBalance BalanceEnergy(const MotionModel& model, const HalfSwingTable& table, double natural_frequency);
 
-/// The K friction parameters >= 0 (in units of G) that balance best, those marked in `left_out` (K, or none) being 0.
-/// Good to some percent.
+/// K friction parameters >= 0 (in units of G) that balance best, good to some percent; 0 where `left_out` (K, or none).
 std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector<bool>& left_out = {});
 
 }  // namespace pendulum

@@ -15,24 +15,19 @@ struct Extremum {
 };
 
 /// Standard deviation of the noise [unit of the recording], from each sample's distance to the line through its
-/// neighbours: its 68 % quantile over sqrt(1 + w² + (1-w)²), w the interpolation's weight. Curvature between samples
-/// counts as noise; quantized data may give 0.
+/// neighbours. Curvature between samples counts as noise; quantized data may give 0.
 double SuccessiveDifferenceNoise(const Recording& recording);
 
 /// What a reading must move back by before a turn counts [unit of the recording]: noise, 2 sqrt(2 ln N) + 1 standard
 /// deviations of it, two resolutions and 3 % of the range (of a turn at most).
 double TurningThreshold(const Recording& recording, double noise);
 
-/// Turning points as FindExtrema, and before them the first candidate, which may be the start of the recording or lie
-/// in a hold. May be empty.
+/// Turning points as FindExtrema, before them the first candidate: perhaps the start, or in a hold. May be empty.
 std::vector<Extremum> FindTurns(const Recording& recording, double threshold);
 
-/// Turning points in time order, maxima and minima in turn.
-///
-/// A turning point counts once the reading has moved back from it by more than TurningThreshold; it is located by a
-/// parabola through the samples within 0.15 of the typical spacing of turning points, to O(h³), not to a sample. A
-/// hold, or a start in the middle of a swing, is not a turning point. kFailedPrecondition: fewer than three; the
-/// message says how many there were.
+/// Turning points in time order, maxima and minima in turn, located to O(h³), not to a sample. One counts once the
+/// reading has moved back from it by more than TurningThreshold; a hold, or a start in the middle of a swing, is none.
+/// kFailedPrecondition: fewer than three; the message says how many there were.
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording);
 
 }  // namespace pendulum

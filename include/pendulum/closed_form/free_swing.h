@@ -20,18 +20,16 @@ struct FreeSwing {
   double amplitude = 0;          ///< rad or rad/s: the largest distance of a turning point from its zero
   double amplitude_outside = 0;  ///< rad or rad/s: the same of what belongs to no free swing of the recording
   std::vector<double> turns;     ///< s, its turning points
-  std::string begins;            ///< Why it begins there, to follow "begins: ".
-  std::string ends;              ///< Why it ends there, to follow "ends: ".
+  std::string begins, ends;      ///< Why it begins and ends there, to follow "begins: " and "ends: ".
   bool from_given = false;       ///< The user chose `from`; likewise:
   bool to_given = false;
   bool beats = false;  ///< The amplitude rises again and again, though it decays: no single pendulum does that.
 };
 
-/// The free swings of a recording in time order: runs of two half swings and more that JudgeHalfSwings calls free.
-///
-/// A swing begins with the steady part of the hold before it, or where the motion towards its first turn begins if that
-/// takes no longer than a half swing; held within 15 deg of the upright, where its fall tells nothing of the release,
-/// at the next turn. It ends one period after the last motion that stands out of the noise, or before it is touched.
+/// The free swings of a recording in time order: runs of two half swings and more that JudgeHalfSwings calls free. A
+/// swing begins with the steady part of the hold before it, or where the motion towards its first turn begins if that
+/// takes no longer than a half swing; held within 15 deg of the upright, at the next turn. It ends one period after the
+/// last motion that stands out of the noise, or before it is touched.
 /// kFailedPrecondition: none; the message says whether it is constant, does not turn, is driven, or was moved by hand.
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
 

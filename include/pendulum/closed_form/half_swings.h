@@ -10,18 +10,17 @@ namespace pendulum {
 
 /// One passage between two turning points of the reading that follow each other without a gap in the data.
 struct HalfSwing {
-  double crossing = 0;     ///< s, when the reading passes its zero
-  double before = 0;       ///< rad or rad/s, |reading - zero| at the turning point before
-  double after = 0;        ///< the same at the turning point after
-  bool continues = false;  ///< True when the half swing before it in the table ends where this one begins.
+  double crossing = 0;           ///< s, when the reading passes its zero
+  double before = 0, after = 0;  ///< rad or rad/s, |reading - zero| at the turning points before and after
+  bool continues = false;        ///< True when the half swing before it in the table ends where this one begins.
 };
 
 /// The half swings of a recording about its zero.
 struct HalfSwingTable {
   Quantity quantity = Quantity::kAngle;
   Gravity gravity = Gravity::kSine;  ///< The law the closed forms take for it; the caller's choice.
-  double zero = 0;  ///< rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry
-                    ///< friction adds nothing
+  /// rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry friction adds nothing
+  double zero = 0;
   std::vector<HalfSwing> half_swings;
 };
 

@@ -13,9 +13,8 @@ double PeriodRatio(double amplitude);
 /// the peak of a rate (MODEL.md eq. (21)), at most 3.1 rad. With linear gravity ω_peak / ω0, and no limit.
 double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency, Gravity gravity = Gravity::kSine);
 
-/// Small-angle natural frequency ω0 [rad/s] from the crossings: their spacing is (π/ω0) PeriodRatio(amplitude between
-/// them); one slope over all of them, an intercept for each run without gaps. Friction enters to second order, ω_d = ω0
-/// sqrt(1 - ζ²).
+/// Small-angle natural frequency ω0 [rad/s] from the crossings, whose spacing is (π/ω0) PeriodRatio(amplitude between
+/// them). Friction enters to second order, ω_d = ω0 sqrt(1 - ζ²).
 double NaturalFrequency(const HalfSwingTable& table);
 
 }  // namespace pendulum

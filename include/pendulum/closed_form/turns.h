@@ -11,13 +11,13 @@ namespace pendulum {
 
 /// All turning points of a recording, disturbed or not; half swing i goes from turn i to turn i + 1. For M turns.
 struct TurnTable {
-  const Recording& recording;          ///< Must outlive the table.
-  double noise = 0;                    ///< rad or rad/s, between neighbouring samples
-  double threshold = 0;                ///< rad or rad/s: what a turn stands out by
-  std::vector<Extremum> turns = {};    ///< M
-  std::vector<double> zero = {};       ///< M, rad or rad/s: near each turn, for it may drift; empty when M < 3
-  std::vector<double> amplitude = {};  ///< M, rad or rad/s: distance from the zero; empty when M < 3
-  double half_period = 0;              ///< s, typical, of a small swing
+  const Recording& recording;        ///< Must outlive the table.
+  double noise = 0;                  ///< rad or rad/s, between neighbouring samples
+  double threshold = 0;              ///< rad or rad/s: what a turn stands out by
+  std::vector<Extremum> turns = {};  ///< M
+  /// M, rad or rad/s: near each turn, for it may drift, and distance from it; empty when M < 3
+  std::vector<double> zero = {}, amplitude = {};
+  double half_period = 0;  ///< s, typical, of a small swing
 
   std::size_t half_swings() const { return turns.empty() ? 0 : turns.size() - 1; }
 

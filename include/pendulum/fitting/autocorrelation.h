@@ -27,11 +27,10 @@ struct Autocorrelation {
   /// "white", "AR(3)", "ARMA(1,1)", "continuous AR(1)", "continuous AR(1) + white".
   std::string Name() const;
 
-  /// Variance of the mean of many samples, over that of as many independent ones: 1 + 2 Σ ρ_k. N samples tell of a
-  /// constant as much as N over this number would that are independent.
+  /// 1 + 2 Σ ρ_k: the variance of the mean of many samples, over that of as many independent ones.
   double VarianceInflation() const;
 
-  /// The same of the variance of many samples: 1 + 2 Σ ρ_k².
+  /// 1 + 2 Σ ρ_k²: the same of the variance of many samples.
   double SquaredInflation() const;
 };
 
@@ -39,13 +38,8 @@ struct Autocorrelation {
 inline constexpr double kGapIntervals = 1.5;
 
 /// The meat of a sandwich covariance, W' R W with R the N x N correlations of z at these times: the covariance of W'z.
-///
-/// Written as Σ_k g_k g_k', where g_k is what the innovation e_k moves in W'z: the transpose of the process's filter,
-/// run backwards in time, so R is never formed and the sum is never indefinite. A gap
-/// in an even clock is so many samples that were not taken: rounded to whole intervals, their weights are 0.
-///
-/// time   N x 1, s, increasing.     weights   N x K.     Returns K x K, in the unit of weights squared.
-/// Costs O(N K (K + p)) and O(K²) memory.
+/// A gap in an even clock is so many samples that were not taken. Costs O(N K (K + p)) and O(K²) memory.
+/// time N x 1, s, increasing.  weights N x K.  Returns K x K, in the unit of weights squared, never indefinite.
 Eigen::MatrixXd CorrelatedSum(const Autocorrelation& correlation, const Eigen::VectorXd& time,
                               const Eigen::MatrixXd& weights);
 

@@ -18,11 +18,9 @@ struct Bootstrap {
 };
 
 /// Refits of kBootstrapFits recordings: the fitted readings with new noise, rounded and cut as the sensor does.
-///
-/// Independent Gaussian or quantized noise is drawn from its model (parametric bootstrap). Residuals that remember, and
-/// those of a robust family, are resampled: circular blocks of the quantile residuals, long enough to hold their memory
-/// (D. N. Politis and J. P. Romano, "A circular block-resampling procedure", 1992); of independent ones one by one.
-/// quantile_residuals: N. Runs on options.threads threads; the same for a seed whatever their number.
+/// Independent Gaussian or quantized noise is drawn from its model; residuals that remember, and those of a robust
+/// family, are resampled in circular blocks (Politis & Romano 1992). quantile_residuals: N. Runs on options.threads
+/// threads; the same for a seed whatever their number.
 Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, const Solution& solution,
                        const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation);
 

@@ -17,8 +17,7 @@ struct DerivedQuantity {
   std::string unit;
   double estimate = 0;
   std::optional<double> std_error = std::nullopt;
-  std::optional<double> lower95 = std::nullopt;
-  std::optional<double> upper95 = std::nullopt;
+  std::optional<double> lower95 = std::nullopt, upper95 = std::nullopt;
 };
 
 /// Ends of a parameter's interval; one may be missing.
@@ -26,21 +25,18 @@ struct IntervalEnds {
   std::optional<double> lower, upper;
 };
 
-/// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ, and gravity, viscous, coulomb,
-/// drag ... over inertia (MODEL.md eq. (23)): none depends on the rig.
+/// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is 0), and gravity,
+/// viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)): none depends on the rig.
 ///
 /// infos: the model's parameters, inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero
-/// rows for what is held; nullptr when there is none, and then no standard errors. at_bound: indices of parameters at a
-/// bound; what depends on one, or on held parameters alone, has no standard error. quality_factor is left out when b is
-/// 0.
+/// rows for what is held; nullptr: no standard errors. at_bound: indices of parameters at a bound; what depends on one,
+/// or on held parameters alone, has no standard error.
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);
 
-/// Sets the intervals of derived quantities from those of the parameters they come from: each end of one is carried
-/// over with the others at their estimates, and the distances are added in squares.
-///
-/// As above; intervals: P, in units of G. An end that no end of a parameter is carried to stays missing.
+/// Sets the intervals of derived quantities from those of the parameters they come from (P, in units of G; others as
+/// above). An end that no end of a parameter is carried to stays missing.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
 

@@ -28,18 +28,18 @@ enum class NoiseChoice { kAuto, kGaussian, kQuantized };
 /// Robust alternatives to normal noise, for recordings with outliers.
 enum class Loss { kNone, kHuber, kStudent };
 
-/// Where intervals come from. kAuto: covariance, but profiles where any parameter is within three standard errors of a
-/// bound, and the posterior where counts hardly scatter.
+/// Where intervals come from. kAuto: covariance, but profiles where any parameter is at a bound or within three
+/// standard errors of one, and the posterior where counts hardly scatter.
 enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap };
 
-/// What FitRecording is asked to do. Values by parameter name are SI: torques and inertia in N m and kg m^2 with a rig,
-/// in units of G without one.
+/// What FitRecording is asked to do. Values by name are SI with a rig (N m, kg m^2); torques and inertia in units of G
+/// without.
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Instead of the model's own.
   StartChoice start = StartChoice::kAuto;
-  std::optional<Rig> rig;   ///< Turns ratios into SI; without it torques are in units of G.
-  ParameterValues fixed;    ///< Parameters held at a value.
+  std::optional<Rig> rig;
+  ParameterValues fixed;
   ParameterValues initial;  ///< Where parameters begin instead of where the data say.
   ParameterRanges bounds;   ///< Bounds within a parameter's own.
   ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
@@ -55,12 +55,10 @@ struct FitOptions {
 };
 
 /// How a fit ended, and what of its report means something:
-///
-///                     estimates     std_error, covariance   statistics
-///   kConverged        yes           yes                     yes
-///   kNotConverged     best found    no                      yes
-///   kNotIdentifiable  best found    no                      yes
-///   kFailed           not any       no                      no
+///                                     estimates     std_error, covariance   statistics
+///   kConverged                        yes           yes                     yes
+///   kNotConverged, kNotIdentifiable   best found    no                      yes
+///   kFailed                           not any       no                      no
 enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
 
 std::string_view TerminationName(Termination termination);
@@ -80,14 +78,13 @@ struct ParameterEstimate {
   std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
   bool fixed = false;
   bool at_bound = false;
-  std::string reason;  ///< Why there is no std_error; empty when there is one.
+  std::string reason;
 };
 
 /// The noise of the samples about the trajectory.
 struct NoiseEstimate {
   NoiseFamily family = NoiseFamily::kGaussian;
-  double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), otherwise the likeliest; the scale
-                     ///< of a robust family.
+  double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), else the likeliest σ or scale.
   std::optional<double> sigma_std_error;  ///< Same unit.
   double resolution = 0;                  ///< Of the readings, same unit; 0: none.
   Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
@@ -114,32 +111,29 @@ struct FitReport {
   std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
-  Eigen::MatrixXd covariance;    ///< M x M, M = covariance_names.size(), products of the parameters' units.
-  std::string std_error_method;  ///< In words.
-  std::string interval_method;   ///< In words.
-  std::vector<std::string> systematic_names;     ///< Parameters with a systematic error.
-  Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
-  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.
+  Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  std::string std_error_method, interval_method;  ///< In words.
+  std::vector<std::string> systematic_names;      ///< Parameters with a systematic error.
+  Eigen::MatrixXd systematic_covariance;          ///< K x K, K = systematic_names.size(), as covariance.
+  std::vector<Identifiability> identifiability;   ///< Of the parameters that are not fixed; empty when not converged.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
   std::vector<Warning> warnings;
-  double trace_error = 0;    ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
-  Eigen::VectorXd fitted;    ///< N x 1, modelled readings at the samples, rad or rad/s (zero_angle included).
-  Eigen::VectorXd residual;  ///< N x 1, measured - modelled, rad or rad/s.
+  double trace_error = 0;  ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
+  Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.
 
   /// The parameter of that name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 };
 
-/// The parameters of a fit in order: inertia, friction, then release_angle and release_time or initial_angle and
-/// initial_rate, then zero_angle or rate_bias, and its drift if it `drifts`.
+/// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
+/// initial_rate, zero_angle or rate_bias, and its drift if it `drifts`.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
                                          bool drifts = false);
 
-/// Fits one model to the whole of a recording. With StartChoice::kAuto a release after a short hold, or one that
-/// explains little, is compared with a start in motion. Seconds are true ones (clock_scale), but release_time is on the
-/// file's own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
+/// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
+/// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
 ///
 /// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
 /// bounds, quantized noise without a resolution or with a robust loss. kDataLoss: counts or volts without a

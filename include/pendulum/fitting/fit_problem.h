@@ -37,9 +37,7 @@ struct FitProblem {
 /// and the other friction parameters balance the energy without them.
 std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
 
-/// Start values from the data, bounds and fixed values from the options.
-///
-/// Errors as FitRecording.
+/// Start values from the data, bounds and fixed values from the options. Errors as FitRecording.
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

@@ -25,9 +25,7 @@ struct ChosenSwings {
   std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
 };
 
-/// Finds the free swings and chooses. An end that the user gave is the end of the window; with both nothing is looked
-/// for.
-///
+/// Finds the free swings and chooses. An end the user gave is the end of the window; with both nothing is looked for.
 /// kInvalidArgument: no swing of that number, or an empty window. kFailedPrecondition: as FindFreeSwings.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice);
 
@@ -41,7 +39,6 @@ struct SwingFit {
 /// Fits a free swing. Where more than noise is left, turning points at its ends are left out as long as the rest then
 /// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
 /// stay. Warns `left_out` of larger motion outside. What is no pendulum's swing ends kNotConverged, `not_a_pendulum`.
-///
 /// Errors as FitRecording. Cost: that of FitRecording, and where something is wrong some tens of small fits more.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 

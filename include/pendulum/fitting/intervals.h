@@ -17,14 +17,11 @@ struct FittedModel {
   const Eigen::VectorXd& quantile_residuals;  // N
 };
 
-/// For quantized noise below kQuietSigma resolutions and fewer than some hundred samples near edges of levels: takes
-/// estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior) instead, for there no parabola
-/// describes the likelihood. False where that is not so, or intervals were asked for by another method.
+/// For quantized noise below kQuietSigma resolutions with few samples near edges of levels: takes estimates,
+/// covariance, σ and intervals from SamplePosterior. False otherwise, or if another method was asked for.
 bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
 
-/// Sets the 95 % interval of every parameter that is not fixed by options.interval: estimate ± t std_error within the
-/// bounds, the profile of its likelihood, or quantiles of bootstrap estimates. kAuto takes profiles for all where any
-/// lies at its bound or within three standard errors of it.
+/// Sets the 95 % interval of every parameter that is not fixed, by the method of options.interval.
 void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report);
 
 /// Sets what the recording can tell of every parameter, from intervals, information and covariance.

@@ -13,17 +13,13 @@ struct ChosenNoise {
   std::string why;
 };
 
-/// Quantized where the options ask for it, or leave the choice and the residuals are below one resolution: there
-/// rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008, section 5.1). resolution:
-/// of the readings, 0 for none.
+/// Quantized if the options ask for it, or leave it open and the residuals are below a resolution (rad, rad/s; 0:
+/// none).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev);
 
-/// From the least squares of a search on to the largest likelihood of its noise family: parameters (Solve) and σ in
-/// turn, until σ stays the same. The other minima that came near are solved as well, and the likeliest wins.
-///
-/// `cost` keeps the noise, so that its sums are those of the likelihood. Gaussian noise has σ² = RSS / (N - free
-/// parameters), and then nothing is solved again unless priors weigh in. Quantized noise has σ of at least
-/// kSmallestSigma resolutions: below, the likelihood has no maximum inside, and SamplePosterior has the say.
+/// From the least squares of a search on to the largest likelihood of its noise family, over parameters and σ. `cost`
+/// keeps the noise, so that its sums are those of the likelihood. Gaussian noise has σ² = RSS / (N - free parameters),
+/// quantized noise a σ of at least kSmallestSigma resolutions.
 void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options, Solution& solution);
 
 inline constexpr double kSmallestSigma = 0.05;

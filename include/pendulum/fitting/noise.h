@@ -17,8 +17,8 @@ struct IntervalProbability {
   double upper = 0;
 };
 
-/// Without cancellation in both tails: the error of log is below 1e-13, absolute or relative, the densities' relative
-/// one below 1e-11, and mostly a thousandth of these. a < b, each may be infinite.
+/// Without cancellation in both tails: error of log below 1e-13, absolute or relative, of the densities 1e-11,
+/// relative. a < b, each may be infinite.
 IntervalProbability GaussianInterval(double a, double b);
 
 /// How samples scatter about the trajectory.
@@ -41,12 +41,10 @@ struct SampleLikelihood {
 
 /// What it says of σ too, by its logarithm λ.
 struct NoiseLikelihood {
-  double log = 0;                ///< l: of a probability when quantized or censored, of a density otherwise.
-  double score = 0;              ///< ∂l/∂m
-  double information = 0;        ///< -∂²l/∂m²
-  double sigma_score = 0;        ///< ∂l/∂λ
-  double sigma_information = 0;  ///< -∂²l/∂λ²
-  double mixed = 0;              ///< -∂²l/∂m∂λ
+  double log = 0;                     ///< l: of a probability when quantized or censored, of a density otherwise.
+  double score = 0, information = 0;  ///< ∂l/∂m and -∂²l/∂m²
+  double sigma_score = 0, sigma_information = 0;  ///< ∂l/∂λ and -∂²l/∂λ²
+  double mixed = 0;                               ///< -∂²l/∂m∂λ
 };
 
 /// The noise of the samples of one recording (MODEL.md eq. (26) to (28)). A reading at an end of the sensor's range is
@@ -74,8 +72,7 @@ struct NoiseModel {
   SampleLikelihood At(double y, double m) const;
   NoiseLikelihood LikelihoodAt(double y, double m) const;
 
-  /// Distribution function of the reading y just below it and at it: equal for a density, and the two ends of the
-  /// probability that a level or a censored reading has.
+  /// Distribution function of the reading y just below it and at it: equal for a density.
   struct Distribution {
     double below;
     double at;
@@ -87,8 +84,8 @@ struct NoiseModel {
 double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                      const Eigen::Ref<const Eigen::VectorXd>& readings);
 
-/// The σ at which N samples are likeliest about these modelled readings; Huber's "proposal 2" for that family. Between
-/// 1e-6 and 1e6 times noise.sigma. Levels that explain every sample leave no maximum: the least σ, `smallest`.
+/// The σ at which N samples are likeliest (Huber's "proposal 2" for that family), up to 1e6 times noise.sigma; at least
+/// `smallest`, which it is for levels that explain every sample.
 double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                       const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest);
 

@@ -37,9 +37,8 @@ struct Errors {
   std::string method;            ///< In words.
 };
 
-/// The covariance of the free parameters (MODEL.md eq. (18), (28) to (30)): the inverse of the observed information of
-/// parameters and log σ; of a robust family Huber's sandwich; and where the residuals remember, W'RW between two
-/// inverses, W the roots of the samples' information times the Jacobian and R the autocorrelation.
+/// The covariance of the free parameters: the inverse of the observed information of parameters and log σ, and for a
+/// robust family or residuals that remember a sandwich of it (MODEL.md eq. (18), (28) to (30)).
 Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                      const Optimum& optimum, const Autocorrelation& correlation);
 

@@ -15,12 +15,9 @@ struct ProfileInterval {
   std::string open;  ///< Why an end is missing; empty when none is.
 };
 
-/// The 95 % profile-likelihood interval of parameter k, free or at its bound: the values at which minus twice the
-/// log-likelihood, the others solved anew, has not risen by more than Student's t² (D. J. Venzon and S. H. Moolgavkar,
-/// Applied Statistics 37:87, 1988; MINOS). An end beyond a bound is the bound.
-///
-/// The threshold is scaled by the variance in `errors` over that of the likelihood at fixed σ, which accounts for σ and
-/// for residuals that remember (R. E. Chandler and S. Bate, Biometrika 94:167, 2007). Cost: about six solves.
+/// The 95 % profile-likelihood interval of parameter k, free or at its bound (D. J. Venzon and S. H. Moolgavkar,
+/// Applied Statistics 37:87, 1988), with regard to residuals that remember (R. E. Chandler and S. Bate, Biometrika
+/// 94:167, 2007). An end beyond a bound is the bound. Cost: about six solves.
 ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
                                  const Optimum& optimum, const Autocorrelation& correlation, int k);
 

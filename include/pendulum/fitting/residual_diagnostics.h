@@ -9,25 +9,22 @@ namespace pendulum {
 
 /// Measures of the fit. N samples, k = free parameters + 1 for sigma. Those of independence are of quantile residuals.
 struct FitStatistics {
-  double rms_residual = 0;       ///< sqrt(RSS / N), rad or rad/s
-  double log_likelihood = 0;     ///< See Solution; compared only within a noise family.
-  double aic = 0;                ///< 2 k - 2 log L
-  double aicc = 0;               ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
-  double bic = 0;                ///< k ln N - 2 log L
-  double durbin_watson = 0;      ///< Σ (z_i - z_{i-1})² / Σ z_i² (Durbin & Watson, Biometrika 37:409, 1950)
-  double ljung_box_p = 1;        ///< Of LjungBoxP.
-  double runs_p = 1;             ///< Of RunsP.
-  double effective_samples = 0;  ///< N / (1 + 2 Σ ρ_k), at most N.
+  double rms_residual = 0;             ///< sqrt(RSS / N), rad or rad/s
+  double log_likelihood = 0;           ///< See Solution; compared only within a noise family.
+  double aic = 0;                      ///< 2 k - 2 log L
+  double aicc = 0;                     ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
+  double bic = 0;                      ///< k ln N - 2 log L
+  double durbin_watson = 0;            ///< Σ (z_i - z_{i-1})² / Σ z_i² (Durbin & Watson, Biometrika 37:409, 1950)
+  double ljung_box_p = 1, runs_p = 1;  ///< Of LjungBoxP and RunsP.
+  double effective_samples = 0;        ///< N / (1 + 2 Σ ρ_k), at most N.
 };
 
-/// Randomized quantile residuals z (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996): Φ⁻¹ of the distribution function
-/// at the reading, at a random place within the jump that a level or a censored reading makes. Standard normal and
-/// independent when the model is right, whatever the rounding. N samples; always the same random places.
+/// Randomized quantile residuals (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996): standard normal and independent
+/// when the model is right, whatever the rounding. N samples; always the same random places.
 Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                                   const Eigen::Ref<const Eigen::VectorXd>& readings);
 
-/// Probability that independent residuals have autocorrelations as large over min(20, N/5) lags (Ljung & Box,
-/// Biometrika 65:297, 1978).
+/// Probability of autocorrelations as large by chance, over min(20, N/5) lags (Ljung & Box, Biometrika 65:297, 1978).
 double LjungBoxP(const Eigen::VectorXd& residual);
 
 /// Two-sided probability that independent residuals change sign as seldom, or as often (Wald & Wolfowitz, Ann. Math.
@@ -37,20 +34,16 @@ double RunsP(const Eigen::VectorXd& residual);
 /// Correlation of each residual with the next, Σ r_i r_{i-1} / Σ r_i²; 0 for residuals that are all 0.
 double Lag1Correlation(const Eigen::VectorXd& residual);
 
-/// Whether residuals follow each other, against independence: Box and Pierce's portmanteau N Σ ρ_k² over at most 50
-/// lags k from 1 to longest_lag, spaced as squares, is six standard deviations above its mean (Box & Pierce, JASA
-/// 65:1509, 1970), which independent residuals reach in 2e-6 of all cases. Noise that remembers shows at the first
-/// lags, a misfit that swings with the pendulum at some lag within one period.
+/// Whether residuals follow each other at up to 50 lags from 1 to longest_lag (Box & Pierce, JASA 65:1509, 1970); of
+/// independent ones 2e-6 do.
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 
-/// Whether residuals swing along with the pendulum, against independence (MODEL.md eq. (25)): the model's errors of
-/// phase and amplitude from period to period [s] exceed what independent residuals give in 2e-4 of all cases. N
-/// samples.
+/// Whether residuals swing along with the pendulum, as errors of its phase and amplitude from period to period [s]
+/// (MODEL.md eq. (25)); of independent ones 2e-4 do. N samples.
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 
-/// The statistics of N residuals [rad or rad/s] of a fit with that many free parameters, from its log-likelihood and
-/// quantile residuals; effective_samples is N.
+/// The statistics of N residuals [rad or rad/s] of a fit with that many free parameters; effective_samples is N.
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
                                 double log_likelihood, int free_parameters);
 

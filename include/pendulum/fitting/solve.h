@@ -12,13 +12,12 @@ namespace pendulum {
 
 /// What may move, and how far.
 struct SolveOptions {
-  std::vector<double> lower;   ///< P; -kUnbounded where there is no bound.
-  std::vector<double> upper;   ///< P; kUnbounded where there is no bound.
-  std::vector<bool> fixed;     ///< P
-  int holding_parameter = -1;  ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
-  int last_friction = 1;       ///< The last parameter of friction; the first is 1, behind inertia.
-  int release_time = -1;       ///< -1: the recording begins in motion.
-  int max_iterations = 100;    ///< Of Ceres, for each run.
+  std::vector<double> lower, upper;  ///< P; -kUnbounded and kUnbounded where there is no bound.
+  std::vector<bool> fixed;           ///< P
+  int holding_parameter = -1;        ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
+  int last_friction = 1;             ///< The last parameter of friction; the first is 1, behind inertia.
+  int release_time = -1;             ///< -1: the recording begins in motion.
+  int max_iterations = 100;          ///< Of Ceres, for each run.
   int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
 };
 
@@ -45,11 +44,8 @@ struct Solution {
 /// Where parameter i stands at a value: -1 at its lower bound or below, 1 at its upper bound or above, 0 between.
 int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
-/// Levenberg-Marquardt (Ceres) from `start` over all samples the cost uses; parameters stay within their bounds.
-///
-/// An active-set method: a parameter whose step lands on its bound, or would, is held there, and let go when the cost
-/// pulls it inwards at the others' optimum, at most 4 P times. A run stops when the cost changes by less than 1e-10 of
-/// itself, which leaves the estimates within sqrt(1e-10 N) standard errors. `cost` is not owned.
+/// Levenberg-Marquardt (Ceres) from `start` over the samples the cost uses; parameters stay within their bounds. Ends
+/// when the cost, not owned, changes by less than 1e-10 of itself: estimates within sqrt(1e-10 N) standard errors.
 Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.

@@ -24,12 +24,8 @@ struct StartValues {
   EnergyBalance energy_balance;    ///< Gives the friction of simpler laws too.
 };
 
-/// Inertia from the crossings (period corrected for amplitude), friction from the energy balance, zero from the turning
-/// points, and the start: a held part gives release angle (its mean) and release time (a quarter period before the
-/// first crossing; half a period before the first turn of a rate); otherwise a parabola through the first samples gives
-/// angle and rate.
-///
-/// kAuto takes a release when the reading stays put for at least a tenth of a period before it moves.
+/// Inertia from the crossings, friction from the energy balance, zero from the turning points, and a release or the
+/// first angle and rate. kAuto takes a release when the reading first stays put for at least a tenth of a period.
 /// kFailedPrecondition: no swing in the data (see FindExtrema), or kRelease was asked for and no held part is there. A
 /// friction law that is not linear in its parameters needs start values of its own here.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model, StartChoice choice);

@@ -16,8 +16,7 @@
 
 namespace pendulum {
 
-/// What a trajectory is compared with. Times are from the first sample, so that a clock of large numbers costs no
-/// digits.
+/// What a trajectory is compared with. Times are from the first sample: a clock of large numbers costs no digits.
 struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
   std::vector<double> time;      ///< N, s, increasing, time[0] = 0.
@@ -41,12 +40,10 @@ struct PriorTerm {
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
 /// the reading per s] where the data ask for it. The squared residual of a sample is its deviance under the noise,
 /// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale).
-///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
-/// J'J, R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of the N residuals, J'J is the observed
-/// information of the samples (MODEL.md eq. (19) and (28)), nothing of length N is stored or factored. Asked for
-/// residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be traced or is released outside
-/// the data makes every function return false.
+/// J'J (the observed information of the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost
+/// and gradient are exactly those of the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial
+/// that never moves, that cannot be traced or is released outside the data makes every function return false.
 class TrajectoryCost : public ceres::CostFunction {
  public:
   /// |r|², the deviance of samples and priors, or false.

@@ -38,8 +38,7 @@ struct ParameterInfo {
   std::string_view symbol;         ///< As in MODEL.md.
   std::string_view unit;           ///< SI.
   std::string_view relative_unit;  ///< SI, of the value divided by G; equal to `unit` where G does not enter.
-  double lower;                    ///< Smallest admissible value.
-  double upper;                    ///< Largest admissible value.
+  double lower, upper;             ///< The smallest and the largest admissible value.
   std::string_view description;    ///< One phrase.
 
   /// True when the value in SI is G times the value in units of G.

@@ -25,11 +25,10 @@ struct Rig {
   nlohmann::ordered_json source;    ///< The rig file as it was read, for the report.
 };
 
-/// Reads a rig from JSON text: one of {"bob_mass", "rod_mass", "rod_length", "gravity"}, {"gravity_torque"} or
-/// {"mass", "center_of_mass", "gravity"}, each with optional "inertia"; SI units; a value is a number or
-/// {"value", "std_dev"}. A rod and bob give I_O = m l²/3 + M l² (MODEL.md eq. (3)) unless "inertia" is there.
-///
-/// G = (M + m/2) g l (MODEL.md eq. (2)); its variance to first order, from independent values.
+/// Reads a rig from JSON text: one of {"bob_mass", "rod_mass", "rod_length", "gravity"}, {"gravity_torque"} or {"mass",
+/// "center_of_mass", "gravity"}, each with optional "inertia"; SI units; a value is a number or {"value", "std_dev"}. A
+/// rod and bob give I_O = m l²/3 + M l² (MODEL.md eq. (3)) unless "inertia" is there, and G = (M + m/2) g l (MODEL.md
+/// eq. (2)); its variance to first order, from independent values.
 /// kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or repeated key, keys of different
 /// descriptions, a value that is not positive (rod_mass may be 0); the message begins with `name` and names the key.
 Result<Rig> ParseRig(std::string_view text, const std::string& name);

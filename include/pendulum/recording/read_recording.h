@@ -13,8 +13,8 @@ namespace pendulum {
 
 /// What the user says of a file that it does not say itself.
 struct ReadOptions {
-  std::string time_column;    ///< Name or 1-based number, both also with :s, :ms or :us; empty: the header's;
-                              ///< "none": the times are those of the sample rate.
+  /// Name or 1-based number, both also with :s, :ms or :us; "none": those of the sample rate; empty: the header's.
+  std::string time_column;
   std::string value_column;   ///< Name or 1-based number; empty: the header's.
   std::string unit;           ///< Of the values: rad, deg, rad_s, deg_s, counts or volts; empty: the header's.
   double sample_rate_hz = 0;  ///< Of a file without times, Hz; 0: its times, or its `# sample_rate_hz`.
@@ -29,7 +29,6 @@ struct ReadOptions {
 /// `_rad_s`, `_deg_s`, `_counts` or `_volts`; `Time (ms)` says the same. What is not told, or told twice, is for
 /// ReadOptions to say. Separators: comma, semicolon, tab, blanks, or that of `sep=;`; decimal commas where the
 /// separator is none. A byte order mark, CRLF, quotes and the stamps of a serial monitor are accepted.
-///
 /// `# key: value` is metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows
 /// without time), `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines
 /// with # are comments. A resolution that nobody tells is looked for in the values (FindResolution), and counts that

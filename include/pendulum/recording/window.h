@@ -6,13 +6,11 @@
 namespace pendulum {
 
 /// The part of a recording with from <= time <= to [s, on the file's clock]; NaN leaves that end open.
-///
 /// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples samples are left; the message gives
 /// the window and the span of the recording.
 Result<Recording> SelectWindow(Recording recording, double from, double to);
 
-/// Not more than `most` samples from the first (or the last) on, as dense as `per_second` [Hz] asks where the recording
-/// is.
+/// At most `most` samples from the first (or the last) on, as dense as `per_second` [Hz] asks where the recording is.
 Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end);
 
 /// Every so many-th sample, so that at most `most` remain.

@@ -18,9 +18,8 @@ struct ValueAndError {
 };
 
 /// The rounding of the Particle Data Group (M. Tanabashi et al., Review of Particle Physics, Phys. Rev. D 98, 030001,
-/// 2018, Introduction, section 5.3): if the three leading digits of the error are 100 to 354, the error has two
-/// significant digits; 355 to 949, one; 950 to 999, it is rounded up to 1000 and has two. The value, and whatever else
-/// is said of the quantity, is given to the same decimal. Any unit; error > 0, both finite.
+/// 2018, Introduction, section 5.3): an error with leading digits 100 to 354 has two significant digits, 355 to 949
+/// one, 950 to 999 is rounded up to 1000 and has two; the value has the same decimal. Any unit; error > 0, both finite.
 Rounding PdgRounding(double value, double error);
 
 /// The rounding that shows x != 0 to so many significant digits, trailing zeros included.

@@ -24,8 +24,7 @@ struct DataSummary {
   std::string unit = "rad";       ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
   Eigen::Index samples = 0;       ///< In the file.
   Eigen::Index used_samples = 0;  ///< In the window that was fitted; at least kMinimumSamples.
-  double from = 0;                ///< Time of the first used sample [s, on the file's clock].
-  double to = 0;                  ///< Time of the last used sample [s, on the file's clock].
+  double from = 0, to = 0;        ///< Times of the first and the last used sample [s, on the file's clock].
   double resolution = 0;          ///< Spacing of the values; 0 for none.
   std::string resolution_source;  ///< "given", "file" or "found"; empty for none.
   double clock_scale = 1;         ///< True seconds in a second of the file's clock; the fit is in true ones.
@@ -46,7 +45,7 @@ DataSummary SummarizeData(const SwingFit& fit, const ChosenSwings& swings, int r
 /// All that a run of fit_pendulum found: what every form of the report is made from.
 struct RunReport {
   DataSummary data;
-  std::optional<Rig> rig;              ///< The rig all fits used.
+  std::optional<Rig> rig;
   nlohmann::ordered_json calibration;  ///< What turned counts or volts into angles, as it was given; null for none.
   std::vector<FitReport> fits;         ///< At least one, in the order asked for.
   std::vector<Warning> warnings;       ///< Of the recording; a fit's own stand in its FitReport.

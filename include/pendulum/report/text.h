@@ -7,11 +7,9 @@
 
 namespace pendulum {
 
-/// The result for people: UTF-8 text in the layout lmfit's fit_report made customary, about 100 columns wide.
-///
-/// Values and standard errors are rounded by the Particle Data Group's rule (PdgRounding), intervals to the same
-/// decimal. Angles and rates are given in degrees too. Of the correlations, those of at least 0.1 are listed, the
-/// largest first.
+/// The result for people: UTF-8 text in the layout lmfit's fit_report made customary, about 100 columns wide. Numbers
+/// are rounded by PdgRounding, intervals to the decimal of their value; angles and rates are given in degrees too. Of
+/// the correlations, those of at least 0.1 are listed, the largest first.
 std::string ToText(const RunReport& report);
 
 }  // namespace pendulum

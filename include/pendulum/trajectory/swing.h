@@ -15,8 +15,7 @@
 
 namespace pendulum {
 
-/// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (4)): inertia I/G [s^2] and friction
-/// parameters / G.
+/// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (4)): inertia I/G [s^2], friction / G.
 template <FrictionModel F, typename T>
 struct Pendulum {
   Gravity gravity = Gravity::kSine;
@@ -84,8 +83,7 @@ double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, doub
   return std::abs(torque) > holding * kMargin ? direction : 0.0;
 }
 
-/// Taylor coefficients 0..order of the angle and 0..order-1 of the rate while the direction of motion stays the same.
-/// MODEL.md eq. (12).
+/// Taylor coefficients 0..order of the angle and 0..order-1 of the rate in one direction of motion. MODEL.md eq. (12).
 template <FrictionModel F, typename T>
 void ExpandSwing(const Pendulum<F, T>& pendulum, double direction, int order, const State<T>& state, Series<T>& angle,
                  Series<T>& rate) {

@@ -14,15 +14,14 @@ namespace pendulum {
 
 /// A recording to be made, and with it the truth a fit of that recording should find.
 struct SyntheticOptions {
-  MotionModel model = {"coulomb", "coulomb", Gravity::kSine};  ///< Any friction law with any gravity law.
-  std::vector<double>
-      parameters;  ///< Of PhysicalParameters(model), in units of G: inertia / G [s^2], viscous / G [s], ...
+  MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
+  /// Of PhysicalParameters(model), in units of G: inertia / G [s^2], viscous / G [s], ...
+  std::vector<double> parameters;
 
   StartKind start = StartKind::kRelease;
-  double release_angle = 0;  ///< θ before the release [rad]; kRelease.
-  double release_time = 0;   ///< s, on the recording's clock, before its last sample; kRelease.
-  double initial_angle = 0;  ///< θ at the first sample [rad]; kMoving.
-  double initial_rate = 0;   ///< θ' at the first sample [rad/s]; kMoving.
+  double release_angle = 0;                    ///< θ before the release [rad]; kRelease.
+  double release_time = 0;                     ///< s, on the recording's clock, before its last sample; kRelease.
+  double initial_angle = 0, initial_rate = 0;  ///< θ [rad] and θ' [rad/s] at the first sample; kMoving.
 
   double start_time = 0;     ///< Clock at the first sample [s].
   double duration = 20;      ///< s; the recording has round(duration * sample_rate) samples.
@@ -40,17 +39,14 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
 
-/// What the sensor shows of a value x: y = q round(x / q) without a range, with one y = low + q round((x - low) / q)
-/// within the levels of [low, high], which is an ADC seen through a linear calibration. Without a resolution x clipped
-/// to the range.
+/// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the
+/// levels of [low, high], as an ADC seen through a linear calibration. Without a resolution x clipped to the range.
 double SensorReading(double x, double resolution, const std::optional<SensorRange>& range);
 
 /// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
-/// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. Noise comes from
-/// mt19937_64 and Boost's distributions: a seed gives the same everywhere, whatever the jitter. Correlated noise is e_0
-/// = s x_0, e_i = r e_(i-1) + sqrt(1 - r²) s x_i with s = noise and independent x_i, normal or t: its standard
-/// deviation is that of s x_i from the first sample on, s or, for Student's t, s sqrt(ν / (ν - 2)); ν > 2 or 0.
-///
+/// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. A seed gives the
+/// same everywhere, and the same noise whatever the jitter; the noise is stationary, of standard deviation `noise` or,
+/// for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
 /// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);

@@ -74,7 +74,6 @@ class Trajectory {
 };
 
 /// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of G.
-///
 /// kInvalidArgument: wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never
 /// moves, or cannot be traced.
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
