@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <random>
 #include <thread>
 #include <vector>
@@ -30,21 +31,35 @@ Index BlockLength(const Autocorrelation& correlation, Index samples) {
 class Replicas {
  public:
   Replicas(const FitProblem& problem, const FitOptions& options, const Solution& solution,
-           const Eigen::VectorXd& residuals, const Autocorrelation& correlation)
-      : problem_(problem), options_(options), solution_(solution), residuals_(residuals) {
-    block_ = BlockLength(correlation, residuals.size());
+           const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation)
+      : problem_(problem), options_(options), solution_(solution), residuals_(quantile_residuals.size()) {
+    block_ = BlockLength(correlation, residuals_.size());
     parametric_ = block_ == 1 && !solution.noise.IsRobust();
+    for (Index i = 0; i < residuals_.size(); ++i) {
+      const double value = problem.data.value[static_cast<std::size_t>(i)];
+      residuals_[i] =
+          problem.noise.IsCensored(value) ? solution.noise.sigma * quantile_residuals[i] : value - solution.readings[i];
+    }
   }
 
-  /// Estimates of replica number `index`; empty when it cannot be solved.
+  /// Estimates of replica number `index`; empty when it cannot be solved, or runs out of memory.
   std::vector<double> Estimate(std::uint64_t index) const {
+    try {
+      return Refit(index);
+    } catch (const std::exception&) {
+      return {};
+    }
+  }
+
+ private:
+  std::vector<double> Refit(std::uint64_t index) const {
     FitProblem replica = problem_;
     std::seed_seq seeds{options_.seed & 0xffffffffU, options_.seed >> 32U, index};
     std::mt19937_64 generator(seeds);
     const Eigen::VectorXd noise = Draw(generator);
     for (Index i = 0; i < noise.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      replica.data.value[at] = Shown(solution_.readings[i] + solution_.noise.sigma * noise[i], problem_.data.value[at]);
+      replica.data.value[at] = Shown(solution_.readings[i] + noise[i], problem_.data.value[at]);
     }
     const auto cost = MakeTrajectoryCost(replica.model, replica.start.start, replica.data);
     const double max_error = std::min(options_.max_trace_error, 1e-3 * problem_.data.scale);
@@ -56,15 +71,15 @@ class Replicas {
     return solution.usable ? solution.parameters : std::vector<double>{};
   }
 
- private:
-  /// Noise of N samples, in σ: from its model (parametric bootstrap), or circular blocks of the quantile residuals,
-  /// long enough to hold their memory (D. N. Politis and J. P. Romano, "A circular block-resampling procedure", 1992).
+  /// Noise of N samples: from its model (parametric bootstrap), or circular blocks of the residuals as they are, with
+  /// outliers, rounding and memory in them (D. N. Politis and J. P. Romano, "A circular block-resampling procedure",
+  /// 1992).
   Eigen::VectorXd Draw(std::mt19937_64& generator) const {
     const Index samples = residuals_.size();
     Eigen::VectorXd noise(samples);
     if (parametric_) {
       boost::random::normal_distribution<double> normal;
-      for (double& x : noise) x = normal(generator);
+      for (double& x : noise) x = solution_.noise.sigma * normal(generator);
       return noise;
     }
     boost::random::uniform_int_distribution<Index> any(0, samples - 1);
@@ -78,7 +93,7 @@ class Replicas {
   /// What the sensor shows of a value: one of its levels, on which `other` stands, within its range.
   double Shown(double value, double other) const {
     const double q = problem_.resolution;
-    if (q > 0) value = other + q * std::round((value - other) / q);
+    if (q > 0 && parametric_) value = other + q * std::round((value - other) / q);
     const double half = problem_.resolution > 0 ? 0.5 * q : 0.0;
     return std::clamp(value, problem_.noise.low - half, problem_.noise.high + half);
   }
@@ -86,7 +101,7 @@ class Replicas {
   const FitProblem& problem_;
   const FitOptions& options_;
   const Solution& solution_;
-  const Eigen::VectorXd& residuals_;
+  Eigen::VectorXd residuals_;
   Index block_ = 1;
   bool parametric_ = true;
 };
@@ -118,8 +133,10 @@ Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, con
       estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
     }
   };
-  const unsigned cores =
+  constexpr unsigned kMostThreads = 256;
+  const unsigned asked =
       options.threads > 0 ? static_cast<unsigned>(options.threads) : std::max(std::thread::hardware_concurrency(), 1U);
+  const unsigned cores = std::min(asked, kMostThreads);
   std::vector<std::jthread> others;
   for (unsigned i = 1; i < cores; ++i) others.emplace_back(work, false);
   work(true);

@@ -31,14 +31,14 @@ class DepthTable {
   /// depth <= width / 2, negative outside the interval.
   double operator()(double depth) const {
     if (depth >= last_) return end_.log;
-    if (depth < first_) return Exactly(depth).log;
+    if (!(depth >= first_)) return Exactly(depth).log;
     const auto [c, s] = Find(depth);
     return c.f + s * (c.d + s * (c.e + s * (c.third + s * (c.fourth + s * c.fifth))));
   }
 
   Curve At(double depth) const {
     if (depth >= last_) return end_;
-    if (depth < first_) return Exactly(depth);
+    if (!(depth >= first_)) return Exactly(depth);
     const auto [c, s] = Find(depth);
     const double slope = c.d + s * (2 * c.e + s * (3 * c.third + s * (4 * c.fourth + s * 5 * c.fifth)));
     const double curvature = 2 * c.e + s * (6 * c.third + s * (12 * c.fourth + s * 20 * c.fifth));

@@ -112,6 +112,7 @@ void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vec
     distances.Add(product, parameters, 0, intervals[0]);
     if (product.other_power != 0) distances.Add(product, parameters, product.other, intervals[product.other]);
     derived[k].lower95 = distances.Below(derived[k].estimate);
+    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // of what is not negative
     derived[k].upper95 = distances.Above(derived[k].estimate);
   }
 }

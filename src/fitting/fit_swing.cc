@@ -30,7 +30,8 @@ class WindowTrials {
     if (!recording_.is_calibrated()) options_.gravity = Gravity::kLinear;
     options_.start = options.start;
     options_.max_traces = kMostTraces;
-    options_.noise = NoiseChoice::kGaussian;
+    options_.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
+    options_.loss = options.loss;
     options_.interval = IntervalMethod::kCovariance;
   }
 
@@ -165,6 +166,8 @@ std::string TakeTurnsOut(Recording& used) {
   const double turns = std::abs(mean) > 1.5 * kPi ? std::round(mean / (2 * kPi)) : 0;
   if (turns == 0) return "";
   used.value.array() -= 2 * kPi * turns;
+  if (used.range) used.range = SensorRange{used.range->low - 2 * kPi * turns, used.range->high - 2 * kPi * turns};
+  if (used.calibration) used.calibration->coefficients[0] -= 2 * kPi * turns / used.calibration->RadFromUnit();
   return NumberText(turns) + " whole turns were taken out of the readings: the zero is that of the swing's own turn";
 }
 
@@ -193,7 +196,7 @@ Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
               std::max(kMostSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
   FitOptions quick = options;
   quick.max_traces = 5 * kMostTraces;
-  quick.noise = NoiseChoice::kGaussian;
+  if (quick.loss == Loss::kNone) quick.noise = NoiseChoice::kGaussian;
   quick.interval = IntervalMethod::kCovariance;
   const auto converges = [](const Result<SwingFit>& trial) {
     return trial && trial->fit.termination == Termination::kConverged;

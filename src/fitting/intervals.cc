@@ -148,37 +148,62 @@ bool IsQuiet(const FittedModel& fitted) {
   return levels < kAtSmallest * kSmallestSigma || (levels < kQuietSigma && samples * levels < kFewAtEdges);
 }
 
+/// Of parameter k: quantiles, but from its bound on where that may be the truth, which two-sided quantiles leave out.
+IntervalEnds PosteriorInterval(const LinearizedFit& linear, const Posterior& posterior, Index k) {
+  constexpr double kNear = 3;  // standard deviations
+  const double reach = kNear * std::sqrt(posterior.covariance(k, k));
+  const auto quantile = [&](double probability) {
+    std::vector<double> draws(posterior.draws.col(k).begin(), posterior.draws.col(k).end());
+    const auto nth = draws.begin() + static_cast<std::ptrdiff_t>(probability * static_cast<double>(draws.size() - 1));
+    std::nth_element(draws.begin(), nth, draws.end());
+    return *nth;
+  };
+  if (posterior.mean[k] - reach < linear.lower[k]) return {linear.lower[k], quantile(0.95)};
+  if (posterior.mean[k] + reach > linear.upper[k]) return {quantile(0.05), linear.upper[k]};
+  return {posterior.lower95[k], posterior.upper95[k]};
+}
+
 /// The estimates are the posterior's means.
-void MoveTo(const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
+void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
   for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
     const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
     const double at = fitted.solution.parameters[i];
     const auto k = static_cast<Index>(row);
-    SetInterval(fitted.problem, fitted.optimum.free[row], at + posterior.lower95[k], at + posterior.upper95[k], report);
+    const IntervalEnds ends = PosteriorInterval(linear, posterior, k);
+    SetInterval(fitted.problem, fitted.optimum.free[row], at + *ends.lower, at + *ends.upper, report);
     fitted.solution.parameters[i] = at + posterior.mean[k];
     report.parameters[i].estimate = fitted.problem.Reported(i, fitted.solution.parameters[i]);
+    report.parameters[i].at_bound = false;
+    report.parameters[i].reason.clear();
   }
-  if (fitted.cost.Readings(fitted.solution.parameters, &fitted.solution.readings, nullptr)) {
-    const Eigen::Map<const Eigen::VectorXd> value(fitted.problem.data.value.data(), fitted.solution.readings.size());
-    report.fitted = fitted.solution.readings;
-    report.residual = value - report.fitted;
-    report.statistics.rms_residual =
-        std::sqrt(report.residual.squaredNorm() / static_cast<double>(report.residual.size()));
-  }
+  if (!fitted.cost.Readings(fitted.solution.parameters, &fitted.solution.readings, nullptr)) return;
+  const Eigen::Map<const Eigen::VectorXd> value(fitted.problem.data.value.data(), fitted.solution.readings.size());
+  report.fitted = fitted.solution.readings;
+  report.residual = value - report.fitted;
+  report.statistics.rms_residual = report.residual.norm() / std::sqrt(static_cast<double>(report.residual.size()));
 }
 
 }  // namespace
 
 /// Where no parabola describes the likelihood.
+Optimum WithoutBounds(const Optimum& optimum) {
+  Optimum free = optimum;
+  free.free.insert(free.free.end(), free.at_bound.begin(), free.at_bound.end());
+  std::ranges::sort(free.free);
+  free.at_bound.clear();
+  free.inverse = InvertInformation(free.information, free.free);
+  return free;
+}
+
 bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
-  if (!IsQuiet(fitted)) return false;
-  const IntervalMethod asked = fitted.options.interval;
-  const bool may = asked == IntervalMethod::kAuto || asked == IntervalMethod::kCovariance;
-  // Quantiles leave out a bound that may be the truth; profiles do not.
-  if (!may || fitted.optimum.free.empty() || NearBound(fitted, errors)) return false;
-  const Result<Posterior> posterior = SamplePosterior(LinearizedOf(fitted), fitted.options.seed);
+  constexpr std::size_t kMostSamples = 200'000;  // the matrices of a draw fill the memory
+  const bool asked = fitted.options.interval == IntervalMethod::kAuto;
+  if (!asked || !IsQuiet(fitted) || fitted.optimum.free.empty()) return false;
+  if (!fitted.optimum.inverse.identifiable || fitted.problem.data.time.size() > kMostSamples) return false;
+  const LinearizedFit linear = LinearizedOf(fitted);
+  const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed);
   if (!posterior) return false;
-  MoveTo(*posterior, fitted, report);
+  MoveTo(linear, *posterior, fitted, report);
   errors.covariance = posterior->covariance;
   errors.sigma = posterior->sigma_std_dev;
   errors.method = "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";

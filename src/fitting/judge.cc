@@ -28,9 +28,26 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
   return names;
 }
 
-/// Share of the readings' variance that the trajectory leaves.
-double UnexplainedShare(const Recording& recording, const Eigen::VectorXd& residual) {
-  return residual.squaredNorm() / (recording.value.array() - recording.value.mean()).matrix().squaredNorm();
+/// Share of the readings' variance that the trajectory leaves; a reading at an end of the range that the trajectory
+/// exceeds is explained.
+double UnexplainedShare(const Recording& recording, const NoiseModel& noise, const Eigen::VectorXd& fitted) {
+  double left = 0;
+  for (Index i = 0; i < fitted.size(); ++i) {
+    const double value = recording.value[i];
+    const bool beyond =
+        (value >= noise.high && fitted[i] >= noise.high) || (value <= noise.low && fitted[i] <= noise.low);
+    if (!beyond) left += (value - fitted[i]) * (value - fitted[i]);
+  }
+  return left / (recording.value.array() - recording.value.mean()).matrix().squaredNorm();
+}
+
+/// rms of the residuals of readings within the range.
+double RmsWithin(const FitProblem& problem, const Eigen::VectorXd& residual) {
+  double sum = 0;
+  for (Index i = 0; i < residual.size(); ++i) {
+    if (!problem.noise.IsCensored(problem.data.value[static_cast<std::size_t>(i)])) sum += residual[i] * residual[i];
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<Index>(residual.size() - problem.censored, 1)));
 }
 
 /// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
@@ -92,7 +109,7 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
     report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
     return;
   }
-  const double unexplained = UnexplainedShare(recording, report.residual);
+  const double unexplained = UnexplainedShare(recording, problem.noise, report.fitted);
   const double shift = RemainingShift(optimum);
   report.termination = Termination::kNotConverged;
   if (unexplained > most_unexplained) {
@@ -162,12 +179,9 @@ void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Erro
 void SetSystematicErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                          const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
                          FitReport& report) {
-  Eigen::VectorXd estimates(static_cast<Index>(report.parameters.size()));
-  for (Index i = 0; i < estimates.size(); ++i) estimates[i] = report.parameters[static_cast<std::size_t>(i)].estimate;
-  const Eigen::MatrixXd covariance =
-      SystematicCovariance(recording, options, problem, cost, solution, optimum, estimates);
+  const Eigen::MatrixXd covariance = SystematicCovariance(recording, options, problem, cost, solution, optimum);
   std::vector<Index> concerned;
-  for (Index i = 0; i < estimates.size(); ++i) {
+  for (Index i = 0; i < covariance.rows(); ++i) {
     if (!(covariance(i, i) > 0)) continue;
     ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
     parameter.systematic_std_error = std::sqrt(covariance(i, i));
@@ -200,14 +214,15 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors&
 }
 
 /// The memory of the residuals, looked for where independence is in doubt.
-Autocorrelation MemoryOf(const Recording& recording, const TrajectoryCost& cost, const Solution& solution,
+Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                          const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
   constexpr double kDoubtful = 0.05;
   if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
   Eigen::VectorXd readings;
   Eigen::MatrixXd jacobian;
   if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
-  return EstimateAutocorrelation(recording.time, z, jacobian(Eigen::all, optimum.free) / solution.noise.sigma);
+  const Eigen::Map<const Eigen::VectorXd> time(problem.data.time.data(), z.size());
+  return EstimateAutocorrelation(time, z, jacobian(Eigen::all, optimum.free) / solution.noise.sigma);
 }
 
 NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution, const Eigen::VectorXd& z) {
@@ -235,18 +250,20 @@ FitReport FailedReport(FitReport report, const Recording& recording, const FitOp
 void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
                Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
                FitReport& report) {
-  const Autocorrelation memory = MemoryOf(recording, cost, solution, optimum, z, correlated);
+  // Before the posterior moves σ, on which the optimum's information rests.
+  SetSystematicErrors(recording, options, problem, cost, solution, optimum, report);
+  const Autocorrelation memory = MemoryOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
   report.noise.correlation = memory.Name();
   report.statistics.effective_samples = errors.effective_samples;
-  const FittedModel fitted{options, problem, cost, solution, optimum, memory, z};
-  const bool sampled = memory.kind == Autocorrelation::Kind::kWhite && UsePosterior(fitted, errors, report);
+  const Optimum unbounded = WithoutBounds(optimum);
+  const bool sampled = memory.kind == Autocorrelation::Kind::kWhite &&
+                       UsePosterior({options, problem, cost, solution, unbounded, memory, z}, errors, report);
   report.noise.sigma = solution.noise.sigma;
   report.noise.sigma_std_error = errors.sigma;
-  SetCovariance(problem, optimum, errors, report);
-  if (!sampled) SetIntervals(fitted, errors, report);
-  SetDerived(problem, optimum, errors, solution, report);
-  SetSystematicErrors(recording, options, problem, cost, solution, optimum, report);
+  SetCovariance(problem, sampled ? unbounded : optimum, errors, report);
+  if (!sampled) SetIntervals({options, problem, cost, solution, optimum, memory, z}, errors, report);
+  SetDerived(problem, sampled ? unbounded : optimum, errors, solution, report);
 }
 
 }  // namespace
@@ -267,6 +284,7 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.trace_error = solution.trace_error;
   report.statistics =
       ComputeStatistics(report.residual, z, solution.log_likelihood, static_cast<int>(optimum->free.size()));
+  if (problem.censored > 0) report.statistics.rms_residual = RmsWithin(problem, report.residual);
   report.noise = DescribeNoise(problem, solution, z);
   const TraceSummary trace = cost.Trace(solution.parameters);
   const bool correlated = !IsRounding(recording, report) &&

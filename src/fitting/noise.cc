@@ -181,12 +181,60 @@ NoiseLikelihood OfHuber(double residual, double sigma) {
 
 }  // namespace
 
+namespace {
+
+/// A standardized robust law below u: its probability, density, and the density's derivative.
+struct Tail {
+  double probability;
+  double density;
+  double slope;
+};
+
+Tail StudentBelow(double u) {
+  constexpr double kFreedom = NoiseModel::kStudentFreedom;
+  const boost::math::students_t student(kFreedom);
+  const double density = boost::math::pdf(student, u);
+  return {boost::math::cdf(student, u), density, -(kFreedom + 1) * u / (kFreedom + u * u) * density};
+}
+
+Tail HuberBelow(double u) {
+  constexpr double kWidth = NoiseModel::kHuberWidth;
+  static const double constant = HuberConstant(kWidth);
+  const double psi = std::clamp(u, -kWidth, kWidth);
+  const double density = std::exp(-psi * (u - 0.5 * psi)) / constant;
+  if (std::abs(u) > kWidth) return {u < 0 ? density / kWidth : 1 - density / kWidth, density, -psi * density};
+  const double corner = std::exp(-0.5 * kWidth * kWidth) / constant / kWidth;
+  const double inside = std::erf(kRootHalf * u) + std::erf(kRootHalf * kWidth);
+  return {corner + 0.5 * kRootTwoPi / constant * inside, density, -u * density};
+}
+
+Tail RobustBelow(NoiseFamily family, double u) {
+  return family == NoiseFamily::kHuber ? HuberBelow(u) : StudentBelow(u);
+}
+
+/// Of a reading at an end of the range: that the value is there or beyond.
+NoiseLikelihood OfRobustEnd(const NoiseModel& noise, double y, double m) {
+  const double side = y >= noise.high ? 1 : -1;
+  const double u = side * (m - (side > 0 ? noise.high : noise.low)) / noise.sigma;
+  const Tail tail = RobustBelow(noise.family, u);
+  const double hazard = tail.density / tail.probability;
+  const double bend = hazard * hazard - tail.slope / tail.probability;
+  NoiseLikelihood l;
+  l.log = std::log(tail.probability);
+  l.score = side * hazard / noise.sigma;
+  l.information = bend / (noise.sigma * noise.sigma);
+  l.sigma_score = -u * hazard;
+  l.sigma_information = -u * hazard + u * u * bend;
+  l.mixed = side * (hazard - u * bend) / noise.sigma;
+  return l;
+}
+
+}  // namespace
+
 NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
   if (IsRobust()) {
-    // A censored reading speaks against a trajectory only from within the range.
-    const bool says_nothing = (y <= low && m <= y) || (y >= high && m >= y);
-    const double residual = says_nothing ? 0 : y - m;
-    return family == NoiseFamily::kHuber ? OfHuber(residual, sigma) : OfStudent(residual, sigma);
+    if (IsCensored(y)) return OfRobustEnd(*this, y, m);
+    return family == NoiseFamily::kHuber ? OfHuber(y - m, sigma) : OfStudent(y - m, sigma);
   }
   if (family == NoiseFamily::kQuantized || IsCensored(y)) return OfInterval(IntervalOf(*this, y), m, sigma);
   return OfGaussian(y - m, sigma);
@@ -196,6 +244,10 @@ SampleLikelihood NoiseModel::At(double y, double m) const {
   if (family == NoiseFamily::kGaussian && !IsCensored(y)) {
     const double z = (y - m) / sigma;
     return {z * z, z / sigma, 1 / (sigma * sigma)};
+  }
+  if (IsRobust() && IsCensored(y)) {
+    const NoiseLikelihood l = OfRobustEnd(*this, y, m);
+    return {-2 * l.log, l.score, l.information > 0 ? l.information : l.score * l.score};
   }
   if (IsRobust()) {
     const NoiseLikelihood l = LikelihoodAt(y, m);
@@ -216,16 +268,14 @@ SampleLikelihood NoiseModel::At(double y, double m) const {
 }
 
 NoiseModel::Distribution NoiseModel::DistributionAt(double y, double m) const {
-  if (family == NoiseFamily::kStudent) {
-    const double u = boost::math::cdf(boost::math::students_t(kStudentFreedom), (y - m) / sigma);
-    return {u, u};
-  }
-  const auto below = [&](double x) { return 0.5 * std::erfc(-kRootHalf * (x - m) / sigma); };
-  if (family == NoiseFamily::kQuantized || (IsCensored(y) && !IsRobust())) {
-    const Interval interval = IntervalOf(*this, y);
-    return {below(interval.from), below(interval.to)};
-  }
-  return {below(y), below(y)};
+  const auto below = [&](double x) {
+    const double u = (x - m) / sigma;
+    return IsRobust() ? RobustBelow(family, u).probability : 0.5 * std::erfc(-kRootHalf * u);
+  };
+  if (IsCensored(y)) return y >= high ? Distribution{below(high), 1} : Distribution{0, below(low)};
+  if (family != NoiseFamily::kQuantized) return {below(y), below(y)};
+  const Interval interval = IntervalOf(*this, y);
+  return {below(interval.from), below(interval.to)};
 }
 
 double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
@@ -254,6 +304,7 @@ SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vector
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const NoiseLikelihood l = noise.LikelihoodAt(value[i], readings[i]);
     const bool huber = noise.family == NoiseFamily::kHuber;
+    if (huber && noise.IsCensored(value[i])) continue;
     const double psi = noise.sigma * l.score;
     const double score = huber ? psi * psi - normal : l.sigma_score;
     sums.score += score;

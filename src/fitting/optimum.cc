@@ -84,6 +84,9 @@ void SetLikelihoodErrors(const TrajectoryCost& cost, const Solution& solution, c
 /// residuals over σ²: what randomizes these within a level is independent. Of one sample it is its information.
 Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
                        const Eigen::MatrixXd& jacobian, const Autocorrelation& correlation) {
+  if (noise.IsRobust() && problem.censored > 0) {
+    return CorrelatedSum(correlation, AsVector(problem.data.time), terms.score.cwiseAbs().asDiagonal() * jacobian);
+  }
   const Eigen::MatrixXd correlated = CorrelatedSum(correlation, AsVector(problem.data.time), jacobian);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(jacobian.rows()) * correlated;
   const double variance = noise.sigma * noise.sigma;
@@ -105,7 +108,12 @@ Sandwich MakeSandwich(const TrajectoryCost& cost, const FitProblem& problem, con
   const Eigen::MatrixXd prior = PriorInformation(cost, optimum.free);
   Eigen::MatrixXd bread = optimum.inverse.matrix;
   if (solution.noise.IsRobust()) {
-    bread = Inverse(terms.information.mean() * jacobian.transpose() * jacobian + prior);
+    // Readings at an end of the range say less than the mean.
+    const bool alike = problem.censored == 0;
+    const Eigen::VectorXd weight =
+        alike ? Eigen::VectorXd::Constant(jacobian.rows(), terms.information.mean()) : terms.information;
+    const Eigen::MatrixXd mean = Inverse(jacobian.transpose() * weight.asDiagonal() * jacobian + prior);
+    if (mean.size() > 0) bread = mean;
   }
   const Eigen::MatrixXd meat = MeatOf(problem, solution.noise, terms, jacobian, correlation);
   return {bread * (meat + prior) * bread, (bread * meat).trace()};
@@ -153,7 +161,8 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   Eigen::VectorXd t95(covariance.rows());
   for (Index i = 0; i < t95.size(); ++i) {
     const double share = white ? 1.0 : std::min(optimum.inverse.matrix(i, i) / covariance(i, i), 1.0);
-    t95[i] = boost::math::quantile(boost::math::students_t(std::max(share * samples - free, 1.0)), 0.975);
+    const double freedom = std::isfinite(share) ? std::max(share * samples - free, 1.0) : 1.0;
+    t95[i] = boost::math::quantile(boost::math::students_t(freedom), 0.975);
   }
   return t95;
 }
@@ -193,6 +202,12 @@ Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, c
 Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                      const Optimum& optimum, const Autocorrelation& correlation) {
   Errors errors = CovarianceErrors(problem, cost, solution, optimum, correlation);
+  const bool sound =
+      errors.covariance.allFinite() && (errors.covariance.size() == 0 || errors.covariance.diagonal().minCoeff() > 0);
+  if (!sound) {  // a memory that alternates may leave less than nothing of a direction
+    errors.covariance = optimum.inverse.matrix;
+    errors.method = "inverse information, residuals taken as independent: with their memory it has no inverse";
+  }
   const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
   errors.t95 = StudentT95(errors.covariance, optimum, static_cast<double>(problem.data.time.size()), white);
   return errors;

@@ -41,15 +41,21 @@ class Profile {
     return Find(side, farthest);
   }
 
+  /// Whether the profile came below the optimum: it belongs to another minimum.
+  bool found_lower() const { return found_lower_; }
+
   double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
 
  private:
-  static constexpr double kFarthest = 100;
+  static constexpr double kFarthest = 100;  // lengths
+  static constexpr double kNegligible = 0.05;
+  static constexpr int kMostTraces = 1000;  // of one solve
 
   /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
   double RootAt(double distance, double side) {
     SolveOptions options = problem_.solve;
     options.fixed[static_cast<std::size_t>(k_)] = true;
+    options.max_traces = cost_.traces() + kMostTraces;
     std::vector<double> start = solution_.parameters;
     for (std::size_t j = 0; j < optimum_.free.size(); ++j) {
       const auto i = static_cast<std::size_t>(optimum_.free[j]);
@@ -59,6 +65,7 @@ class Profile {
     start[static_cast<std::size_t>(k_)] = At() + side * distance;
     const Solution other = Solve(cost_, start, options);
     if (!other.usable) return kUnbounded;
+    found_lower_ = found_lower_ || other.sum < solution_.sum - kNegligible * threshold_;
     return std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
   }
 
@@ -101,6 +108,7 @@ class Profile {
   const Solution& solution_;
   Optimum optimum_;
   int k_;
+  bool found_lower_ = false;
   double length_ = 0;          // of half the interval, were the likelihood a parabola
   double threshold_ = 0;       // of the deviance's rise
   Eigen::VectorXd direction_;  // how the free parameters follow
@@ -125,6 +133,9 @@ ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem
   if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
   if (!interval.lower || !interval.upper) {
     interval.open = "the likelihood does not fall far enough on that side, however far out";
+  }
+  if (profile.found_lower()) {
+    interval = {std::nullopt, std::nullopt, "a better minimum lies within it: the fit is not at the best one"};
   }
   return interval;
 }

@@ -112,7 +112,8 @@ Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<cons
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const NoiseModel::Distribution u = noise.DistributionAt(value[i], readings[i]);
     const double place = u.below + uniform(generator) * (u.at - u.below);
-    residuals[i] = boost::math::quantile(normal, std::clamp(place, kFarthest, 1 - kFarthest));
+    const double within = std::isfinite(place) ? std::clamp(place, kFarthest, 1 - kFarthest) : 0.5;
+    residuals[i] = boost::math::quantile(normal, within);
   }
   return residuals;
 }
@@ -122,7 +123,7 @@ double LjungBoxP(const Eigen::VectorXd& residual) {
   const Eigen::Index n = residual.size();
   const Eigen::Index lags = std::min(kMostLags, n / 5);
   const double sum = residual.squaredNorm();
-  if (!(sum > 0) || lags < 1) return 1;
+  if (!(sum > 0) || !std::isfinite(sum) || lags < 1) return 1;
   double portmanteau = 0;
   for (Eigen::Index lag = 1; lag <= lags; ++lag) {
     const double correlation = residual.tail(n - lag).dot(residual.head(n - lag)) / sum;

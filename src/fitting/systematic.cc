@@ -48,32 +48,57 @@ Eigen::MatrixXd FollowCalibration(const Calibration& calibration, const FitProbl
   return moved;
 }
 
+/// How the estimates (P, the problem's units) follow a factor 1 + ε that multiplies what parameter i means by 1 + n_i
+/// ε: n_i p_i, were all of them free. A value that is held, or known beforehand, in the report's units stays where it
+/// is and draws the others along.
+Eigen::VectorXd FollowScale(const Eigen::VectorXd& powers, const FitProblem& problem, const TrajectoryCost& cost,
+                            const Solution& solution, const Optimum& optimum) {
+  const Eigen::Map<const Eigen::VectorXd> p(solution.parameters.data(), powers.size());
+  const Eigen::VectorXd scaled = powers.cwiseProduct(p);
+  Eigen::VectorXd follows = Eigen::VectorXd::Zero(powers.size());
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(powers.size());
+  for (Index i = 0; i < powers.size(); ++i) {
+    if (!problem.solve.fixed[static_cast<std::size_t>(i)]) continue;
+    pull -= optimum.information.col(i) * scaled[i];
+  }
+  for (const PriorTerm& prior : cost.priors()) {
+    const int k = prior.parameter;
+    pull[k] += prior.weight * prior.weight * powers[k] * (2 * (p[k] - prior.mean) + prior.mean);
+  }
+  if (!optimum.free.empty()) follows(optimum.free) = -optimum.inverse.matrix * pull(optimum.free);
+  for (const int i : optimum.free) follows[i] += scaled[i];
+  return follows;
+}
+
 }  // namespace
 
 /// One source after the other: the rig's gravity torque is a common factor of inertia and friction; the clock's scale
 /// enters by the powers of time in a parameter; the calibration's coefficients move every reading, and the estimates
 /// follow as the least squares around the optimum do.
 Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                                     const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
-                                     const Eigen::VectorXd& estimates) {
-  const Index size = estimates.size();
-  Eigen::VectorXd rig = Eigen::VectorXd::Zero(size);
-  Eigen::VectorXd clock = Eigen::VectorXd::Zero(size);
+                                     const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum) {
+  const auto size = static_cast<Index>(problem.infos.size());
+  Eigen::VectorXd gravity = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd time(size);
   Eigen::VectorXd units(size);
   for (Index i = 0; i < size; ++i) {
     const auto index = static_cast<std::size_t>(i);
     const ParameterInfo& info = problem.infos[index];
     units[i] = problem.si_per_internal[index];
-    if (problem.solve.fixed[index]) continue;
-    clock[i] = PowerOfTime(info, recording.quantity) * recording.clock_scale_std_dev / recording.clock_scale;
-    if (!options.rig || !info.scales_with_gravity()) continue;
-    rig[i] = options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value;
+    time[i] = PowerOfTime(info, recording.quantity);
+    if (options.rig && info.scales_with_gravity()) gravity[i] = 1;
   }
-  rig.array() *= estimates.array();
-  clock.array() *= estimates.array();
-  Eigen::MatrixXd covariance = rig * rig.transpose() + clock * clock.transpose();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (!optimum.inverse.identifiable) return covariance;
+  const auto add = [&](const Eigen::VectorXd& powers, double relative) {
+    if (!(relative > 0)) return;
+    const Eigen::VectorXd moved = relative * units.cwiseProduct(FollowScale(powers, problem, cost, solution, optimum));
+    covariance += moved * moved.transpose();
+  };
+  if (options.rig) add(gravity, options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value);
+  add(time, recording.clock_scale_std_dev / recording.clock_scale);
   const std::optional<Calibration>& calibration = recording.calibration;
-  if (calibration && calibration->covariance.size() > 0 && optimum.inverse.identifiable) {
+  if (calibration && calibration->covariance.size() > 0) {
     const Eigen::MatrixXd moved =
         units.asDiagonal() * FollowCalibration(*calibration, problem, cost, solution, optimum);
     covariance += moved * calibration->covariance * moved.transpose();

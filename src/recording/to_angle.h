@@ -45,12 +45,24 @@ inline bool AllWhole(const Eigen::VectorXd& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
 }
 
+/// A resolution that the values contradict is believed, and said.
+inline void WarnOfResolution(double found, Recording& recording) {
+  constexpr double kAlike = 0.1;
+  if (found == 0 || std::abs(recording.resolution - found) <= kAlike * found) return;
+  const std::string who = recording.resolution_source == "given" ? "as given" : "as the file says";
+  recording.warnings.push_back(
+      {"resolution_disagrees", "the resolution is taken as " + NumberText(recording.resolution, 4) + ", " + who +
+                                   ", but the values are " + NumberText(found, 4) +
+                                   " apart (in the file's unit): a wrong one makes the error bars wrong"});
+}
+
 /// The spacing of the values and who tells it: the user, the file, or the values themselves; whole counts are levels.
 inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
                           Recording& recording) {
   if (options.resolution || metadata.resolution) {
     recording.resolution = options.resolution ? *options.resolution : *metadata.resolution;
     recording.resolution_source = options.resolution ? "given" : "file";
+    WarnOfResolution(FindResolution(recording.value), recording);
     return;
   }
   recording.resolution = FindResolution(recording.value);
@@ -77,6 +89,15 @@ inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadat
   } else if (unit.name == "counts") {
     recording.range = ConverterRange(recording.value);
   }
+  if (!recording.range) return;
+  const auto [low, high] = *recording.range;
+  const double slack = recording.resolution + 1e-6 * (high - low);
+  const auto outside = (recording.value.array() < low - slack || recording.value.array() > high + slack).count();
+  if (outside == 0) return;
+  recording.warnings.push_back({"range_disagrees", std::to_string(outside) + " readings lie outside the range " +
+                                                       NumberText(low, 4) + " to " + NumberText(high, 4) +
+                                                       " (in the file's unit): it is not applied"});
+  recording.range.reset();
 }
 
 /// Values that a unit alone turns into SI, or counts and volts as they are.

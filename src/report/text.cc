@@ -325,7 +325,7 @@ std::string StatisticsText(const FitReport& fit) {
                 {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
                 {"Ljung-Box, runs",
                  "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-                {"memory", fit.noise.correlation + "; the samples count as " +
+                {"memory", fit.noise.correlation + "; of a constant the samples tell as much as " +
                                NumberText(std::round(statistics.effective_samples)) + " independent ones"},
                 {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
                 {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +

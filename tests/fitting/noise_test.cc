@@ -214,19 +214,6 @@ TEST(NoiseModel, HasNoDevianceWhereTheModelIsTheReading) {
   }
 }
 
-TEST(NoiseModel, OfARobustFamilySaysNothingOfWhatIsBeyondACensoredReading) {
-  for (const auto family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
-    NoiseModel noise = Noise(family, 0.1);
-    noise.low = -1;
-    noise.high = 1;
-    EXPECT_EQ(noise.At(1, 1.5).deviance, 0);
-    EXPECT_EQ(noise.At(1, 1.5).score, 0);
-    EXPECT_EQ(noise.At(-1, -7).score, 0);
-    EXPECT_GT(noise.At(1, 0.5).score, 0);
-    EXPECT_LT(noise.At(-1, -0.5).score, 0);
-  }
-}
-
 /// In pieces between corners.
 double Integral(const Function& f, const std::vector<double>& corners) {
   boost::math::quadrature::tanh_sinh<double> quadrature;
@@ -280,6 +267,57 @@ TEST(LogLikelihood, IsTheSumOverSamples) {
   const double z2 = (0.04 + 0.01 + 0.16) / 0.25;
   const double expected = -0.5 * z2 - 3 * std::log(0.5 * std::sqrt(2 * std::acos(-1.0)));
   EXPECT_NEAR(LogLikelihood(Noise(NoiseFamily::kGaussian, 0.5), value, readings), expected, 1e-14);
+}
+
+TEST(NoiseModel, ACensoredReadingOfARobustFamilyIsTheRestOfItsDensity) {
+  for (const auto family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
+    NoiseModel open = Noise(family, 0.1);
+    NoiseModel ended = open;
+    ended.low = -1;
+    ended.high = 1;
+    for (const double m : {-1.3, -1.05, -0.9, 0.7, 0.95, 1.0, 1.1, 1.4}) {
+      const auto density = [&](double y) { return std::exp(open.LikelihoodAt(y, m).log); };
+      const double corner = 0.1 * NoiseModel::kHuberWidth;
+      std::vector<double> above = {1.0};
+      for (const double at : {m - corner, m + corner, m + 1, m + 10, m + 1000}) {
+        if (at > 1.0) above.push_back(at);
+      }
+      EXPECT_NEAR(std::exp(ended.LikelihoodAt(1, m).log), Integral(density, above), 1e-8) << m;
+      EXPECT_NEAR(std::exp(ended.LikelihoodAt(-1, -m).log), Integral(density, above), 1e-8) << m;
+      EXPECT_NEAR(ended.DistributionAt(1, m).below, 1 - Integral(density, above), 1e-8) << m;
+      EXPECT_EQ(ended.DistributionAt(1, m).at, 1);
+    }
+  }
+}
+
+TEST(NoiseModel, ACensoredReadingOfARobustFamilyHasTheDerivativesOfItsLogarithm) {
+  constexpr double kSmall = 1e-5;
+  for (const auto family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
+    NoiseModel noise = Noise(family, 0.1);
+    noise.low = -1;
+    noise.high = 1;
+    for (const double y : {-1.0, 1.0}) {
+      for (const double m : {-1.31, -1.05, -0.9, 0.72, 0.95, 1.02, 1.1}) {
+        const auto log_at = [&](double at, double lambda) {
+          NoiseModel other = noise;
+          other.sigma *= std::exp(lambda);
+          return other.LikelihoodAt(y, at).log;
+        };
+        const NoiseLikelihood l = noise.LikelihoodAt(y, m);
+        const double up = log_at(m + kSmall, 0);
+        const double down = log_at(m - kSmall, 0);
+        EXPECT_NEAR(l.score, (up - down) / (2 * kSmall), 1e-5 * (1 + std::abs(l.score))) << y << " " << m;
+        EXPECT_NEAR(l.information, -(up - 2 * l.log + down) / (kSmall * kSmall), 1e-2) << y << " " << m;
+        const double wide = log_at(m, kSmall);
+        const double narrow = log_at(m, -kSmall);
+        EXPECT_NEAR(l.sigma_score, (wide - narrow) / (2 * kSmall), 1e-6) << y << " " << m;
+        EXPECT_NEAR(l.sigma_information, -(wide - 2 * l.log + narrow) / (kSmall * kSmall), 1e-3) << y << " " << m;
+        const double cross = log_at(m + kSmall, kSmall) - log_at(m + kSmall, -kSmall) - log_at(m - kSmall, kSmall) +
+                             log_at(m - kSmall, -kSmall);
+        EXPECT_NEAR(l.mixed, -cross / (4 * kSmall * kSmall), 1e-2) << y << " " << m;
+      }
+    }
+  }
 }
 
 }  // namespace
