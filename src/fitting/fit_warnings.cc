@@ -96,7 +96,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
 /// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
-  const double rms = report.statistics.rms_residual;
+  const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // outliers apart
   if (report.noise.family == NoiseFamily::kQuantized || !(rms < kQuiet * recording.resolution)) return;
   warnings.push_back(
       {"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +

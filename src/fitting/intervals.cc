@@ -148,28 +148,39 @@ bool IsQuiet(const FittedModel& fitted) {
   return levels < kAtSmallest * kSmallestSigma || (levels < kQuietSigma && samples * levels < kFewAtEdges);
 }
 
-/// Of parameter k: quantiles, but from its bound on where that may be the truth, which two-sided quantiles leave out.
-IntervalEnds PosteriorInterval(const LinearizedFit& linear, const Posterior& posterior, Index k) {
+/// Whether a bound cuts the posterior off.
+bool ReachesBound(const LinearizedFit& linear, const Posterior& posterior) {
   constexpr double kNear = 3;  // standard deviations
-  const double reach = kNear * std::sqrt(posterior.covariance(k, k));
-  const auto quantile = [&](double probability) {
-    std::vector<double> draws(posterior.draws.col(k).begin(), posterior.draws.col(k).end());
-    const auto nth = draws.begin() + static_cast<std::ptrdiff_t>(probability * static_cast<double>(draws.size() - 1));
-    std::nth_element(draws.begin(), nth, draws.end());
-    return *nth;
-  };
-  if (posterior.mean[k] - reach < linear.lower[k]) return {linear.lower[k], quantile(0.95)};
-  if (posterior.mean[k] + reach > linear.upper[k]) return {quantile(0.05), linear.upper[k]};
-  return {posterior.lower95[k], posterior.upper95[k]};
+  const Eigen::ArrayXd reach = kNear * posterior.covariance.diagonal().array().sqrt();
+  return (posterior.mean.array() - reach < linear.lower.array()).any() ||
+         (posterior.mean.array() + reach > linear.upper.array()).any();
+}
+
+/// The shortest interval that holds 95 % of the draws of parameter k: unlike quantiles it does not leave out where a
+/// bound cuts the posterior off. An end next to a bound is the bound.
+IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& posterior, Index k) {
+  std::vector<double> draws(posterior.draws.col(k).begin(), posterior.draws.col(k).end());
+  std::ranges::sort(draws);
+  const auto held = static_cast<std::size_t>(0.95 * static_cast<double>(draws.size()));
+  std::size_t best = 0;
+  for (std::size_t i = 0; i + held < draws.size(); ++i) {
+    if (draws[i + held] - draws[i] < draws[best + held] - draws[best]) best = i;
+  }
+  const double slack = 0.1 * std::sqrt(posterior.covariance(k, k));
+  const double low = draws[best] - slack;
+  const double high = draws[best + held] + slack;
+  return {std::max(low, linear.lower[k]), std::min(high, linear.upper[k])};
 }
 
 /// The estimates are the posterior's means.
 void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
+  const bool cut_off = ReachesBound(linear, posterior);
   for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
     const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
     const double at = fitted.solution.parameters[i];
     const auto k = static_cast<Index>(row);
-    const IntervalEnds ends = PosteriorInterval(linear, posterior, k);
+    const IntervalEnds ends =
+        cut_off ? ShortestInterval(linear, posterior, k) : IntervalEnds{posterior.lower95[k], posterior.upper95[k]};
     SetInterval(fitted.problem, fitted.optimum.free[row], at + *ends.lower, at + *ends.upper, report);
     fitted.solution.parameters[i] = at + posterior.mean[k];
     report.parameters[i].estimate = fitted.problem.Reported(i, fitted.solution.parameters[i]);

@@ -26,6 +26,7 @@ class Profile {
     const Errors errors = ComputeErrors(problem, cost, solution, optimum_, correlation);
     const double naive = optimum_.inverse.matrix(row, row);
     length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
+    last_trace_ = cost.traces() + Budget(problem);
     threshold_ = length_ * length_ / naive;
     direction_ = optimum_.inverse.matrix.col(row) / naive;
   }
@@ -41,6 +42,9 @@ class Profile {
     return Find(side, farthest);
   }
 
+  /// Whether the solves took so many trajectories that the ends are not known.
+  bool is_exhausted() const { return cost_.traces() >= last_trace_; }
+
   /// Whether the profile came below the optimum: it belongs to another minimum.
   bool found_lower() const { return found_lower_; }
 
@@ -49,13 +53,18 @@ class Profile {
  private:
   static constexpr double kFarthest = 100;  // lengths
   static constexpr double kNegligible = 0.05;
-  static constexpr int kMostTraces = 1000;  // of one solve
+
+  /// Trajectories for one parameter: a profile that can be followed takes some tens.
+  static int Budget(const FitProblem& problem) {
+    constexpr double kSamples = 2e6;
+    return static_cast<int>(std::clamp(kSamples / static_cast<double>(problem.data.time.size()), 100.0, 400.0));
+  }
 
   /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
   double RootAt(double distance, double side) {
     SolveOptions options = problem_.solve;
     options.fixed[static_cast<std::size_t>(k_)] = true;
-    options.max_traces = cost_.traces() + kMostTraces;
+    options.max_traces = last_trace_;
     std::vector<double> start = solution_.parameters;
     for (std::size_t j = 0; j < optimum_.free.size(); ++j) {
       const auto i = static_cast<std::size_t>(optimum_.free[j]);
@@ -79,7 +88,7 @@ class Profile {
     double outside = kUnbounded;
     double root_outside = kUnbounded;
     double distance = std::min(length_, farthest);
-    for (int solve = 0; solve < kMostSolves; ++solve) {
+    for (int solve = 0; solve < kMostSolves && !is_exhausted(); ++solve) {
       const double root = RootAt(distance, side);
       if (std::abs(root - 1) < kAccuracy) return distance;
       if (root < 1) {
@@ -109,6 +118,7 @@ class Profile {
   Optimum optimum_;
   int k_;
   bool found_lower_ = false;
+  int last_trace_ = 0;
   double length_ = 0;          // of half the interval, were the likelihood a parabola
   double threshold_ = 0;       // of the deviance's rise
   Eigen::VectorXd direction_;  // how the free parameters follow
@@ -133,6 +143,9 @@ ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem
   if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
   if (!interval.lower || !interval.upper) {
     interval.open = "the likelihood does not fall far enough on that side, however far out";
+  }
+  if (profile.is_exhausted()) {
+    interval = {std::nullopt, std::nullopt, "its profile could not be followed; try --interval bootstrap"};
   }
   if (profile.found_lower()) {
     interval = {std::nullopt, std::nullopt, "a better minimum lies within it: the fit is not at the best one"};

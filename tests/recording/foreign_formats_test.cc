@@ -219,7 +219,7 @@ TEST(ForeignFormats, ACalibrationTurnsCountsIntoAngles) {
 }
 
 TEST(ForeignFormats, TheFileSaysResolutionAndRangeInItsOwnUnit) {
-  const std::string text = "# resolution: 4\n# range: 10,20\ntime_ms,adc_counts\n" + Rows("{t},{v}");
+  const std::string text = "# resolution: 4\n# range: 10,200\ntime_ms,adc_counts\n" + Rows("{t},{v}");
   const Recording recording = RecordingOf(text, Calibrated());
   EXPECT_DOUBLE_EQ(recording.resolution, 4 * 0.1985 * kDegree);
   EXPECT_DOUBLE_EQ(recording.range->low, (1.985 - 49.6077) * kDegree);

@@ -52,7 +52,7 @@ TEST(ToText, GivesTheWholeReport) {
     lag-1 correlation  0.125
     Durbin-Watson      1.750
     Ljung-Box, runs    p 0.04, 0.25
-    memory             AR(2); the samples count as 1200 independent ones
+    memory             AR(2); of a constant the samples tell as much as 1200 independent ones
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50
     solver             7 iterations, 15 trajectories, accurate to 2e-10 rad
