@@ -46,7 +46,7 @@ TEST(ToText, GivesTheWholeReport) {
 [[Correlations]] (those below 0.1 in size are not listed)
     inertia, viscous  0.500
 [[Noise and statistics]]
-    noise              quantized, sigma 0.00350 ± 0.00010 rad (0.201 deg)
+    noise              quantized, sigma 0.00350 ± 0.00010 rad (0.201 deg, 0.802 resolutions)
     because            the residuals are 0.8 resolutions
     rms residual       0.00349 rad (0.2 deg)
     lag-1 correlation  0.125
