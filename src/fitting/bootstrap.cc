@@ -32,9 +32,12 @@ class Replicas {
  public:
   Replicas(const FitProblem& problem, const FitOptions& options, const Solution& solution,
            const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation)
-      : problem_(problem), options_(options), solution_(solution), residuals_(quantile_residuals.size()) {
-    block_ = BlockLength(correlation, residuals_.size());
-    parametric_ = block_ == 1 && !solution.noise.IsRobust();
+      : problem_(problem),
+        options_(options),
+        solution_(solution),
+        residuals_(quantile_residuals.size()),
+        block_(BlockLength(correlation, residuals_.size())),
+        parametric_(block_ == 1 && !solution.noise.IsRobust()) {
     for (Index i = 0; i < residuals_.size(); ++i) {
       const double value = problem.data.value[static_cast<std::size_t>(i)];
       residuals_[i] =
@@ -102,8 +105,8 @@ class Replicas {
   const FitOptions& options_;
   const Solution& solution_;
   Eigen::VectorXd residuals_;
-  Index block_ = 1;
-  bool parametric_ = true;
+  Index block_;
+  bool parametric_;
 };
 
 }  // namespace

@@ -282,8 +282,9 @@ Autocorrelation Mixed(const Clock& clock, const Eigen::Vector2d& place) {
 }
 
 Vertex BestMixed(const Surface& surface) {
-  constexpr double kStarts[][2] = {{0.5, 0.3},   {0.5, -0.2},  {-0.5, 0.2},   {0.8, -0.4},
-                                   {0.95, -0.6}, {0.99, -0.8}, {0.998, -0.95}};
+  using Pair = std::array<double, 2>;
+  constexpr std::array kStarts = {Pair{0.5, 0.3},   Pair{0.5, -0.2},  Pair{-0.5, 0.2},   Pair{0.8, -0.4},
+                                  Pair{0.95, -0.6}, Pair{0.99, -0.8}, Pair{0.998, -0.95}};
   Vertex best{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
   for (const auto& start : kStarts) {
     const Eigen::Vector2d place(std::atanh(start[0]), std::atanh(start[1]));

@@ -71,6 +71,7 @@ inline LevelSamples LevelSamples::Near(double depth, double reach) const {
   std::sort(near.begin(), censored);
   std::sort(censored, near.end());
   std::vector<Eigen::Index> kept;
+  kept.reserve(near.size());
   for (const auto& [least, i] : near) kept.push_back(i);
   selected.position = position(kept);
   selected.slope = slope(kept, Eigen::all);

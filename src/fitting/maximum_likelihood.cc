@@ -82,7 +82,8 @@ void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& soluti
 }
 
 /// Solves from those of the other minima that came near, by the same noise, and keeps the likeliest.
-void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, std::vector<Minimum> others, Solution& solution) {
+void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::vector<Minimum>& others,
+                   Solution& solution) {
   for (const Minimum& minimum : others) {
     Solution other = solution;
     other.parameters = minimum.parameters;

@@ -80,13 +80,14 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
   return Wrong(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
 }
 
-constexpr std::array kNoises = {Word{"auto", NoiseChoice::kAuto}, Word{"gaussian", NoiseChoice::kGaussian},
-                                Word{"quantized", NoiseChoice::kQuantized}};
-constexpr std::array kLosses = {Word{"none", Loss::kNone}, Word{"huber", Loss::kHuber},
-                                Word{"student", Loss::kStudent}};
-constexpr std::array kIntervals = {Word{"auto", IntervalMethod::kAuto}, Word{"covariance", IntervalMethod::kCovariance},
-                                   Word{"profile", IntervalMethod::kProfile},
-                                   Word{"bootstrap", IntervalMethod::kBootstrap}};
+constexpr std::array<Word<NoiseChoice>, 3> kNoises = {
+    {{"auto", NoiseChoice::kAuto}, {"gaussian", NoiseChoice::kGaussian}, {"quantized", NoiseChoice::kQuantized}}};
+constexpr std::array<Word<Loss>, 3> kLosses = {
+    {{"none", Loss::kNone}, {"huber", Loss::kHuber}, {"student", Loss::kStudent}}};
+constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMethod::kAuto},
+                                                             {"covariance", IntervalMethod::kCovariance},
+                                                             {"profile", IntervalMethod::kProfile},
+                                                             {"bootstrap", IntervalMethod::kBootstrap}}};
 
 /// A whole number that a flag may give; `least` is what it must be at least.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
