@@ -61,7 +61,14 @@ inline FitReport ExampleFit() {
       {"viscous", Identifiability::Verdict::kWeakly, {"viscous", "coulomb"}, "let it swing for longer"},
       {"coulomb", Identifiability::Verdict::kWeakly, {}, "let it come to rest"},
       {"release_angle", Identifiability::Verdict::kIdentifiable, {}, ""}};
-  fit.noise = {NoiseFamily::kQuantized, 0.0035, 0.0001, kRadFromDeg / 4, 12, "the residuals are 0.8 resolutions", 0.125, "AR(2)"};
+  fit.noise = {NoiseFamily::kQuantized,
+               0.0035,
+               0.0001,
+               kRadFromDeg / 4,
+               12,
+               "the residuals are 0.8 resolutions",
+               0.125,
+               "AR(2)"};
   fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75, 0.04, 0.25, 1200.25};
   fit.solver = {7, 15, "Convergence. (made up)"};
   fit.trace_error = 2e-10;
