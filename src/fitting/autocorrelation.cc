@@ -147,6 +147,7 @@ Eigen::MatrixXd ContinuousSum(const Autocorrelation& correlation, const Eigen::V
 
 Eigen::MatrixXd CorrelatedSum(const Autocorrelation& correlation, const Eigen::VectorXd& time,
                               const Eigen::MatrixXd& weights) {
+  if (weights.cols() == 0) return {};
   switch (correlation.kind) {
     case Autocorrelation::Kind::kAutoregressive:
     case Autocorrelation::Kind::kMixed: return EvenSum(correlation, time, weights);

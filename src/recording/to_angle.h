@@ -75,7 +75,7 @@ inline std::optional<SensorRange> ConverterRange(const Eigen::VectorXd& counts) 
   constexpr std::array kFullScales = {1023.0, 4095.0, 16383.0, 65535.0};
   constexpr Eigen::Index kOften = 2;
   const double largest = counts.maxCoeff();
-  const auto full = std::ranges::find_if(kFullScales, [&](double scale) { return largest <= scale; });
+  const auto* const full = std::ranges::find_if(kFullScales, [&](double scale) { return largest <= scale; });
   if (full == kFullScales.end() || counts.minCoeff() < 0 || !AllWhole(counts)) return std::nullopt;
   const bool reached = (counts.array() == 0).count() >= kOften || (counts.array() == *full).count() >= kOften;
   return reached ? std::optional(SensorRange{0, *full}) : std::nullopt;

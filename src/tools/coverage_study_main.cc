@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include "pendulum/analysis/coverage.h"
 #include "pendulum/report/coverage_text.h"
@@ -69,7 +68,8 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Result<std::vector<Output>> Study(const CoverageStudyOptions& options) {
+Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
+  if (options.list) return std::vector<Output>{{"-", CoverageScenarioList(options.scenarios)}};
   std::vector<CoverageStudy> studies;
   for (const CoverageScenario& scenario : options.scenarios) {
     CoverageOptions study_options = options.study;
@@ -88,8 +88,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   const auto options = MakeCoverageStudyOptions(CurrentFlags(positional));
   if (!options) return tl::unexpected(options.error());
   if (const auto checked = CheckOutputs(options->Outputs(), {}); !checked) return tl::unexpected(checked.error());
-  const Result<std::vector<Output>> outputs =
-      options->list ? std::vector<Output>{{"-", CoverageScenarioList(options->scenarios)}} : Study(*options);
+  const auto outputs = MakeOutputs(*options);
   if (!outputs) return tl::unexpected(outputs.error());
   return WriteOutputs(*outputs).map([] { return 0; });
 }
@@ -98,8 +97,5 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  FLAGS_logtostderr = true;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are not the user's affair
-  google::InitGoogleLogging(argv[0]);
   return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
 }

@@ -169,7 +169,9 @@ TEST(EstimateAutocorrelation, ReadsThroughMissingSamplesJitterAndUnevenStamps) {
          return EvenTimes(2000) + 0.0003 * FirstOrderNoise(2000, 0, 0, seed + 99);
        }},
       {"events", [](std::uint64_t seed) { return EventTimes(2000, seed); }}};
-  for (const auto& [name, stamps] : kinds) {
+  for (const auto& kind : kinds) {
+    const auto& name = kind.first;
+    const auto& stamps = kind.second;
     for (const double white_share : {0.0, 0.4}) {
       const Summary summary = Summarize(40, [&](std::uint64_t seed) {
         const Eigen::VectorXd time = stamps(seed);

@@ -25,13 +25,13 @@ Calibration CountsToDegrees() {
 ReadOptions Options(std::uint8_t choice) {
   const std::array<ReadOptions, 8> options = {
       ReadOptions(),
-      ReadOptions{"", "", "deg", 100, {}},
-      ReadOptions{"1", "2", "counts", 0, CountsToDegrees()},
-      ReadOptions{"1:ms", "", "rad", 0, {}},
-      ReadOptions{"none", "", "", 50, {}},
-      ReadOptions{"", "2", "", 0, CountsToDegrees()},
-      ReadOptions{"time_s", "angle_deg", "", 0, {}},
-      ReadOptions{"", "1", "volts", 0, {}},
+      ReadOptions{"", "", "deg", 100, {}, 0.5, {}},
+      ReadOptions{"1", "2", "counts", 0, CountsToDegrees(), {}, {}},
+      ReadOptions{"1:ms", "", "rad", 0, {}, 0.0, SensorRange{-1, 1}},
+      ReadOptions{"none", "", "", 50, {}, {}, {}},
+      ReadOptions{"", "2", "", 0, CountsToDegrees(), 1.0, SensorRange{0, 1023}},
+      ReadOptions{"time_s", "angle_deg", "", 0, {}, {}, {}},
+      ReadOptions{"", "1", "volts", 0, {}, {}, SensorRange{0, 5}},
   };
   return options.at(choice % options.size());
 }

@@ -18,9 +18,8 @@ using testing::Not;
 class FlagsTest : public testing::Test {
  protected:
   static Result<ParsedFlags> Parse(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "/usr/bin/weigh_pendulum");
-    std::vector<char*> argv;
-    argv.reserve(arguments.size());
+    std::string program = "/usr/bin/weigh_pendulum";
+    std::vector<char*> argv = {program.data()};
     for (std::string& argument : arguments) argv.push_back(argument.data());
     return ParseFlags(static_cast<int>(argv.size()), argv.data(), __FILE__, "Weighs.\n");
   }

@@ -15,12 +15,13 @@ using Work = std::function<Result<int>(const std::vector<std::string>&)>;
 
 /// The exit code of a tool that does `work`, and what it says on standard error.
 std::pair<int, std::string> RunOf(const Work& work, std::vector<std::string> arguments = {}) {
-  arguments.insert(arguments.begin(), "/somewhere/swing");
-  std::vector<char*> argv;
+  std::string program = "/somewhere/swing";
+  std::vector<char*> argv = {program.data()};
   for (std::string& argument : arguments) argv.push_back(argument.data());
+  const auto count = static_cast<int>(argv.size());
   argv.push_back(nullptr);
   testing::internal::CaptureStderr();
-  const int code = RunTool({"swing", __FILE__, "Usage.\n", work}, static_cast<int>(arguments.size()), argv.data());
+  const int code = RunTool({"swing", __FILE__, "Usage.\n", work}, count, argv.data());
   return {code, testing::internal::GetCapturedStderr()};
 }
 
