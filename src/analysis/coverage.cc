@@ -2,15 +2,14 @@
 #include "pendulum/analysis/coverage.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include <boost/math/distributions/binomial.hpp>
 
 #include "pendulum/analysis/cramer_rao.h"
+#include "pendulum/base/parallel.h"
 #include "pendulum/fitting/fit.h"
 
 namespace pendulum {
@@ -84,23 +83,14 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
 /// All recordings, in the order of their seeds whoever fits them.
 std::vector<Result<RunOutcome>> RunAll(const CoverageScenario& scenario, const CoverageOptions& options) {
   std::vector<Result<RunOutcome>> outcomes(static_cast<std::size_t>(options.count));
-  std::atomic<int> next = 0;
   std::mutex reporting;
   int done = 0;
-  const auto work = [&] {
-    for (int i = next++; i < options.count; i = next++) {
-      outcomes[static_cast<std::size_t>(i)] = RunOne(scenario, options.seed + static_cast<std::uint64_t>(i));
-      const std::lock_guard lock(reporting);
-      ++done;
-      if (options.progress) options.progress(done);
-    }
-  };
-  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
-  const int threads = std::min(options.threads > 0 ? options.threads : cores, options.count);
-  std::vector<std::jthread> workers;
-  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-  work();
-  workers.clear();  // waits for them
+  ParallelFor(options.count, options.threads, [&](int i) {
+    outcomes[static_cast<std::size_t>(i)] = RunOne(scenario, options.seed + static_cast<std::uint64_t>(i));
+    const std::lock_guard lock(reporting);
+    ++done;
+    if (options.progress) options.progress(done);
+  });
   return outcomes;
 }
 

@@ -2,16 +2,16 @@
 #include "pendulum/fitting/bootstrap.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <exception>
+#include <mutex>
 #include <random>
-#include <thread>
 #include <vector>
 
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 
+#include "pendulum/base/parallel.h"
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/trajectory/tolerance.h"
 
@@ -124,26 +124,16 @@ Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, con
                        const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation) {
   const Replicas replicas(problem, options, solution, quantile_residuals, correlation);
   std::vector<std::vector<double>> estimates(kBootstrapFits);
-  std::atomic<int> next = 0;
+  std::mutex reporting;
+  int done = 0;
   constexpr int kReports = 10;
-  const auto work = [&](bool reports) {
-    int said = 0;
-    for (int i = next++; i < kBootstrapFits; i = next++) {
-      if (reports && options.progress && i * kReports / kBootstrapFits > said) {
-        said = i * kReports / kBootstrapFits;
-        options.progress(i, kBootstrapFits);
-      }
-      estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
-    }
-  };
-  constexpr unsigned kMostThreads = 256;
-  const unsigned asked =
-      options.threads > 0 ? static_cast<unsigned>(options.threads) : std::max(std::thread::hardware_concurrency(), 1U);
-  const unsigned cores = std::min(asked, kMostThreads);
-  std::vector<std::jthread> others;
-  for (unsigned i = 1; i < cores; ++i) others.emplace_back(work, false);
-  work(true);
-  others.clear();
+  ParallelFor(kBootstrapFits, options.threads, [&](int i) {
+    estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
+    const std::lock_guard lock(reporting);
+    ++done;
+    const bool at_part = done * kReports / kBootstrapFits != (done - 1) * kReports / kBootstrapFits;
+    if (options.progress && at_part && done < kBootstrapFits) options.progress(done, kBootstrapFits);
+  });
   std::erase_if(estimates, [](const std::vector<double>& estimate) { return estimate.empty(); });
   Bootstrap bootstrap;
   bootstrap.failed = kBootstrapFits - static_cast<int>(estimates.size());
