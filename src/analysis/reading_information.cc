@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/noise.h"
 
 namespace pendulum {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A level's edge, and what of the normal distribution is needed there.
 struct Edge {

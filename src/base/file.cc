@@ -12,15 +12,15 @@
 namespace pendulum {
 namespace {
 
-tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
-  return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
 tl::unexpected<Status> Unreadable(const std::string& name) {
   return Fault(name, "the file cannot be read; check its permissions");
 }
 
 }  // namespace
+
+tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
+  return Error(StatusCode::kDataLoss, name + ": " + sentence);
+}
 
 InputFile::InputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 

@@ -5,16 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
-  return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
 
 /// Watches the parser: which key of the outermost object is being read, and which key an object has twice.
 class KeyWatch {

@@ -44,7 +44,8 @@ std::string UnitOverInertia(const ParameterInfo& info) {
   return std::string(info.relative_unit) + "/s^2";
 }
 
-std::vector<PowerProduct> Products(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters) {
+std::vector<PowerProduct> PowerProducts(const std::vector<ParameterInfo>& infos,
+                                        const std::vector<double>& parameters) {
   std::vector<PowerProduct> products = {{"natural_frequency", "rad/s", 1, -0.5, 0, 0},
                                         {"small_angle_period", "s", 2 * kPi, 0.5, 0, 0},
                                         {"gravity_over_inertia", "1/s^2", 1, -1, 0, 0}};
@@ -92,7 +93,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound) {
   std::vector<DerivedQuantity> derived;
-  for (const PowerProduct& product : Products(infos, parameters)) {
+  for (const PowerProduct& product : PowerProducts(infos, parameters)) {
     derived.push_back({product.name, product.unit, Estimate(product, parameters), {}, {}, {}});
     const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
     if (covariance == nullptr || bounded) continue;
@@ -105,7 +106,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
 /// Each end of a parameter is carried over with the others at their estimates, and the distances are added in squares.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
-  const std::vector<PowerProduct> products = Products(infos, parameters);
+  const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
   for (std::size_t k = 0; k < derived.size(); ++k) {
     const PowerProduct& product = products[k];
     Distances distances;

@@ -81,12 +81,9 @@ Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
 }
 
 /// Whether a solution leaves at most a tenth of the readings' variance.
-bool Explains(const TrajectoryData& data, const Solution& solution) {
+bool Explains(const FitProblem& problem, const Solution& solution) {
   constexpr double kExplained = 0.1;
-  if (!solution.usable) return false;
-  const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
-  return (value - solution.readings).squaredNorm() <=
-         kExplained * (value.array() - value.mean()).matrix().squaredNorm();
+  return solution.usable && problem.UnexplainedShare(solution.readings) <= kExplained;
 }
 
 /// With StartChoice::kAuto: a short hold may be a turning point, and what a release does not explain may have begun in
@@ -94,7 +91,7 @@ bool Explains(const TrajectoryData& data, const Solution& solution) {
 bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
   const StartValues& start = attempt.problem->start;
   return options.start == StartChoice::kAuto && start.start == StartKind::kRelease &&
-         (start.short_hold || !Explains(attempt.problem->data, attempt.solution));
+         (start.short_hold || !Explains(*attempt.problem, attempt.solution));
 }
 
 bool IsBetter(const Attempt& a, const Attempt& b) {

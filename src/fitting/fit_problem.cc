@@ -31,9 +31,7 @@ constexpr double kSmallestInertia = 1e-30;
 
 /// What a parameter may be, for a sentence, in the units of the report.
 std::string Range(const FitProblem& problem, std::size_t i) {
-  const auto reported = [&](double internal) {
-    return NumberText(problem.si_per_internal[i] * internal + problem.offset[i]);
-  };
+  const auto reported = [&](double internal) { return NumberText(problem.Reported(i, internal)); };
   if (problem.infos[i].name == kInertia.name) return "greater than " + reported(kSmallestInertia);
   const std::string from = "at least " + reported(problem.solve.lower[i]);
   return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
@@ -48,13 +46,9 @@ Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& 
                                                  NameList(problem.infos));
 }
 
-double Internal(const FitProblem& problem, std::size_t i, double value) {
-  return (value - problem.offset[i]) / problem.si_per_internal[i];
-}
-
 /// Begins parameter i at a value; refuses one that it cannot have.
 Result<void> BeginAt(double value, std::size_t i, const std::string& what, FitProblem& problem) {
-  const double internal = Internal(problem, i, value);
+  const double internal = problem.Internal(i, value);
   const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
   const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
   if (!std::isfinite(internal) || outside || too_small) {
@@ -71,8 +65,8 @@ Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
     if (!i) return tl::unexpected(i.error());
     double& lower = problem.solve.lower[*i];
     double& upper = problem.solve.upper[*i];
-    const double most = std::max(Internal(problem, *i, range.lower), lower);
-    const double least = std::min(Internal(problem, *i, range.upper), upper);
+    const double most = std::max(problem.Internal(*i, range.lower), lower);
+    const double least = std::min(problem.Internal(*i, range.upper), upper);
     const bool too_small = name == kInertia.name && !(least > kSmallestInertia);
     if (!(most < least) || too_small) {
       return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " leave it no value; it must be " +
@@ -90,7 +84,7 @@ Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
     const Result<std::size_t> i = FindParameter(problem, name, "give a prior");
     if (!i) return tl::unexpected(i.error());
     const double scale = problem.si_per_internal[*i];
-    problem.priors.push_back({static_cast<int>(*i), Internal(problem, *i, prior.mean), scale / prior.std_dev});
+    problem.priors.push_back({static_cast<int>(*i), problem.Internal(*i, prior.mean), scale / prior.std_dev});
   }
   return {};
 }
@@ -187,6 +181,26 @@ bool NamesDrift(const FitOptions& options) {
 }
 
 }  // namespace
+
+double FitProblem::RmsResidual(const Eigen::VectorXd& readings) const {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const double value = data.values()[i];
+    if (!noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(readings.size() - censored, 1)));
+}
+
+double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
+  const auto values = data.values();
+  double left = 0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const bool beyond =
+        (values[i] >= noise.high && readings[i] >= noise.high) || (values[i] <= noise.low && readings[i] <= noise.low);
+    if (!beyond) left += (values[i] - readings[i]) * (values[i] - readings[i]);
+  }
+  return left / (values.array() - values.mean()).matrix().squaredNorm();
+}
 
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, bool drifts) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);

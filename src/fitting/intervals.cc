@@ -97,16 +97,15 @@ void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
                            std::to_string(fitted.options.seed);
 }
 
-LinearizedFit LinearizedOf(const FittedModel& fitted) {
+/// Over the free parameters of `optimum`.
+LinearizedFit LinearizedOf(const FittedModel& fitted, const Optimum& optimum) {
   const FitProblem& problem = fitted.problem;
-  const std::vector<int>& free = fitted.optimum.free;
+  const std::vector<int>& free = optimum.free;
   const auto size = static_cast<Index>(free.size());
   LinearizedFit linear;
-  linear.value =
-      Eigen::Map<const Eigen::VectorXd>(problem.data.value.data(), static_cast<Index>(problem.data.value.size()));
-  Eigen::MatrixXd jacobian;
-  if (!fitted.cost.Readings(fitted.solution.parameters, &linear.readings, &jacobian)) return linear;
-  linear.jacobian = jacobian(Eigen::all, free);
+  linear.value = problem.data.values();
+  linear.readings = fitted.solution.readings;
+  linear.jacobian = FreeJacobian(fitted.cost, fitted.solution, optimum);
   linear.noise = fitted.solution.noise;
   linear.lower.resize(size);
   linear.upper.resize(size);
@@ -172,31 +171,29 @@ IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& post
   return {std::max(low, linear.lower[k]), std::min(high, linear.upper[k])};
 }
 
-/// The estimates are the posterior's means.
-void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted, FitReport& report) {
+/// The estimates of the free parameters are the posterior's means.
+void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted,
+            const std::vector<int>& free, FitReport& report) {
   const bool cut_off = ReachesBound(linear, posterior);
-  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
-    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
+  for (std::size_t row = 0; row < free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(free[row]);
     const double at = fitted.solution.parameters[i];
     const auto k = static_cast<Index>(row);
     const IntervalEnds ends =
         cut_off ? ShortestInterval(linear, posterior, k) : IntervalEnds{posterior.lower95[k], posterior.upper95[k]};
-    SetInterval(fitted.problem, fitted.optimum.free[row], at + *ends.lower, at + *ends.upper, report);
+    SetInterval(fitted.problem, free[row], at + *ends.lower, at + *ends.upper, report);
     fitted.solution.parameters[i] = at + posterior.mean[k];
     report.parameters[i].estimate = fitted.problem.Reported(i, fitted.solution.parameters[i]);
     report.parameters[i].at_bound = false;
     report.parameters[i].reason.clear();
   }
   if (!fitted.cost.Readings(fitted.solution.parameters, &fitted.solution.readings, nullptr)) return;
-  const Eigen::Map<const Eigen::VectorXd> value(fitted.problem.data.value.data(), fitted.solution.readings.size());
   report.fitted = fitted.solution.readings;
-  report.residual = value - report.fitted;
-  report.statistics.rms_residual = report.residual.norm() / std::sqrt(static_cast<double>(report.residual.size()));
+  report.residual = fitted.problem.data.values() - report.fitted;
+  report.statistics.rms_residual = fitted.problem.RmsResidual(report.fitted);
 }
 
-}  // namespace
-
-/// Where no parabola describes the likelihood.
+/// The optimum with what is at a bound free, as a posterior within the bounds has it.
 Optimum WithoutBounds(const Optimum& optimum) {
   Optimum free = optimum;
   free.free.insert(free.free.end(), free.at_bound.begin(), free.at_bound.end());
@@ -206,21 +203,25 @@ Optimum WithoutBounds(const Optimum& optimum) {
   return free;
 }
 
-bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
+}  // namespace
+
+std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
   constexpr std::size_t kMostSamples = 200'000;  // the matrices of a draw fill the memory
   const bool asked = fitted.options.interval == IntervalMethod::kAuto;
-  if (!asked || !IsQuiet(fitted) || fitted.optimum.free.empty()) return false;
-  if (!fitted.optimum.inverse.identifiable || fitted.problem.data.time.size() > kMostSamples) return false;
-  const LinearizedFit linear = LinearizedOf(fitted);
+  const bool remembers = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
+  if (!asked || remembers || !IsQuiet(fitted) || fitted.problem.data.time.size() > kMostSamples) return std::nullopt;
+  Optimum optimum = WithoutBounds(fitted.optimum);
+  if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
+  const LinearizedFit linear = LinearizedOf(fitted, optimum);
   const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed);
-  if (!posterior) return false;
-  MoveTo(linear, *posterior, fitted, report);
+  if (!posterior) return std::nullopt;
+  MoveTo(linear, *posterior, fitted, optimum.free, report);
   errors.covariance = posterior->covariance;
   errors.sigma = posterior->sigma_std_dev;
   errors.method = "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";
   fitted.solution.noise.sigma = posterior->sigma;
   report.interval_method = "quantiles of the posterior";
-  return true;
+  return optimum;
 }
 
 void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {

@@ -28,28 +28,6 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
   return names;
 }
 
-/// Share of the readings' variance that the trajectory leaves; a reading at an end of the range that the trajectory
-/// exceeds is explained.
-double UnexplainedShare(const Recording& recording, const NoiseModel& noise, const Eigen::VectorXd& fitted) {
-  double left = 0;
-  for (Index i = 0; i < fitted.size(); ++i) {
-    const double value = recording.value[i];
-    const bool beyond =
-        (value >= noise.high && fitted[i] >= noise.high) || (value <= noise.low && fitted[i] <= noise.low);
-    if (!beyond) left += (value - fitted[i]) * (value - fitted[i]);
-  }
-  return left / (recording.value.array() - recording.value.mean()).matrix().squaredNorm();
-}
-
-/// rms of the residuals of readings within the range.
-double RmsWithin(const FitProblem& problem, const Eigen::VectorXd& residual) {
-  double sum = 0;
-  for (Index i = 0; i < residual.size(); ++i) {
-    if (!problem.noise.IsCensored(problem.data.value[static_cast<std::size_t>(i)])) sum += residual[i] * residual[i];
-  }
-  return std::sqrt(sum / static_cast<double>(std::max<Index>(residual.size() - problem.censored, 1)));
-}
-
 /// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
 /// reversal: a little less friction and it would swing on.
 bool OnKink(const FitProblem& problem, const TraceSummary& trace, const Solution& solution) {
@@ -100,8 +78,8 @@ std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
          " choose a window of free swing with --from and --to";
 }
 
-void SetTermination(const Recording& recording, const FitProblem& problem, const Optimum& optimum, bool correlated,
-                    bool on_kink, FitReport& report) {
+void SetTermination(const FitProblem& problem, const Optimum& optimum, bool correlated, bool on_kink,
+                    FitReport& report) {
   const double most_unexplained = correlated ? kMostUnexplained : kMostNoise;
   constexpr double kLargestShift = 0.1;
   if (!optimum.inverse.identifiable) {
@@ -109,7 +87,7 @@ void SetTermination(const Recording& recording, const FitProblem& problem, const
     report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
     return;
   }
-  const double unexplained = UnexplainedShare(recording, problem.noise, report.fitted);
+  const double unexplained = problem.UnexplainedShare(report.fitted);
   const double shift = RemainingShift(optimum);
   report.termination = Termination::kNotConverged;
   if (unexplained > most_unexplained) {
@@ -206,7 +184,7 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors&
     const ParameterEstimate& parameter = report.parameters[i];
     const auto internal = [&](const std::optional<double>& end) {
       if (parameter.fixed) return std::optional(solution.parameters[i]);
-      return end ? std::optional((*end - problem.offset[i]) / problem.si_per_internal[i]) : std::nullopt;
+      return end ? std::optional(problem.Internal(i, *end)) : std::nullopt;
     };
     intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
   }
@@ -218,11 +196,9 @@ Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, 
                          const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
   constexpr double kDoubtful = 0.05;
   if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
-  Eigen::VectorXd readings;
-  Eigen::MatrixXd jacobian;
-  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
-  const Eigen::Map<const Eigen::VectorXd> time(problem.data.time.data(), z.size());
-  return EstimateAutocorrelation(time, z, jacobian(Eigen::all, optimum.free) / solution.noise.sigma);
+  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
+  if (jacobian.rows() == 0) return {};
+  return EstimateAutocorrelation(problem.data.times(), z, jacobian / solution.noise.sigma);
 }
 
 NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution, const Eigen::VectorXd& z) {
@@ -256,14 +232,13 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
   Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
   report.noise.correlation = memory.Name();
   report.statistics.effective_samples = errors.effective_samples;
-  const Optimum unbounded = WithoutBounds(optimum);
-  const bool sampled = memory.kind == Autocorrelation::Kind::kWhite &&
-                       UsePosterior({options, problem, cost, solution, unbounded, memory, z}, errors, report);
+  const FittedModel fitted{options, problem, cost, solution, optimum, memory, z};
+  const std::optional<Optimum> sampled = UsePosterior(fitted, errors, report);
   report.noise.sigma = solution.noise.sigma;
   report.noise.sigma_std_error = errors.sigma;
-  SetCovariance(problem, sampled ? unbounded : optimum, errors, report);
-  if (!sampled) SetIntervals({options, problem, cost, solution, optimum, memory, z}, errors, report);
-  SetDerived(problem, sampled ? unbounded : optimum, errors, solution, report);
+  SetCovariance(problem, sampled.value_or(optimum), errors, report);
+  if (!sampled) SetIntervals(fitted, errors, report);
+  SetDerived(problem, sampled.value_or(optimum), errors, solution, report);
 }
 
 }  // namespace
@@ -284,14 +259,14 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   report.trace_error = solution.trace_error;
   report.statistics =
       ComputeStatistics(report.residual, z, solution.log_likelihood, static_cast<int>(optimum->free.size()));
-  if (problem.censored > 0) report.statistics.rms_residual = RmsWithin(problem, report.residual);
+  report.statistics.rms_residual = problem.RmsResidual(report.fitted);
   report.noise = DescribeNoise(problem, solution, z);
   const TraceSummary trace = cost.Trace(solution.parameters);
   const bool correlated = !IsRounding(recording, report) &&
                           (FollowEachOther(z, PeriodLags(problem)) ||
                            SwingAlong(recording.time, report.fitted, z,
                                       2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
-  SetTermination(recording, problem, *optimum, correlated, OnKink(problem, trace, solution), report);
+  SetTermination(problem, *optimum, correlated, OnKink(problem, trace, solution), report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) {
     SetErrors(recording, options, problem, cost, solution, *optimum, z, correlated, report);

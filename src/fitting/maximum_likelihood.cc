@@ -21,26 +21,12 @@ double FreeParameters(const FitProblem& problem, const Solution& solution) {
   return free;
 }
 
-/// σ² = RSS / (N - free parameters) of a deviance under the cost's noise; residuals of a millionth of the data's scale
-/// are rounding.
+/// σ² = RSS / (N - free parameters) of a deviance under the cost's noise.
 double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
-  constexpr double kNegligible = 1e-6;
   const auto samples = static_cast<double>(problem.data.time.size());
   const double freedom = std::max(samples - FreeParameters(problem, solution), 1.0);
   const double sum = std::max(solution.sum - cost.PriorSum(solution.parameters), 0.0);
-  return std::max(solution.noise.sigma * std::sqrt(sum / freedom), kNegligible * problem.data.scale);
-}
-
-/// Of the readings that are not censored.
-double RmsResidual(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
-  Eigen::VectorXd readings;
-  if (!cost.Readings(solution.parameters, &readings, nullptr)) return problem.data.scale;
-  double sum = 0;
-  for (Eigen::Index i = 0; i < readings.size(); ++i) {
-    const double value = problem.data.value[static_cast<std::size_t>(i)];
-    if (!problem.noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
-  }
-  return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(readings.size() - problem.censored, 1)));
+  return std::max(solution.noise.sigma * std::sqrt(sum / freedom), problem.negligible_sigma());
 }
 
 /// Gaussian noise has σ in closed form.
@@ -66,9 +52,8 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
 void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 15;
   constexpr double kSame = 3e-3;  // of σ: some tenths of its standard error at most
-  const Eigen::Map<const Eigen::VectorXd> value(problem.data.value.data(),
-                                                static_cast<Eigen::Index>(problem.data.value.size()));
-  const double smallest = std::max(kSmallestSigma * problem.resolution, 1e-6 * problem.data.scale);
+  const auto value = problem.data.values();
+  const double smallest = std::max(kSmallestSigma * problem.resolution, problem.negligible_sigma());
   for (int round = 0; round < kMostRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
     const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
@@ -95,7 +80,7 @@ void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::v
   }
 }
 
-/// The minima of least squares that may be the likeliest; `sigma` is that of the residuals.
+/// The minima of least squares that may be the likeliest.
 std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   constexpr double kNear = 60;  // in -2 log L by least squares, which counts of little noise do not follow closely
   constexpr std::size_t kMost = 4;
@@ -125,8 +110,7 @@ double GaussianLogLikelihood(double rss, double samples) {
 }
 
 double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
-  const Eigen::Map<const Eigen::VectorXd> value(problem.data.value.data(),
-                                                static_cast<Eigen::Index>(problem.data.value.size()));
+  const auto value = problem.data.values();
   const auto samples = static_cast<double>(value.size());
   if (solution.noise.IsPlain()) {
     return GaussianLogLikelihood((value - solution.readings).squaredNorm(), samples) +
@@ -166,7 +150,8 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   solution.noise = problem.noise;
   if (!solution.usable) return;
   const auto samples = static_cast<double>(problem.data.time.size());
-  const double rms = RmsResidual(cost, problem, solution);
+  const bool traced = cost.Readings(solution.parameters, &solution.readings, nullptr);
+  const double rms = traced ? problem.RmsResidual(solution.readings) : problem.data.scale;
   ChosenNoise chosen = ChooseNoise(options, problem.resolution, rms);
   solution.noise.family = chosen.family;
   solution.noise_reason = std::move(chosen.why);
@@ -177,7 +162,7 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     const std::vector<Minimum> near = NearMinima(solution, samples);
     const double rounding = solution.noise.resolution / std::sqrt(12.0);
     solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
-    solution.noise.sigma = std::max(solution.noise.sigma, 1e-6 * problem.data.scale);
+    solution.noise.sigma = std::max(solution.noise.sigma, problem.negligible_sigma());
     cost.set_noise(solution.noise);
     solution.other_minima.clear();
     Alternate(cost, problem, solution);

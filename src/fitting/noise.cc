@@ -12,7 +12,6 @@
 namespace pendulum {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRootHalf = 0.70710678118654752440;
 constexpr double kRootTwoPi = 2.50662827463100050242;
 constexpr double kLogRootTwoPi = 0.91893853320467274178;

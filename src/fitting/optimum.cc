@@ -11,18 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
-  return {values.data(), static_cast<Index>(values.size())};
-}
-
-/// Derivatives of the readings with respect to the free parameters, N x F.
-Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const std::vector<int>& free) {
-  Eigen::VectorXd readings;
-  Eigen::MatrixXd jacobian;
-  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
-  return jacobian(Eigen::all, free);
-}
-
 /// Information of the priors over the free parameters.
 Eigen::MatrixXd PriorInformation(const TrajectoryCost& cost, const std::vector<int>& free) {
   const auto size = static_cast<Index>(free.size());
@@ -43,12 +31,11 @@ struct SampleTerms {
 };
 
 SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
-  const auto samples = static_cast<Index>(problem.data.value.size());
+  const auto values = problem.data.values();
   SampleTerms terms;
-  for (Eigen::VectorXd* column : {&terms.score, &terms.information, &terms.mixed}) column->resize(samples);
-  for (Index i = 0; i < samples; ++i) {
-    const double value = problem.data.value[static_cast<std::size_t>(i)];
-    const NoiseLikelihood l = solution.noise.LikelihoodAt(value, solution.readings[i]);
+  for (Eigen::VectorXd* column : {&terms.score, &terms.information, &terms.mixed}) column->resize(values.size());
+  for (Index i = 0; i < values.size(); ++i) {
+    const NoiseLikelihood l = solution.noise.LikelihoodAt(values[i], solution.readings[i]);
     terms.score[i] = l.score;
     terms.information[i] = l.information;
     terms.mixed[i] = l.mixed;
@@ -85,9 +72,9 @@ void SetLikelihoodErrors(const TrajectoryCost& cost, const Solution& solution, c
 Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
                        const Eigen::MatrixXd& jacobian, const Autocorrelation& correlation) {
   if (noise.IsRobust() && problem.censored > 0) {
-    return CorrelatedSum(correlation, AsVector(problem.data.time), terms.score.cwiseAbs().asDiagonal() * jacobian);
+    return CorrelatedSum(correlation, problem.data.times(), terms.score.cwiseAbs().asDiagonal() * jacobian);
   }
-  const Eigen::MatrixXd correlated = CorrelatedSum(correlation, AsVector(problem.data.time), jacobian);
+  const Eigen::MatrixXd correlated = CorrelatedSum(correlation, problem.data.times(), jacobian);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(jacobian.rows()) * correlated;
   const double variance = noise.sigma * noise.sigma;
   const Eigen::VectorXd lost = 1 - variance * terms.information.array();
@@ -148,6 +135,13 @@ std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost
   return optimum;
 }
 
+Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum) {
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd jacobian;
+  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return {};
+  return jacobian(Eigen::all, optimum.free);
+}
+
 double RemainingShift(const Optimum& optimum) {
   const Eigen::VectorXd gradient = optimum.gradient(optimum.free);
   return std::sqrt(gradient.dot(optimum.inverse.matrix * gradient));
@@ -167,8 +161,7 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   return t95;
 }
 
-/// Of a robust family Huber's sandwich; where the residuals remember, W'RW between two inverses, W the roots of the
-/// samples' information times the Jacobian and R the autocorrelation.
+/// The inverse information, or a sandwich where the family is robust or the residuals remember.
 Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                         const Optimum& optimum, const Autocorrelation& correlation) {
   const auto samples = static_cast<double>(problem.data.time.size());
@@ -181,10 +174,10 @@ Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, c
   if (solution.noise.IsPlain()) errors.sigma = solution.noise.sigma / std::sqrt(2 * std::max(samples - free, 1.0));
   if ((solution.noise.IsPlain() && white) || optimum.free.empty()) return errors;
   const SampleTerms terms = TermsOf(problem, solution);
-  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum.free);
+  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
   if (!solution.noise.IsPlain()) SetLikelihoodErrors(cost, solution, optimum, terms, jacobian, errors);
   if (solution.noise.IsRobust()) {
-    errors.sigma = RobustSigmaError(solution.noise, AsVector(problem.data.value), solution.readings);
+    errors.sigma = RobustSigmaError(solution.noise, problem.data.values(), solution.readings);
   }
   if (errors.sigma) *errors.sigma *= std::sqrt(correlation.SquaredInflation());
   const double counted = solution.noise.IsPlain() ? free : 0;  // of the parameters, in σ

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
@@ -22,8 +21,6 @@
 
 namespace pendulum {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 tl::unexpected<Status> Invalid(std::string message) { return Error(StatusCode::kInvalidArgument, std::move(message)); }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kExplained = 0.1;
 
 double Variance(const TrajectoryData& data) {
-  const Eigen::Map<const Eigen::VectorXd> value(data.value.data(), static_cast<Eigen::Index>(data.value.size()));
+  const auto value = data.values();
   return (value.array() - value.mean()).square().sum() / (data.scale * data.scale);
 }
 
@@ -194,8 +194,8 @@ Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const St
   return Continue(cost, solution, options);
 }
 
-/// Whether a solution leaves at most a tenth of the readings' variance.
-bool Explains(const TrajectoryData& data, const Solution& solution) {
+/// Whether the deviance is at most a tenth of what the readings' variance would make it.
+bool IsSmall(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }
 
@@ -204,7 +204,7 @@ bool Explains(const TrajectoryData& data, const Solution& solution) {
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
   Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
-  if (Explains(data, best) && !MayReachRest(cost, data, best.parameters, options)) return best;
+  if (IsSmall(data, best) && !MayReachRest(cost, data, best.parameters, options)) return best;
   for (const int k : Removable(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);

@@ -88,10 +88,6 @@ bool Has(const Form& form, std::string_view key) { return std::ranges::find(form
 
 // ---- Messages ----------------------------------------------------------------------------------------------------
 
-tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
-  return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
 // ---- From the object to numbers ----------------------------------------------------------------------------------
 
 /// Which description `rig` is; every key of it is there, and no other but `inertia`.

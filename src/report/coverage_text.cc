@@ -14,7 +14,7 @@ using Cells = std::vector<std::string>;
 
 constexpr int kCoverageDecimals = 3;
 constexpr int kRatioDecimals = 2;
-constexpr int kWidth = 120;
+constexpr int kTableWidth = 120;
 
 /// A table before it is laid out.
 struct Table {
@@ -117,7 +117,7 @@ std::string Rules(std::span<const CoverageStudy> studies) {
   }
   text += ", " + RuleText(kAtBoundRule) + " where the truth is at the parameter's bound, and error/bound is at most " +
           FixedText(usual.largest_error, kRatioDecimals) + ".";
-  return Paragraph(text, "", kWidth);
+  return Paragraph(text, "", kTableWidth);
 }
 
 }  // namespace
@@ -130,9 +130,9 @@ std::string CoverageText(std::span<const CoverageStudy> studies) {
 }
 
 std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string_view command) {
-  return "# Do the 95 % intervals contain the truth 95 % of the time?\n\n" + Paragraph(kColumns, "", kWidth) + "\n" +
-         Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" + MarkdownTable(ParameterTable(studies)) +
-         "\n" + MarkdownTable(ScenarioTable(studies));
+  return "# Do the 95 % intervals contain the truth 95 % of the time?\n\n" + Paragraph(kColumns, "", kTableWidth) +
+         "\n" + Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" +
+         MarkdownTable(ParameterTable(studies)) + "\n" + MarkdownTable(ScenarioTable(studies));
 }
 
 std::string CoverageScenarioList(std::span<const CoverageScenario> scenarios) {

@@ -9,8 +9,6 @@
 namespace pendulum {
 namespace {
 
-constexpr int kDigitsWithoutError = 4;
-
 /// The equation with {name} in place of the parameters' values, and {gravity_torque} for G.
 std::string EquationOf(const MotionModel& model) {
   std::string equation = "{inertia} th'' + ";

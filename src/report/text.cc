@@ -105,8 +105,6 @@ std::vector<Column> ParameterColumns() {
           {""}};
 }
 
-constexpr int kDigitsWithoutError = 4;
-
 /// Shows the numbers that belong to one parameter alike: to the decimal of its standard error, if it has one.
 class ParameterNumbers {
  public:

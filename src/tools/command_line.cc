@@ -137,13 +137,14 @@ std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags) {
   return text;
 }
 
+tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
+
 Result<double> ParseNumber(std::string_view flag, std::string_view value, std::string_view meaning) {
   double number = 0;
   const char* end = value.data() + value.size();
   const auto [rest, error] = std::from_chars(value.data(), end, number);
   if (error != std::errc() || rest != end || !std::isfinite(number)) {
-    return Error(StatusCode::kInvalidArgument,
-                 std::string(flag) + " is '" + std::string(value) + "'; it must be " + std::string(meaning));
+    return BadFlag(std::string(flag) + " is '" + std::string(value) + "'; it must be " + std::string(meaning));
   }
   return number;
 }
@@ -151,7 +152,7 @@ Result<double> ParseNumber(std::string_view flag, std::string_view value, std::s
 namespace {
 
 tl::unexpected<Status> BadSetting(std::string_view flag, const std::string& sentence) {
-  return Error(StatusCode::kInvalidArgument, std::string(flag) + ": " + sentence);
+  return BadFlag(std::string(flag) + ": " + sentence);
 }
 
 /// One entry of a flag that sets parameters: name=value.

@@ -30,6 +30,9 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
 /// What --help prints: the usage, then the own flags.
 std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);
 
+/// kInvalidArgument: what is wrong with a flag.
+tl::unexpected<Status> BadFlag(const std::string& sentence);
+
 /// The value of a flag that is a finite number. kInvalidArgument names flag, value and what it should be.
 Result<double> ParseNumber(std::string_view flag, std::string_view value, std::string_view meaning);
 

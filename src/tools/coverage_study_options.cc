@@ -3,13 +3,13 @@
 
 #include <utility>
 
+#include "tools/command_line.h"
+
 namespace pendulum {
 namespace {
 
 constexpr int kMostRecordings = 1'000'000;
 constexpr int kMostThreads = 1024;
-
-tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
 
 Result<void> CheckWhole(const std::string& flag, int value, int least, int most) {
   if (value >= least && value <= most) return {};

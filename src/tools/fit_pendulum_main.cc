@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/motion_model.h"
@@ -310,8 +309,5 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  FLAGS_logtostderr = true;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are not the user's affair
-  google::InitGoogleLogging(argv[0]);
   return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
 }

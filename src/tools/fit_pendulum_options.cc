@@ -15,24 +15,22 @@
 namespace pendulum {
 namespace {
 
-tl::unexpected<Status> Wrong(const std::string& message) { return Error(StatusCode::kInvalidArgument, message); }
-
 bool IsStandardInput(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0"; }
 
 Result<void> CheckData(const FitPendulumFlags& flags) {
   if (!flags.positional.empty()) {
-    return Wrong("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
+    return BadFlag("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
   }
   if (flags.data.empty() == flags.data_list.empty()) {
-    return Wrong(flags.data.empty() ? "no recording was given; name its CSV file with --data"
-                                    : "--data and --data_list both name recordings; give one of them");
+    return BadFlag(flags.data.empty() ? "no recording was given; name its CSV file with --data"
+                                      : "--data and --data_list both name recordings; give one of them");
   }
   const std::vector<std::string> paths = Split(flags.data, ',');
   for (const std::string& path : paths) {
-    if (path.empty()) return Wrong("--data '" + flags.data + "' has an empty name between its commas");
+    if (path.empty()) return BadFlag("--data '" + flags.data + "' has an empty name between its commas");
   }
   if (std::ranges::count_if(paths, IsStandardInput) > 1) {
-    return Wrong("--data '" + flags.data + "' names standard input twice; it can be read once");
+    return BadFlag("--data '" + flags.data + "' names standard input twice; it can be read once");
   }
   return {};
 }
@@ -43,15 +41,15 @@ Result<int> ParseRelease(const FitPendulumFlags& flags) {
   const auto number = ParseNumber("--release", flags.release, "all, or the number of a release from 1 on");
   if (!number) return tl::unexpected(number.error());
   if (*number >= 1 && *number == std::floor(*number) && *number < 1e6) return static_cast<int>(*number);
-  return Wrong("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
+  return BadFlag("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
 Result<MotionModel> ParseModel(const std::string& model) {
   if (model.find(',') != std::string::npos || model == "all") {
-    return Wrong("--model '" + model + "' asks for several models; it takes one of " + MotionModelNames());
+    return BadFlag("--model '" + model + "' asks for several models; it takes one of " + MotionModelNames());
   }
   auto found = FindMotionModel(model);
-  if (!found) return Wrong("--model: " + found.error().message);
+  if (!found) return BadFlag("--model: " + found.error().message);
   return found;
 }
 
@@ -59,7 +57,7 @@ Result<StartChoice> ParseStart(const std::string& start) {
   if (start == "auto") return StartChoice::kAuto;
   if (start == "release") return StartChoice::kRelease;
   if (start == "moving") return StartChoice::kMoving;
-  return Wrong("--start is '" + start + "'; it must be auto, release or moving");
+  return BadFlag("--start is '" + start + "'; it must be auto, release or moving");
 }
 
 /// A word and what it stands for.
@@ -77,7 +75,7 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
     if (word == value) return meaning;
     names.push_back(word);
   }
-  return Wrong(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
+  return BadFlag(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
 }
 
 constexpr std::array<Word<NoiseChoice>, 3> kNoises = {
@@ -97,7 +95,7 @@ Result<void> ParseWhole(std::string_view flag, const std::string& value, double 
   const auto parsed = ParseNumber(flag, value, meaning);
   if (!parsed) return tl::unexpected(parsed.error());
   if (*parsed < least || *parsed != std::floor(*parsed) || *parsed > kLargest) {
-    return Wrong(std::string(flag) + " is '" + value + "'; it must be " + meaning);
+    return BadFlag(std::string(flag) + " is '" + value + "'; it must be " + meaning);
   }
   number = *parsed;
   return {};
@@ -112,7 +110,7 @@ Result<void> ParseNoise(const FitPendulumFlags& flags, FitOptions& options) {
   const auto interval = ParseWord("--interval", flags.interval, kIntervals);
   if (!interval) return tl::unexpected(interval.error());
   if (*loss != Loss::kNone && *noise != NoiseChoice::kAuto) {
-    return Wrong("--loss " + flags.loss + " and --noise " + flags.noise + " exclude each other; give one of them");
+    return BadFlag("--loss " + flags.loss + " and --noise " + flags.noise + " exclude each other; give one of them");
   }
   auto seed = static_cast<double>(options.seed);
   double threads = options.threads;
@@ -148,7 +146,7 @@ Result<void> ParseWindow(const FitPendulumFlags& flags, FitPendulumOptions& opti
   if (auto parsed = ParseTime("--from", flags.from, options.swing.from); !parsed) return parsed;
   if (auto parsed = ParseTime("--to", flags.to, options.swing.to); !parsed) return parsed;
   if (options.swing.from >= options.swing.to) {
-    return Wrong("--from " + flags.from + " s does not lie before --to " + flags.to + " s");
+    return BadFlag("--from " + flags.from + " s does not lie before --to " + flags.to + " s");
   }
   return {};
 }
@@ -161,11 +159,11 @@ Result<void> CheckContradictions(const FitOptions& options) {
                               : options.priors.contains(name) ? "--prior"
                                                               : "";
     if (other.empty()) continue;
-    return Wrong(std::string("--fix holds ")
-                     .append(name)
-                     .append(", and ")
-                     .append(other)
-                     .append(" names it too; leave one of them out"));
+    return BadFlag(std::string("--fix holds ")
+                       .append(name)
+                       .append(", and ")
+                       .append(other)
+                       .append(" names it too; leave one of them out"));
   }
   return {};
 }
@@ -198,18 +196,18 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
 Result<void> CheckReadFlags(const FitPendulumFlags& flags) {
   const bool is_time_chosen = !flags.time_column.empty() && flags.time_column != "none";
   if (is_time_chosen && !flags.sample_rate_hz.empty()) {
-    return Wrong("--time_column and --sample_rate_hz both say what the times are; leave one of them out");
+    return BadFlag("--time_column and --sample_rate_hz both say what the times are; leave one of them out");
   }
   if (is_time_chosen && flags.time_column == flags.value_column) {
-    return Wrong("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
+    return BadFlag("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
   }
   constexpr std::array<std::string_view, 6> kUnits = {"rad", "deg", "rad_s", "deg_s", "counts", "volts"};
   if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
-    return Wrong("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
+    return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
   }
   if (!flags.calibration.empty() && !flags.unit.empty() && flags.unit != "counts" && flags.unit != "volts") {
-    return Wrong("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
-                 flags.unit + "; leave one of them out");
+    return BadFlag("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
+                   flags.unit + "; leave one of them out");
   }
   return {};
 }
@@ -219,18 +217,18 @@ Result<void> ParseSensor(const FitPendulumFlags& flags, ReadOptions& options) {
   if (!flags.resolution.empty()) {
     const auto resolution = ParseNumber("--resolution", flags.resolution, "a number, 0 or more, in the file's unit");
     if (!resolution) return tl::unexpected(resolution.error());
-    if (*resolution < 0) return Wrong("--resolution is '" + flags.resolution + "'; it must be 0 or more");
+    if (*resolution < 0) return BadFlag("--resolution is '" + flags.resolution + "'; it must be 0 or more");
     options.resolution = *resolution;
   }
   if (flags.range.empty()) return {};
   const std::string meaning = "two increasing numbers, low,high, in the file's unit";
   const std::vector<std::string> ends = Split(flags.range, ',');
-  if (ends.size() != 2) return Wrong("--range is '" + flags.range + "'; it must be " + meaning);
+  if (ends.size() != 2) return BadFlag("--range is '" + flags.range + "'; it must be " + meaning);
   const auto low = ParseNumber("--range", ends[0], meaning);
   if (!low) return tl::unexpected(low.error());
   const auto high = ParseNumber("--range", ends[1], meaning);
   if (!high) return tl::unexpected(high.error());
-  if (*low >= *high) return Wrong("--range is '" + flags.range + "'; it must be " + meaning);
+  if (*low >= *high) return BadFlag("--range is '" + flags.range + "'; it must be " + meaning);
   options.range = SensorRange{*low, *high};
   return {};
 }
@@ -244,7 +242,7 @@ Result<void> ParseReadOptions(const FitPendulumFlags& flags, ReadOptions& option
   if (flags.sample_rate_hz.empty()) return {};
   const auto rate = ParseNumber("--sample_rate_hz", flags.sample_rate_hz, "a positive number of samples per second");
   if (!rate) return tl::unexpected(rate.error());
-  if (*rate <= 0) return Wrong("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
+  if (*rate <= 0) return BadFlag("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
   options.sample_rate_hz = *rate;
   return {};
 }

@@ -5,6 +5,8 @@
 #include <exception>
 #include <iostream>
 
+#include <glog/logging.h>
+
 #include "tools/flags.h"
 #include "tools/output.h"
 
@@ -26,6 +28,9 @@ Result<int> Run(const Tool& tool, int argc, char** argv) {
 void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
 
 int RunTool(const Tool& tool, int argc, char** argv) {
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are not the user's affair
+  if (!google::IsGoogleLoggingInitialized()) google::InitGoogleLogging(argv[0]);
   std::signal(SIGXFSZ, SIG_IGN);  // So that a limit to the size of files is an error of writing as any other.
   try {
     const Result<int> code = Run(tool, argc, argv);

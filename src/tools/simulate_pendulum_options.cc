@@ -21,8 +21,6 @@ constexpr std::array kUnits = {
     OutputUnit{"rad_s", "gyro_rad_s", Quantity::kRate, 1.0},
 };
 
-tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
-
 Result<OutputUnit> FindUnit(const std::string& name) {
   for (const OutputUnit& unit : kUnits) {
     if (unit.name == name) return unit;

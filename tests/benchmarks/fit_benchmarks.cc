@@ -55,9 +55,7 @@ void FindWindow(benchmark::State& state) {
 }
 
 /// From raw samples to estimates, sigma and covariance.
-void Fit(benchmark::State& state, int samples) {
-  const Recording recording = ReferenceRecording(samples);
-  const FitOptions options = ReferenceOptions();
+void FitAgain(benchmark::State& state, const Recording& recording, const FitOptions& options) {
   Result<FitReport> fit;
   for (auto _ : state) {
     fit = FitRecording(recording, options);
@@ -65,22 +63,19 @@ void Fit(benchmark::State& state, int samples) {
     if (fit->termination != Termination::kConverged) return state.SkipWithError(fit->reason.c_str());
   }
   Report(state, *fit);
+}
+
+void Fit(benchmark::State& state, int samples) {
+  FitAgain(state, ReferenceRecording(samples), ReferenceOptions());
   // The optimum is that of the reference run.
   if (samples != kSamples) state.counters.erase("std_errors_from_optimum");
 }
 
 /// The same readings with noise of so many counts, taken as numbers or as levels.
 void FitCounts(benchmark::State& state, double counts, NoiseChoice noise) {
-  const Recording recording = ReferenceRecording(kSamples, counts);
   FitOptions options = ReferenceOptions();
   options.noise = noise;
-  Result<FitReport> fit;
-  for (auto _ : state) {
-    fit = FitRecording(recording, options);
-    if (!fit) return state.SkipWithError(fit.error().message.c_str());
-    if (fit->termination != Termination::kConverged) return state.SkipWithError(fit->reason.c_str());
-  }
-  Report(state, *fit);
+  FitAgain(state, ReferenceRecording(kSamples, counts), options);
   state.counters.erase("std_errors_from_optimum");
 }
 

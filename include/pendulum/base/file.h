@@ -12,6 +12,9 @@
 
 namespace pendulum {
 
+/// kDataLoss: what is wrong in a file, which the sentence will name first.
+tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence);
+
 /// A file that is open for reading, which may be a pipe.
 class InputFile {
  public:

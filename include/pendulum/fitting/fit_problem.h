@@ -26,11 +26,21 @@ struct FitProblem {
   Eigen::Index censored = 0;  ///< How many they are.
   double resolution = 0;      ///< Of the readings; 0: none.
 
-  /// Parameter i as the report has it.
+  /// Parameter i as the report has it, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
+  double Internal(std::size_t i, double reported) const { return (reported - offset[i]) / si_per_internal[i]; }
 
   /// Index of the zero, which its drift may follow.
   std::size_t zero() const { return infos.size() - (data.drifts ? 2 : 1); }
+
+  /// σ below this is rounding: a millionth of the data's scale.
+  double negligible_sigma() const { return 1e-6 * data.scale; }
+
+  /// Root mean square of the residuals of readings that are not censored.
+  double RmsResidual(const Eigen::VectorXd& readings) const;
+
+  /// Share of the readings' variance that a trajectory leaves; a censored reading that it exceeds is explained.
+  double UnexplainedShare(const Eigen::VectorXd& readings) const;
 };
 
 /// The first guess for a simpler law: parameters that are fixed besides those of the problem are at their lower bound,

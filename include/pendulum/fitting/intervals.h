@@ -17,13 +17,11 @@ struct FittedModel {
   const Eigen::VectorXd& quantile_residuals;  // N
 };
 
-/// The optimum with what is at a bound free, as a posterior within the bounds has it.
-Optimum WithoutBounds(const Optimum& optimum);
-
 /// For quantized noise below kQuietSigma resolutions, with few samples near edges of levels: takes estimates,
 /// covariance, σ and intervals from draws of the posterior (SamplePosterior) instead, for there no parabola describes
-/// the likelihood. fitted.optimum: WithoutBounds. False where that is not so, or options.interval is not kAuto.
-bool UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
+/// the likelihood. Gives the optimum whose free parameters `errors` then has: those at a bound are among them. Nothing
+/// where that is not so, the residuals remember, or options.interval is not kAuto.
+std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
 
 /// Sets the 95 % interval of every parameter that is not fixed, by the method of options.interval.
 void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report);

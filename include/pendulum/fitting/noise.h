@@ -9,6 +9,8 @@
 
 namespace pendulum {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// What a standard normal variable says by lying in [a, b]: log(Φ(b) - Φ(a)), and the densities at the ends over that
 /// probability, φ(a) / (Φ(b) - Φ(a)) and φ(b) / (Φ(b) - Φ(a)).
 struct IntervalProbability {
@@ -54,17 +56,14 @@ struct NoiseModel {
   static constexpr double kStudentFreedom = 4;
 
   NoiseFamily family = NoiseFamily::kGaussian;
-  double sigma = 1;       ///< rad or rad/s: standard deviation, or the scale of the robust families.
-  double resolution = 0;  ///< q, same unit; used when quantized.
-  double low = -std::numeric_limits<double>::infinity();  ///< Readings at or below are censored.
-  double high = std::numeric_limits<double>::infinity();  ///< Readings at or above are censored.
+  double sigma = 1;         ///< rad or rad/s: standard deviation, or the scale of the robust families.
+  double resolution = 0;    ///< q, same unit; used when quantized.
+  double low = -kInfinity;  ///< Readings at or below are censored.
+  double high = kInfinity;  ///< Readings at or above are censored.
 
   bool IsCensored(double reading) const { return reading <= low || reading >= high; }
   /// Whether least squares say everything: normal, and no reading at an end of the range.
-  bool IsPlain() const {
-    return family == NoiseFamily::kGaussian && low == -std::numeric_limits<double>::infinity() &&
-           high == std::numeric_limits<double>::infinity();
-  }
+  bool IsPlain() const { return family == NoiseFamily::kGaussian && low == -kInfinity && high == kInfinity; }
 
   bool IsRobust() const { return family == NoiseFamily::kHuber || family == NoiseFamily::kStudent; }
 

@@ -25,6 +25,10 @@ struct Optimum {
 /// Nothing when the trajectory cannot be traced.
 std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution);
 
+/// Derivatives of the readings with respect to the free parameters, N x F; no rows when the trajectory cannot be
+/// traced.
+Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
+
 /// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
 double RemainingShift(const Optimum& optimum);
 

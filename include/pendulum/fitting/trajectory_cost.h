@@ -25,6 +25,9 @@ struct TrajectoryData {
   double latest_release = 0;     ///< s; a trial released outside [0, latest_release] is refused.
   bool drifts = false;           ///< The zero moves: one parameter more.
   double scale = 1;              ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
+
+  Eigen::Map<const Eigen::VectorXd> times() const { return {time.data(), static_cast<Eigen::Index>(time.size())}; }
+  Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
 };
 
 /// What is known of a parameter beside the recording, as a residual (p - mean) · weight beside those of the samples.
