@@ -11,7 +11,6 @@
 namespace pendulum {
 namespace {
 
-
 /// A level's edge, and what of the normal distribution is needed there.
 struct Edge {
   explicit Edge(double at)
