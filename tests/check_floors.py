@@ -114,7 +114,8 @@ def check_words(root, path):
 
 
 def check_companions(root, path):
-    """src/F/x.cc has include/pendulum/F/x.h (src/F/x.h where F has no public interface) and tests/F/x_test.cc."""
+    """src/F/x.cc has include/pendulum/F/x.h (src/F/x.h where F has no public interface), which it includes before all
+    others so that it is known to compile on its own, and tests/F/x_test.cc."""
     if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
         return
     inner = path.relative_to("src").with_suffix("")
@@ -122,6 +123,10 @@ def check_companions(root, path):
     for companion in (f"{headers}/{inner}.h", f"tests/{inner}_test.cc"):
         if not (root / companion).exists():
             yield f"{path}:1: {companion} is missing"
+    own = f"{headers}/{inner}.h".removeprefix("include/").removeprefix("src/")
+    first = re.search(r'#\s*include\s*[<"]([^>"]+)', cpp_text.without_comments((root / path).read_text()))
+    if first is None or first[1] != own:
+        yield f"{path}:1: {own} must be included first"
 
 
 def cmake_calls(root, folder, function):
@@ -210,6 +215,8 @@ BAD_TREE = {
     "include/pendulum/base/new.h": ("int* p = new int;\n", "a naked new has no place"),
     "include/pendulum/base/log.h": ("void f() { VLOG(1); }\n", "logging has no place"),
     "include/pendulum/base/flag.h": ('DEFINE_bool(x, true, "");\n', "a flag has no place"),
+    "src/model/late.cc": ('#include <string>\n#include "pendulum/model/late.h"\n',
+                          "pendulum/model/late.h must be included first"),
     "src/model/alone.cc": ("", "include/pendulum/model/alone.h is missing"),
     "src/model/friction/alone.cc": ("", "tests/model/friction/alone_test.cc is missing"),
     "include/pendulum/model/unlisted.h": ("", "src/CMakeLists.txt does not name it"),
