@@ -86,8 +86,6 @@ constexpr std::string_view kFormsText =
 
 bool Has(const Form& form, std::string_view key) { return std::ranges::find(form.keys, key) != form.keys.end(); }
 
-// ---- Messages ----------------------------------------------------------------------------------------------------
-
 // ---- From the object to numbers ----------------------------------------------------------------------------------
 
 /// Which description `rig` is; every key of it is there, and no other but `inertia`.
