@@ -39,16 +39,6 @@ double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
   return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
 }
 
-/// The parameters a fit of that recording should find, in FitParameters' order.
-std::vector<double> Truth(const SyntheticOptions& run) {
-  std::vector<double> truth = run.parameters;
-  const bool released = run.start == StartKind::kRelease;
-  truth.push_back(released ? run.release_angle : run.initial_angle);
-  truth.push_back(released ? run.release_time : run.initial_rate);
-  truth.push_back(run.zero);
-  return truth;
-}
-
 void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) {
   outcome.estimate = parameter.estimate;
   outcome.std_error = parameter.std_error;
@@ -63,7 +53,7 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   if (!recording) return tl::unexpected(recording.error());
   const Result<FitReport> report = FitRecording(*recording, scenario.fit);
   const std::vector<ParameterInfo> infos = Parameters(scenario);
-  const std::vector<double> truth = Truth(run);
+  const std::vector<double> truth = TrueParameters(run);
   const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording->time);
   RunOutcome outcome;
   outcome.has_report = report.has_value();

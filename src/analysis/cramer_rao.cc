@@ -22,17 +22,14 @@ struct Sensitivities {
 
 std::optional<Sensitivities> SensitivitiesAt(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
   constexpr double kTolerance = 1e-12;  // rad
-  const bool released = truth.start == StartKind::kRelease;
   TrajectoryData data;
   data.quantity = truth.quantity;
   for (const double instant : time) data.time.push_back(instant - time[0]);
   data.value.assign(data.time.size(), 0.0);
   data.natural_frequency = 1 / std::sqrt(truth.parameters.front());
   data.latest_release = data.time.back();
-  std::vector<double> parameters = truth.parameters;
-  parameters.push_back(released ? truth.release_angle : truth.initial_angle);
-  parameters.push_back(released ? truth.release_time - time[0] : truth.initial_rate);
-  parameters.push_back(truth.zero);
+  std::vector<double> parameters = TrueParameters(truth);
+  if (truth.start == StartKind::kRelease) parameters[parameters.size() - 2] -= time[0];
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(truth.model, truth.start, data);
   cost->set_tolerance(kTolerance);
   Sensitivities at;

@@ -31,6 +31,11 @@ std::string NumberText(double value) {
   return {text.data(), end};
 }
 
+std::string ProbabilityText(double p) {
+  constexpr double kSmallest = 1e-99;
+  return p < kSmallest ? "< 1e-99" : NumberText(p, 2);
+}
+
 std::string Quoted(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown = "\"";

@@ -118,6 +118,16 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
+void WithdrawErrors(std::string_view why, FitReport& fit) {
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+    if (!parameter.fixed) parameter.reason = why;
+  }
+  for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
+  fit.covariance_names.clear();
+  fit.covariance.resize(0, 0);
+}
+
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TryFit(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());

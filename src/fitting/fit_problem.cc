@@ -239,7 +239,9 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   if (recording.clock_scale != 1) scaled = TrueTime(recording);
   const Recording& timed = scaled ? *scaled : recording;
   const Result<StartValues> start =
-      EstimateStartValues(options.loss == Loss::kNone ? timed : WithoutOutliers(timed), *model, options.start);
+      options.start_values
+          ? Result<StartValues>(*options.start_values)
+          : EstimateStartValues(options.loss == Loss::kNone ? timed : WithoutOutliers(timed), *model, options.start);
   if (!start)
     return Error(start.error().code,
                  recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);

@@ -12,6 +12,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/not_a_pendulum.h"
+#include "pendulum/fitting/undersampled.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -227,13 +228,7 @@ void Withdraw(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = "this is not a free pendulum's swing: " + why;
   fit.warnings.push_back({"not_a_pendulum", fit.reason});
-  for (ParameterEstimate& parameter : fit.parameters) {
-    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
-    if (!parameter.fixed) parameter.reason = "not a pendulum";
-  }
-  for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
-  fit.covariance_names.clear();
-  fit.covariance.resize(0, 0);
+  WithdrawErrors("not a pendulum", fit);
 }
 
 std::optional<std::string> WhyNoPendulum(const SwingFit& result) {
@@ -251,9 +246,15 @@ FreeSwing GivenSwing(const Recording& part) {
   return swing;
 }
 
+tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int count) {
+  return Error(StatusCode::kInvalidArgument, where + "there is no free swing " + std::to_string(number) +
+                                                 " in the recording; it has " + std::to_string(count));
+}
+
 }  // namespace
 
-Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice) {
+Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
+                                  const std::optional<Rig>& rig) {
   const bool from_given = !std::isnan(choice.from);
   const bool to_given = !std::isnan(choice.to);
   std::optional<Recording> selected;
@@ -263,16 +264,17 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     selected = *std::move(part);
   }
   const Recording* const part = selected ? &*selected : &recording;
-  if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  if (IsUndersampled(*part, rig)) {
+    if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
+    return ChosenSwings{{WholeRecording(*part)}, {1}};
+  }
+  if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
   if (!found) return Error(found.error().code, where + found.error().message);
   ChosenSwings swings{*std::move(found), {}};
   const auto count = static_cast<int>(swings.found.size());
-  if (choice.release > count) {
-    return Error(StatusCode::kInvalidArgument, where + "there is no free swing " + std::to_string(choice.release) +
-                                                   " in the recording; it has " + std::to_string(count));
-  }
+  if (choice.release > count) return NoSuchSwing(where, choice.release, count);
   if (choice.release == SwingChoice::kAll) {
     for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
     return swings;
@@ -298,6 +300,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
 }
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
   Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
   if (!result) return result;
   const auto lacks = [&] {

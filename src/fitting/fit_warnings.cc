@@ -39,10 +39,11 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
   const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
   const double ratio = rms / noise;
   if (!(ratio > kRatio)) {
-    const bool taken = report.noise.correlation != "white" && report.termination == Termination::kConverged;
+    const bool taken =
+        report.noise.memory.kind != Autocorrelation::Kind::kWhite && report.termination == Termination::kConverged;
     warnings.push_back({"correlated_residuals",
                         taken ? "the residuals follow each other: the error bars take them as noise that remembers (" +
-                                    report.noise.correlation + ") and hold if the model is right"
+                                    report.noise.memory.Name() + ") and hold if the model is right"
                               : "the residuals follow each other, and no error bar takes that into account"});
     return;
   }

@@ -230,7 +230,7 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
   SetSystematicErrors(recording, options, problem, cost, solution, optimum, report);
   const Autocorrelation memory = MemoryOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
-  report.noise.correlation = memory.Name();
+  report.noise.memory = memory;
   report.statistics.effective_samples = errors.effective_samples;
   const FittedModel fitted{options, problem, cost, solution, optimum, memory, z};
   const std::optional<Optimum> sampled = UsePosterior(fitted, errors, report);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,17 @@
 
 /// What the first lines of a file tell: whether there is a header, what separates fields, how many there are.
 namespace pendulum::csv {
+
+/// True for a line without anything in it, and for what a spreadsheet leaves of an empty row.
+inline bool IsEmptyRow(std::string_view line) { return line.find_first_not_of(" \t,;") == std::string_view::npos; }
+
+/// What a line such as `sep=;`, which a spreadsheet writes for itself, says of the separator.
+inline std::optional<char> SeparatorLine(std::string_view line) {
+  constexpr std::string_view kKey = "sep=";
+  line.remove_prefix(line.starts_with('"') ? 1 : 0);
+  if (line.size() <= kKey.size() || !line.starts_with(kKey)) return std::nullopt;
+  return line[kKey.size()];
+}
 
 /// One of the first lines, which are kept until it is known what they are.
 struct HeadLine {

@@ -102,16 +102,12 @@ Result<Recording> Reader::Read() {
 
 Check Reader::ReadLine() {
   constexpr std::size_t kHeadLines = 2;  // A header and a row, or two rows of which the first may be cut off.
+  if (csv::IsEmptyRow(line_.text)) return {};
   const std::string_view text = Trim(line_.text);
-  if (text.empty()) return {};
   if (text.front() == '#') return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
-  // What a spreadsheet leaves of an empty row.
-  if (text.find_first_not_of(" \t,;") == std::string_view::npos) return {};
   if (has_layout_) return TakeRow();
-  constexpr std::string_view kSeparatorKey = "sep=";  // What a spreadsheet writes for itself.
-  const std::string_view key = line_.text.substr(line_.text.starts_with('"') ? 1 : 0);
-  if (head_.empty() && key.size() > kSeparatorKey.size() && key.starts_with(kSeparatorKey)) {
-    separator_ = key[kSeparatorKey.size()];
+  if (const auto separator = csv::SeparatorLine(line_.text); separator && head_.empty()) {
+    separator_ = *separator;
     return {};
   }
   head_.push_back({std::string(line_.text), line_.number});

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/json.h"
 
-#include <cmath>
+#include <cstddef>
 #include <optional>
-#include <string_view>
+#include <utility>
 
 #include "pendulum/base/version.h"
-#include "pendulum/report/layout.h"
+#include "pendulum/report/closed_form_json.h"
+#include "pendulum/report/json_parts.h"
 
 namespace pendulum {
 namespace {
@@ -15,54 +16,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSchemaVersion = 1;
 
-/// An object whose missing numbers explain themselves.
-class NumberObject {
- public:
-  NumberObject& Set(const std::string& key, Json value) {
-    object_[key] = std::move(value);
-    return *this;
-  }
-
-  NumberObject& Set(const std::string& key, double value) {
-    if (std::isfinite(value)) return Set(key, Json(value));
-    Because(key + " is not a finite number");
-    return Set(key, Json(nullptr));
-  }
-
-  /// A number that may be missing for the reason given.
-  NumberObject& Set(const std::string& key, const std::optional<double>& value, const std::string& reason) {
-    if (value) return Set(key, *value);
-    Because(reason);
-    return Set(key, Json(nullptr));
-  }
-
-  void Because(const std::string& reason) {
-    if (!reason.empty() && reason_ != reason) reason_ += (reason_.empty() ? "" : "; ") + reason;
-  }
-
-  Json Done() {
-    if (!reason_.empty()) object_["reason"] = reason_;
-    return std::move(object_);
-  }
-
- private:
-  Json object_ = Json::object();
-  std::string reason_;
-};
-
-Json NumberOrNull(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
-
-Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 Json ResolutionJson(const DataSummary& data) { return data.resolution > 0 ? Json(data.resolution) : Json(nullptr); }
-
-/// A key with its unit: sigma_rad_s.
-std::string Named(const std::string& name, const std::string& unit) { return name + "_" + KeySuffix(unit); }
 
 std::string WindowReason(const DataSummary& data) {
   return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
+}
+
+Json StartJson(const RunReport& report) {
+  if (report.fits.empty()) return nullptr;
+  return report.fits.front().start == StartKind::kRelease ? "release" : "moving";
 }
 
 Json DataJson(const RunReport& report) {
@@ -74,7 +36,7 @@ Json DataJson(const RunReport& report) {
       .Set("used_samples", Json(data.used_samples))
       .Set("duration_s", data.duration())
       .Set("sample_rate_hz", data.sample_rate())
-      .Set(Named("resolution", data.unit), ResolutionJson(data))
+      .Set(KeyWithUnit("resolution", data.unit), ResolutionJson(data))
       .Set("resolution_source", TextOrNull(data.resolution_source))
       .Set("clock_scale", data.clock_scale)
       .Set("clock_scale_std_dev", data.clock_scale_std_dev)
@@ -82,7 +44,8 @@ Json DataJson(const RunReport& report) {
       .Set("window_reason", TextOrNull(WindowReason(data)))
       .Set("releases", Json(data.releases))
       .Set("release", data.release > 0 ? Json(data.release) : Json(nullptr))
-      .Set("start", report.fits.front().start == StartKind::kRelease ? "release" : "moving")
+      .Set("start", StartJson(report))
+      .Set("sampling", SamplingJson(report.sampling))
       .Done();
 }
 
@@ -157,19 +120,19 @@ Json NoiseJson(const FitReport& fit, const DataSummary& data) {
   return NumberObject()
       .Set("model", Json(NoiseFamilyName(noise.family)))
       .Set("why", Json(noise.why))
-      .Set(Named("sigma", fit.reading_unit), noise.sigma)
+      .Set(KeyWithUnit("sigma", fit.reading_unit), noise.sigma)
       .Set("sigma_std_error", NumberOrNull(noise.sigma_std_error))
-      .Set(Named("resolution", fit.reading_unit), ResolutionJson(data))
+      .Set(KeyWithUnit("resolution", fit.reading_unit), ResolutionJson(data))
       .Set("saturated_samples", Json(noise.censored))
       .Set("lag1_correlation", noise.lag1_correlation)
-      .Set("correlation", Json(noise.correlation))
+      .Set("correlation", Json(noise.memory.Name()))
       .Done();
 }
 
 Json StatisticsJson(const FitReport& fit) {
   const FitStatistics& statistics = fit.statistics;
   return NumberObject()
-      .Set(Named("rms_residual", fit.reading_unit), statistics.rms_residual)
+      .Set(KeyWithUnit("rms_residual", fit.reading_unit), statistics.rms_residual)
       .Set("log_likelihood", statistics.log_likelihood)
       .Set("aic", statistics.aic)
       .Set("aicc", statistics.aicc)
@@ -193,7 +156,7 @@ Json IdentifiabilityJson(const FitReport& fit) {
 }
 
 /// What a failed fit does not have is null; its `reason` says why.
-Json FitJson(const FitReport& fit, const DataSummary& data) {
+Json FitJson(const FitReport& fit, const DataSummary& data, const ClosedFormCheck* check) {
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
   json["model"] = fit.model.name;
@@ -209,6 +172,7 @@ Json FitJson(const FitReport& fit, const DataSummary& data) {
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit);
   json["statistics"] = failed ? Json(nullptr) : StatisticsJson(fit);
+  json["closed_form"] = CheckJson(check);
   json["solver"] = {{"iterations", fit.solver.iterations},
                     {"evaluations", fit.solver.evaluations},
                     {"termination", fit.solver.termination}};
@@ -226,16 +190,21 @@ Json WarningsJson(const RunReport& report) {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const RunReport& report) {
-  Json json;
-  json["schema_version"] = kSchemaVersion;
-  json["tool"] = {{"name", "fit_pendulum"}, {"version", kVersion}};
-  json["data"] = DataJson(report);
-  json["rig"] = report.rig ? report.rig->source : Json(nullptr);
-  json["calibration"] = report.calibration;
-  json["fits"] = Json::array();
-  for (const FitReport& fit : report.fits) json["fits"].push_back(FitJson(fit, report.data));
-  json["warnings"] = WarningsJson(report);
-  return json;
+  Json fits = Json::array();
+  for (std::size_t i = 0; i < report.fits.size(); ++i) {
+    fits.push_back(FitJson(report.fits[i], report.data, report.CheckOf(i)));
+  }
+  NumberObject json;
+  json.Set("schema_version", Json(kSchemaVersion))
+      .Set("tool", Json{{"name", "fit_pendulum"}, {"version", kVersion}})
+      .Set("data", DataJson(report))
+      .Set("rig", report.rig ? report.rig->source : Json(nullptr))
+      .Set("calibration", report.calibration)
+      .Set("fits", std::move(fits))
+      .Set("closed_forms", ClosedFormsJson(report))
+      .Set("warnings", WarningsJson(report));
+  if (!report.closed_forms) json.Because(report.no_closed_forms);
+  return json.Done();
 }
 
 std::string ToJsonText(const RunReport& report) {

@@ -1,38 +1,126 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/series.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "pendulum/base/format.h"
-#include "pendulum/report/layout.h"
+#include "pendulum/closed_form/extrema.h"
+#include "pendulum/report/json_parts.h"
 
 namespace pendulum {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 void AppendNumber(double value, std::string& text) {
   if (std::isfinite(value)) text += NumberText(value);
 }
 
+/// Numbers of N samples; null where they are of another size.
+Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples) {
+  if (values.size() != samples) return nullptr;
+  Json json = Json::array();
+  for (const double value : values) json.push_back(NumberOrNull(value));
+  return json;
+}
+
+Json ExtremaJson(const Recording& used) {
+  Json json = Json::array();
+  const Result<std::vector<Extremum>> extrema = FindExtrema(used);
+  if (!extrema) return json;
+  for (const Extremum& extremum : *extrema) json.push_back(Json::array({extremum.time, extremum.value}));
+  return json;
+}
+
+void SetEstimate(const std::string& key, const std::optional<Estimate>& estimate, Json& json) {
+  json[key] = estimate ? NumberOrNull(estimate->value) : Json(nullptr);
+  json[key + "_std_error"] = estimate ? NumberOrNull(estimate->std_error) : Json(nullptr);
+}
+
+/// One turning point, numbered from 1 on.
+Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) {
+  const Peak& peak = forms.table.peaks[i];
+  const std::string quantity = forms.table.quantity == Quantity::kRate ? "rate" : "angle";
+  const DecayRow decay = i < forms.decay.size() ? forms.decay[i] : DecayRow();
+  Json json;
+  json["number"] = i + 1;
+  json["time_s"] = peak.time;
+  json["time_std_error"] = NumberOrNull(std::sqrt(peak.covariance(0, 0)));
+  json[KeyWithUnit(quantity, unit)] = peak.value;
+  json["std_error"] = NumberOrNull(std::sqrt(peak.covariance(1, 1)));
+  SetEstimate("zeta_pair", decay.pair, json);
+  SetEstimate("zeta", decay.so_far, json);
+  json["periods"] = decay.so_far ? Json(decay.periods) : Json(nullptr);
+  return json;
+}
+
+Json PeaksJson(const RunReport& report, const std::string& unit) {
+  Json json = Json::array();
+  if (!report.closed_forms) return json;
+  for (std::size_t i = 0; i < report.closed_forms->table.peaks.size(); ++i) {
+    json.push_back(PeakJson(*report.closed_forms, i, unit));
+  }
+  return json;
+}
+
+Json ModelJson(const FitReport& fit, const ClosedFormCheck* check, Eigen::Index samples) {
+  const TextbookOverlay overlay = check != nullptr ? check->overlay : TextbookOverlay();
+  Json json;
+  json["fitted"] = SamplesJson(fit.fitted, samples);
+  json["residual"] = SamplesJson(fit.residual, samples);
+  json["linear_closed_form"] = SamplesJson(overlay.linear, samples);
+  json["nonlinear_closed_form"] = SamplesJson(overlay.nonlinear, samples);
+  return json;
+}
+
 }  // namespace
 
-std::string ToResidualCsv(const Recording& used, const FitReport& fit) {
-  constexpr std::size_t kTypicalLine = 80;  // bytes
-  const std::string suffix = "_" + KeySuffix(used.value_unit());
-  std::string text = "time_s,measured" + suffix + ",fitted" + suffix + ",residual" + suffix + "\n";
+std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay) {
+  constexpr std::size_t kTypicalLine = 120;  // bytes
+  const std::array<std::pair<const char*, const Eigen::VectorXd*>, 5> columns = {
+      {{"measured", &used.value},
+       {"fitted", &fit.fitted},
+       {"residual", &fit.residual},
+       {"linear_closed_form", &overlay.linear},
+       {"nonlinear_closed_form", &overlay.nonlinear}}};
+  std::string text = "time_s";
+  for (const auto& [name, values] : columns) text += "," + KeyWithUnit(name, used.value_unit());
+  text += '\n';
   text.reserve(kTypicalLine * static_cast<std::size_t>(used.size() + 1));
-  const bool fitted = fit.fitted.size() == used.size() && fit.residual.size() == used.size();
   for (Eigen::Index i = 0; i < used.size(); ++i) {
     AppendNumber(used.time[i], text);
-    text += ',';
-    AppendNumber(used.value[i], text);
-    text += ',';
-    if (fitted) AppendNumber(fit.fitted[i], text);
-    text += ',';
-    if (fitted) AppendNumber(fit.residual[i], text);
+    for (const auto& [name, values] : columns) {
+      text += ',';
+      if (values->size() == used.size()) AppendNumber((*values)[i], text);
+    }
     text += '\n';
   }
   return text;
+}
+
+nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report) {
+  const std::string unit = used.value_unit();
+  Json json;
+  json["time_s"] = SamplesJson(used.time, used.size());
+  json["measured"] = SamplesJson(used.value, used.size());
+  json["unit"] = unit;
+  json["extrema"] = ExtremaJson(used);
+  json["peaks"] = PeaksJson(report, unit);
+  json["profiles"] = nullptr;
+  json["models"] = Json::object();
+  for (std::size_t i = 0; i < report.fits.size(); ++i) {
+    const FitReport& fit = report.fits[i];
+    json["models"][std::string(fit.model.name)] = ModelJson(fit, report.CheckOf(i), used.size());
+  }
+  return json;
+}
+
+std::string ToSeriesJsonText(const Recording& used, const RunReport& report) {
+  return SeriesJson(used, report).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace pendulum

@@ -3,55 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pendulum/base/format.h"
-#include "pendulum/base/physics.h"
+#include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
 
-constexpr int kIndent = 4;
-constexpr int kWidth = 100;                   // columns, of prose
-constexpr double kLeastCorrelation = 0.1;     // smaller ones are not listed
-constexpr int kDigits = 6;                    // significant, of a number without an error
-constexpr std::string_view kMargin = "    ";  // kIndent blanks
+constexpr double kLeastCorrelation = 0.1;  // smaller ones are not listed
 
 using Row = std::vector<std::string>;
-
-std::string Prose(std::string_view text) { return Paragraph(text, kMargin, kWidth); }
-
-std::string Heading(const std::string& title) { return "[[" + title + "]]\n"; }
-
-/// A list of names and what is said of each.
-std::string Facts(const std::vector<Row>& rows) { return AlignedTable({{""}, {""}}, rows, kIndent); }
-
-/// Another unit for a quantity: rad is shown in deg too.
-struct Conversion {
-  std::string_view unit;
-  double factor = 1;
-};
-
-std::optional<Conversion> Degrees(std::string_view unit) {
-  if (unit == "rad") return Conversion{"deg", 1 / kRadFromDeg};
-  if (unit == "rad/s") return Conversion{"deg/s", 1 / kRadFromDeg};
-  return std::nullopt;
-}
-
-/// A number of residuals or noise, with degrees beside radians.
-std::string ReadingText(double value, const std::string& unit) {
-  constexpr int kReadingDigits = 3;
-  const std::optional<Conversion> degrees = Degrees(unit);
-  if (!degrees) return NumberText(value, kReadingDigits) + " " + unit;
-  return NumberText(value, kReadingDigits) + " " + unit + " (" + NumberText(value * degrees->factor, kReadingDigits) +
-         " " + std::string(degrees->unit) + ")";
-}
 
 /// The free swings of the recording, the one that was fitted marked.
 std::string ReleasesText(const DataSummary& data) {
@@ -73,8 +43,8 @@ std::string DataText(const DataSummary& data) {
   std::vector<Row> rows;
   if (!data.path.empty()) rows.push_back({"file", data.path});
   rows.push_back({"samples", std::to_string(data.used_samples) + " used of " + std::to_string(data.samples)});
-  rows.push_back({"window", NumberText(data.from, kDigits) + " s to " + NumberText(data.to, kDigits) + " s, " +
-                                NumberText(data.sample_rate(), kDigits) + " Hz on average"});
+  rows.push_back({"window", NumberText(data.from, kTextDigits) + " s to " + NumberText(data.to, kTextDigits) + " s, " +
+                                NumberText(data.sample_rate(), kTextDigits) + " Hz on average"});
   if (!data.begins.empty()) {
     rows.push_back({"begins", data.begins});
     rows.push_back({"ends", data.ends});
@@ -94,7 +64,7 @@ std::string ModelText(const FitReport& fit) {
       fit.start == StartKind::kRelease ? "held at an angle, then released" : "in motion at the first used sample";
   return Heading("Fit") +
          Facts({{"model", std::string(fit.model.name) + ":  " + SymbolicEquation(fit.model)}, {"start", start}}) +
-         Paragraph(std::string(TerminationName(fit.termination)) + ": " + fit.reason, "    status  ", kWidth);
+         Paragraph(std::string(TerminationName(fit.termination)) + ": " + fit.reason, "    status  ", kTextWidth);
 }
 
 // --- parameters ------------------------------------------------------------------------------------------------------
@@ -105,61 +75,30 @@ std::vector<Column> ParameterColumns() {
           {""}};
 }
 
-/// Shows the numbers that belong to one parameter alike: to the decimal of its standard error, if it has one.
-class ParameterNumbers {
- public:
-  ParameterNumbers(const ParameterEstimate& parameter, double factor) : factor_(factor) {
-    const double value = factor * parameter.estimate;
-    const double error = factor * parameter.std_error.value_or(0);
-    text_ = {NumberText(value, kDigits), ""};
-    if (!parameter.std_error) return;
-    text_ = PdgText(value, error);
-    if (error > 0) rounding_ = PdgRounding(value, error);
-  }
-
-  const std::string& Value() const { return text_.value; }
-  std::string Error() const { return text_.error.empty() ? "" : "± " + text_.error; }
-
-  std::string Number(double x) const {
-    return rounding_ ? RoundedText(factor_ * x, *rounding_) : NumberText(factor_ * x, kDigitsWithoutError);
-  }
-
-  /// A second standard error, to its own decimal.
-  std::string SystematicError(const std::optional<double>& error) const {
-    if (!error || !(*error > 0)) return "";
-    Rounding rounding = PdgRounding(factor_ * *error, factor_ * *error);
-    const int last = rounding.exponent - rounding.decimals;
-    rounding.exponent = rounding_ ? rounding_->exponent : 0;
-    rounding.decimals = std::max(0, rounding.exponent - last);
-    return "± " + RoundedText(factor_ * *error, rounding);
-  }
-
-  std::string Interval(const std::optional<double>& lower, const std::optional<double>& upper) const {
-    if (!lower && !upper) return "";
-    return "[" + (lower ? Number(*lower) : "?") + ", " + (upper ? Number(*upper) : "?") + "]";
-  }
-
- private:
-  double factor_;
-  ValueAndError text_;
-  std::optional<Rounding> rounding_;
-};
-
 std::string Note(const ParameterEstimate& parameter) {
   if (parameter.fixed) return "fixed";
   return parameter.at_bound ? "at its bound" : "";
 }
 
-Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversion) {
-  const ParameterNumbers numbers(parameter, conversion.factor);
+/// A parameter in closed form: from all turning points where the check has it, else where the fit began.
+std::optional<double> InClosedForm(const ParameterEstimate& parameter, const ClosedFormCheck* check) {
+  if (check == nullptr) return parameter.closed_form;
+  const std::string quantity = std::string(parameter.info.name) + "_turning_points";
+  const auto row = std::ranges::find(check->rows, quantity, &ClosedFormRow::quantity);
+  return row == check->rows.end() ? parameter.closed_form : row->closed_form;
+}
+
+Row ParameterRow(const ParameterEstimate& parameter, const std::optional<double>& closed_form,
+                 const Conversion& conversion) {
+  const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
   return {"",
           "",
           numbers.Value(),
           numbers.Error(),
           std::string(conversion.unit),
           numbers.Interval(parameter.lower95, parameter.upper95),
-          numbers.SystematicError(parameter.systematic_std_error),
-          parameter.closed_form ? numbers.Number(*parameter.closed_form) : "",
+          numbers.SecondError(parameter.systematic_std_error),
+          closed_form ? numbers.Number(*closed_form) : "",
           ""};
 }
 
@@ -208,34 +147,36 @@ std::string IdentifiabilityText(const FitReport& fit) {
   return text;
 }
 
-/// The rig file's own moment of inertia beside the fitted one.
+/// The rig file's own moment of inertia beside the fitted one, where no check says it.
 std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
   const ParameterEstimate* fitted = fit.Find("inertia");
   if (!rig || !rig->inertia || fitted == nullptr) return "";
   const double from_rig = rig->inertia->value;
   const double percent = 100 * (fitted->estimate / from_rig - 1);
   const ValueAndError text = PdgText(from_rig, rig->inertia->std_dev);
-  const std::string value = rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : NumberText(from_rig, kDigits);
+  const std::string value =
+      rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : NumberText(from_rig, kTextDigits);
   return Prose("The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + NumberText(std::abs(percent), 2) +
                " % " + (percent < 0 ? "smaller" : "larger") + ".");
 }
 
-std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig) {
+std::string ParametersText(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
   std::vector<Row> rows;
   for (const ParameterEstimate& parameter : fit.parameters) {
-    Row row = ParameterRow(parameter, {parameter.unit});
+    const std::optional<double> closed_form = InClosedForm(parameter, check);
+    Row row = ParameterRow(parameter, closed_form, {parameter.unit});
     row.front() = parameter.info.name;
     row[1] = parameter.info.symbol;
     row.back() = Note(parameter);
     rows.push_back(std::move(row));
-    if (const auto degrees = Degrees(parameter.unit)) rows.push_back(ParameterRow(parameter, *degrees));
+    if (const auto degrees = Degrees(parameter.unit)) rows.push_back(ParameterRow(parameter, closed_form, *degrees));
   }
   const bool failed = fit.termination == Termination::kFailed;
   std::string text = Heading("Parameters") + (failed ? Prose("These are no estimates: nothing was fitted.") : "");
-  text += AlignedTable(ParameterColumns(), rows, kIndent) + MissingErrors(fit);
+  text += AlignedTable(ParameterColumns(), rows, kTextIndent) + MissingErrors(fit);
   if (!fit.std_error_method.empty()) text += Prose("Standard errors: " + fit.std_error_method + ".");
   if (!fit.interval_method.empty()) text += Prose("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  return text + IdentifiabilityText(fit) + InertiaText(fit, rig);
+  return text + IdentifiabilityText(fit) + (check != nullptr ? "" : InertiaText(fit, rig));
 }
 
 // --- what follows from the parameters -----------------------------------------------------------------------------
@@ -260,13 +201,14 @@ std::string DerivedText(const FitReport& fit) {
   std::vector<Row> rows;
   for (const DerivedQuantity& quantity : fit.derived) {
     const bool nothing = SaysNothing(quantity);
-    ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kDigits), ""};
+    ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
     if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
     rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
                     DerivedInterval(quantity)});
   }
   if (rows.empty()) return "";
-  return Heading("Derived quantities") + AlignedTable({{""}, {"", true}, {"", false, 1}, {""}, {""}}, rows, kIndent);
+  return Heading("Derived quantities") +
+         AlignedTable({{""}, {"", true}, {"", false, 1}, {""}, {""}}, rows, kTextIndent);
 }
 
 std::string CorrelationText(const FitReport& fit) {
@@ -286,7 +228,7 @@ std::string CorrelationText(const FitReport& fit) {
   rows.reserve(pairs.size());
   for (const auto& [correlation, names] : pairs) rows.push_back({names, FixedText(correlation, 3)});
   return "[[Correlations]] (those below 0.1 in size are not listed)\n" +
-         AlignedTable({{""}, {"", true}}, rows, kIndent);
+         AlignedTable({{""}, {"", true}}, rows, kTextIndent);
 }
 
 /// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
@@ -323,7 +265,7 @@ std::string StatisticsText(const FitReport& fit) {
                 {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
                 {"Ljung-Box, runs",
                  "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-                {"memory", fit.noise.correlation + "; of a constant the samples tell as much as " +
+                {"memory", fit.noise.memory.Name() + "; of a constant the samples tell as much as " +
                                NumberText(std::round(statistics.effective_samples)) + " independent ones"},
                 {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
                 {"AIC, AICc, BIC", FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " +
@@ -335,7 +277,7 @@ std::string StatisticsText(const FitReport& fit) {
 
 std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
   if (fit.termination == Termination::kFailed) return "";
-  std::string text = Heading("Equation of motion") + std::string(kMargin) + FittedEquation(fit, rig) + "\n";
+  std::string text = Heading("Equation of motion") + std::string(kTextIndent, ' ') + FittedEquation(fit, rig) + "\n";
   if (rig) return text + Prose("th in rad from hanging straight down, torques in N m.");
   return text +
          Prose(
@@ -345,24 +287,26 @@ std::string EquationSection(const FitReport& fit, const std::optional<Rig>& rig)
              "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
 }
 
-std::string FitText(const FitReport& fit, const std::optional<Rig>& rig) {
-  return ModelText(fit) + ParametersText(fit, rig) + DerivedText(fit) + CorrelationText(fit) + StatisticsText(fit) +
-         EquationSection(fit, rig);
+std::string FitText(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
+  return ModelText(fit) + ParametersText(fit, rig, check) + DerivedText(fit) + CorrelationText(fit) +
+         StatisticsText(fit) + EquationSection(fit, rig);
 }
 
 std::string WarningsText(const RunReport& report) {
   const std::vector<Warning> warnings = AllWarnings(report);
   std::string text = warnings.empty() ? "" : Heading("Warnings");
-  for (const Warning& warning : warnings) text += Paragraph(warning.message, "  - ", kWidth);
+  for (const Warning& warning : warnings) text += Paragraph(warning.message, "  - ", kTextWidth);
   return text;
 }
 
 }  // namespace
 
 std::string ToText(const RunReport& report) {
-  std::string text = DataText(report.data);
-  for (const FitReport& fit : report.fits) text += FitText(fit, report.rig);
-  return text + WarningsText(report);
+  std::string text = DataText(report.data) + SamplingText(report);
+  for (std::size_t i = 0; i < report.fits.size(); ++i) {
+    text += FitText(report.fits[i], report.rig, report.CheckOf(i));
+  }
+  return text + ClosedFormText(report) + WarningsText(report);
 }
 
 }  // namespace pendulum

@@ -2,26 +2,19 @@
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <gflags/gflags.h>
 
-#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/fit.h"
 #include "pendulum/model/motion_model.h"
-#include "pendulum/model/rig.h"
-#include "pendulum/recording/data_list.h"
-#include "pendulum/recording/read_recording.h"
-#include "pendulum/recording/repair_values.h"
-#include "pendulum/recording/sensor.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
 #include "pendulum/report/text.h"
 #include "tools/fit_pendulum_options.h"
+#include "tools/fit_runs.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
 
@@ -62,8 +55,13 @@ DEFINE_string(interval, "auto",
               "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
 DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
 DEFINE_string(threads, "", "Threads of the bootstrap, 0 for all cores; the result does not depend on it; default 0.");
+DEFINE_bool(closed_form_only, false,
+            "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
+            "volts without a calibration.");
 DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
+DEFINE_string(series, "",
+              "Where to write samples, turning points and models as JSON; - is standard output; default nowhere.");
 
 namespace pendulum {
 namespace {
@@ -96,6 +94,8 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.fix = FLAGS_fix;
   flags.json = FLAGS_json;
   flags.residuals = FLAGS_residuals;
+  flags.series = FLAGS_series;
+  flags.closed_form_only = FLAGS_closed_form_only;
   flags.calibration = FLAGS_calibration;
   flags.time_column = FLAGS_time_column;
   flags.value_column = FLAGS_value_column;
@@ -112,153 +112,27 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
-/// One free swing of one recording, fitted.
-struct Run {
-  RunReport report;
-  Recording used;
-};
-
-/// What the runs need beside their flags.
-struct Setup {
-  std::vector<std::string> paths;  ///< Of the recordings.
-  std::vector<NamedFile> inputs;   ///< All that is read.
-  std::optional<Rig> rig;
-};
-
-Result<Setup> ReadSetup(FitPendulumOptions& options) {
-  Setup setup{options.data, options.Inputs(), std::nullopt};
-  if (!options.rig.empty()) {
-    auto rig = ReadRig(options.rig);
-    if (!rig) return tl::unexpected(rig.error());
-    setup.rig = *std::move(rig);
+/// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
+void RenderFiles(const FitPendulumOptions& options, const Run& run, int index, int count,
+                 std::vector<Output>& outputs) {
+  const RunReport& report = run.report;
+  if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(report)});
+  if (!options.residuals.empty()) {
+    const TextbookOverlay none;
+    const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks.front().overlay;
+    outputs.push_back(
+        {NumberedPath(options.residuals, index, count), ToResidualCsv(run.used, report.fits.front(), overlay)});
   }
-  if (!options.calibration.empty()) {
-    auto calibration = ReadCalibration(options.calibration);
-    if (!calibration) return tl::unexpected(calibration.error());
-    options.read.calibration = *std::move(calibration);
+  if (!options.series.empty()) {
+    outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run.used, report)});
   }
-  if (options.data_list.empty()) return setup;
-  const auto listed = ReadDataList(options.data_list);
-  if (!listed) return tl::unexpected(listed.error());
-  for (const ListedFile& file : *listed) {
-    setup.paths.push_back(file.path.string());
-    setup.inputs.push_back({"--data_list", file.path.string()});
-  }
-  return setup;
-}
-
-/// Numbered outputs are other files than those that were named; data of several fits have no place on one stream.
-Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count) {
-  if (count == 1) return {};
-  for (const NamedFile& output : options.Outputs()) {
-    if (!IsStandardOutput(output.path)) continue;
-    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
-                                                   std::to_string(count) + "; name a file, and they are numbered");
-  }
-  std::vector<NamedFile> outputs;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::ranges::move(options.Outputs(static_cast<int>(i), static_cast<int>(count)), std::back_inserter(outputs));
-  }
-  return CheckOutputs(outputs, setup.inputs);
-}
-
-/// A recording that was read, and the swings to be fitted in it.
-struct ReadSwings {
-  Recording recording;
-  ChosenSwings swings;
-  Eigen::Index samples = 0;  ///< As read, before repairs.
-  RunReport common;          ///< What the reports of all its swings say.
-};
-
-/// `rig` wins over what the recording says of its rig.
-Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, options.read);
-  if (!read) return tl::unexpected(read.error());
-  if (!rig && !read->rig_json.empty()) {
-    auto own = ParseRig(read->rig_json, read->path + ": # rig");
-    if (!own) return tl::unexpected(own.error());
-    rig = *std::move(own);
-  }
-  ReadSwings one;
-  one.samples = read->size();
-  one.recording = RepairValues(*std::move(read));
-  auto swings = ChooseSwings(one.recording, options.swing);
-  if (!swings) return tl::unexpected(swings.error());
-  one.swings = *std::move(swings);
-  one.common.rig = std::move(rig);
-  one.common.warnings = std::exchange(one.recording.warnings, {});
-  if (one.recording.calibration) one.common.calibration = one.recording.calibration->source;
-  return one;
-}
-
-/// The error of one among several runs, which names its recording and, unless 0, its release.
-tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
-  const std::string name = path == "-" ? "standard input" : path;
-  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
-  const std::string where = name + ": ";
-  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
-  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
-                                status.message.substr(skip));
-}
-
-/// Now and then how far the bootstrap is.
-void SayProgress(int done, int total) {
-  Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
-}
-
-/// Fits the chosen swings of one recording one by one and appends their runs.
-void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwings one, bool among_others,
-            std::vector<Result<Run>>& runs) {
-  FitOptions fit_options = options.fit;
-  fit_options.progress = SayProgress;
-  fit_options.rig = one.common.rig;
-  const bool several = one.swings.chosen.size() > 1;
-  for (const int release : one.swings.chosen) {
-    // The last one needs no copy: a long recording fills the memory.
-    const bool last = release == one.swings.chosen.back();
-    auto fit = FitSwing(last ? std::exchange(one.recording, {}) : one.recording,
-                        one.swings.found[static_cast<std::size_t>(release - 1)], fit_options);
-    if (!fit) {
-      runs.emplace_back(among_others || several ? ErrorAmong(fit.error(), path, several ? release : 0)
-                                                : tl::unexpected(fit.error()));
-      continue;
-    }
-    Run run{one.common, {}};
-    run.report.data = SummarizeData(*fit, one.swings, release, one.samples);
-    run.report.fits.push_back(std::move(fit->fit));
-    run.used = std::move(fit->used);
-    runs.emplace_back(std::move(run));
-  }
-}
-
-/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on.
-///
-/// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
-Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
-  std::vector<Result<Run>> runs;
-  const std::size_t files = setup.paths.size();
-  std::size_t count = files;  // of places: at least one for each recording
-  for (const std::string& path : setup.paths) {
-    auto one = ReadOne(options, path, setup.rig);
-    if (!one) {
-      runs.emplace_back(files > 1 ? ErrorAmong(one.error(), path, 0) : tl::unexpected(one.error()));
-      continue;
-    }
-    if (const std::size_t more = one->swings.chosen.size() - 1; more > 0) {
-      count += more;
-      if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
-        return tl::unexpected(checked.error());
-      }
-    }
-    FitOne(options, path, *std::move(one), files > 1, runs);
-  }
-  return runs;
 }
 
 /// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
 /// not be fitted is said.
 std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Result<Run>>& runs) {
-  const bool data_on_stdout = IsStandardOutput(options.json) || IsStandardOutput(options.residuals);
+  const bool data_on_stdout =
+      std::ranges::any_of(options.Outputs(), [](const NamedFile& output) { return IsStandardOutput(output.path); });
   const auto count = static_cast<int>(runs.size());
   std::vector<Output> outputs;
   std::string text;
@@ -268,18 +142,13 @@ std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<
       Say(kName, run.error().message);
       continue;
     }
-    const FitReport& fit = run->report.fits.front();
-    if (!options.json.empty()) {
-      outputs.push_back({NumberedPath(options.json, i, count), ToJsonText(run->report)});
-    }
-    if (!options.residuals.empty()) {
-      outputs.push_back({NumberedPath(options.residuals, i, count), ToResidualCsv(run->used, fit)});
-    }
+    RenderFiles(options, *run, i, count, outputs);
     text += (text.empty() ? "" : "\n") + ToText(run->report);
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(run->report)) Say(kName, "warning: " + warning.message);
     }
-    if (fit.termination != Termination::kConverged) {
+    for (const FitReport& fit : run->report.fits) {
+      if (fit.termination == Termination::kConverged) continue;
       Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
     }
   }
@@ -287,9 +156,21 @@ std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<
   return outputs;
 }
 
+/// The exit code of a run: that of its fit; closed forms are there, or the run is an error.
+int ExitCodeOf(const Result<Run>& run) {
+  if (!run) return ExitCode(run.error().code);
+  return run->report.fits.empty() ? 0 : ExitCode(run->report.fits.front().termination);
+}
+
+/// Now and then how far the bootstrap is.
+void SayProgress(int done, int total) {
+  Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
+}
+
 Result<int> Work(const std::vector<std::string>& positional) {
   auto options = MakeFitPendulumOptions(CurrentFlags(positional));
   if (!options) return tl::unexpected(options.error());
+  options->fit.progress = SayProgress;
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
   auto checked = CheckOutputs(options->Outputs(), setup->inputs);
@@ -299,9 +180,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!runs) return tl::unexpected(runs.error());
   if (const auto written = WriteOutputs(Render(*options, *runs)); !written) return tl::unexpected(written.error());
   int worst = 0;
-  for (const Result<Run>& run : *runs) {
-    worst = std::max(worst, run ? ExitCode(run->report.fits.front().termination) : ExitCode(run.error().code));
-  }
+  for (const Result<Run>& run : *runs) worst = std::max(worst, ExitCodeOf(run));
   return worst;
 }
 

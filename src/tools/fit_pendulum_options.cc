@@ -192,6 +192,28 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
   return CheckContradictions(options);
 }
 
+/// Closed forms need nothing that only a fit asks for.
+Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
+  if (!flags.closed_form_only) return {};
+  const FitPendulumFlags none;
+  const std::array<Word<bool>, 11> of_a_fit = {{{"--residuals", flags.residuals != none.residuals},
+                                                {"--start", flags.start != none.start},
+                                                {"--fix", flags.fix != none.fix},
+                                                {"--init", flags.init != none.init},
+                                                {"--bounds", flags.bounds != none.bounds},
+                                                {"--prior", flags.prior != none.prior},
+                                                {"--noise", flags.noise != none.noise},
+                                                {"--loss", flags.loss != none.loss},
+                                                {"--interval", flags.interval != none.interval},
+                                                {"--seed", flags.seed != none.seed},
+                                                {"--threads", flags.threads != none.threads}}};
+  for (const auto& [flag, given] : of_a_fit) {
+    if (!given) continue;
+    return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
+  }
+  return {};
+}
+
 /// Contradictions that the file could not settle.
 Result<void> CheckReadFlags(const FitPendulumFlags& flags) {
   const bool is_time_chosen = !flags.time_column.empty() && flags.time_column != "none";
@@ -253,6 +275,7 @@ std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
   std::vector<NamedFile> outputs;
   if (!json.empty()) outputs.push_back({"--json", NumberedPath(json, index, count)});
   if (!residuals.empty()) outputs.push_back({"--residuals", NumberedPath(residuals, index, count)});
+  if (!series.empty()) outputs.push_back({"--series", NumberedPath(series, index, count)});
   return outputs;
 }
 
@@ -270,6 +293,7 @@ std::vector<NamedFile> FitPendulumOptions::Inputs() const {
 Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags) {
   FitPendulumOptions options;
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   if (const auto parsed = ParseFitOptions(flags, options.fit); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());
   const auto release = ParseRelease(flags);
@@ -282,6 +306,8 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.rig = flags.rig;
   options.json = flags.json;
   options.residuals = flags.residuals;
+  options.series = flags.series;
+  options.closed_form_only = flags.closed_form_only;
   return options;
 }
 

@@ -27,6 +27,8 @@ struct FitPendulumFlags {
   std::string prior;
   std::string json;
   std::string residuals;
+  std::string series;
+  bool closed_form_only = false;
   std::string calibration;
   std::string time_column;
   std::string value_column;
@@ -52,6 +54,8 @@ struct FitPendulumOptions {
   SwingChoice swing;
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.
   std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
+  std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
+  bool closed_form_only = false;  ///< No fit is made; of `fit`, the model counts.
   FitOptions fit;
 
   /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulates recordings of a pendulum's free swing, with the truth: flags, files and exit codes.
+// Simulates recordings of a pendulum's free swing, with the truth, or predicts what they will tell: flags, files and
+// exit codes.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,8 +8,10 @@
 
 #include <gflags/gflags.h>
 
+#include "pendulum/analysis/plan.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
+#include "pendulum/report/plan_text.h"
 #include "pendulum/trajectory/synthetic.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
@@ -24,6 +27,9 @@ DEFINE_string(set, "",
               "(default 0).");
 DEFINE_string(out, "", "Where to write the recording as CSV; - is standard output.");
 DEFINE_string(truth, "", "Where to write the truth, the parameters, as JSON; - is standard output; default nowhere.");
+DEFINE_bool(plan, false,
+            "Makes no recording, but predicts the standard error of each parameter (Cramér-Rao), and how amplitude, "
+            "duration, rate and resolution change it; default off.");
 DEFINE_int32(count, 1, "Recordings, with seeds --seed, --seed + 1, ... in run_001.csv, run_002.csv, ...; default 1.");
 DEFINE_uint64(seed, 1, "Seed of noise and jitter; default 1.");
 DEFINE_double(duration, 20, "Length of the recording, s; default 20.");
@@ -46,6 +52,8 @@ std::string Usage() {
          "\n"
          "  simulate_pendulum --model coulomb --rig rig.json --out run.csv --truth truth.json \\\n"
          "    --set inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,release_time=1.9\n"
+         "  simulate_pendulum --plan --rig rig.json --set inertia=0.079,release_angle=0.423,release_time=0 --noise "
+         "0.05\n"
          "\n"
          "Models: " +
          MotionModelNames() +
@@ -71,6 +79,7 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.resolution = FLAGS_resolution;
   flags.range = FLAGS_range;
   flags.seed = FLAGS_seed;
+  flags.plan = FLAGS_plan;
   flags.count = FLAGS_count;
   flags.out = FLAGS_out;
   flags.truth = FLAGS_truth;
@@ -103,11 +112,18 @@ Result<void> SimulateOne(const SimulateOptions& options, int index) {
   return WriteOutputs(outputs);
 }
 
+Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>& rig) {
+  const Result<Plan> plan = MakePlan(options.synthetic);
+  if (!plan) return tl::unexpected(plan.error());
+  return WriteOutputs(std::vector<Output>{{"-", PlanText(*plan, rig)}});
+}
+
 Result<void> Simulate(const SimulateFlags& flags) {
   const Result<std::optional<Rig>> rig = RigOfFlag();
   if (!rig) return tl::unexpected(rig.error());
   const Result<SimulateOptions> options = MakeSimulateOptions(flags, *rig);
   if (!options) return tl::unexpected(options.error());
+  if (options->plan) return WritePlan(*options, *rig);
   if (Result<void> checked = CheckAllOutputs(*options); !checked) return checked;
   for (int index = 0; index < options->count; ++index) {
     if (Result<void> simulated = SimulateOne(*options, index); !simulated) return simulated;

@@ -158,8 +158,19 @@ Result<void> CheckNumbers(const SimulateFlags& flags) {
   return CheckNoiseLaw(flags);
 }
 
+/// A plan goes to standard output and is of one recording, which is not made.
+Result<void> CheckPlan(const SimulateFlags& flags) {
+  const std::string makes_none = " contradicts --plan, which makes no recording; leave out one of them";
+  if (!flags.out.empty()) return BadFlag("--out" + makes_none);
+  if (!flags.truth.empty()) return BadFlag("--truth" + makes_none);
+  if (flags.count != 1) return BadFlag("--count" + makes_none);
+  if (flags.noise != 0 || flags.resolution != 0) return {};
+  return BadFlag("--plan needs --noise or --resolution: without either nothing limits what a recording tells");
+}
+
 Result<void> CheckFiles(const SimulateFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (flags.plan) return CheckPlan(flags);
   if (flags.out.empty()) return BadFlag("--out is missing: the file for the recording, or - for standard output");
   if (flags.count < 1) return BadFlag("--count is " + std::to_string(flags.count) + "; it must be at least 1");
   if (flags.count > 1 && (IsStandardOutput(flags.out) || IsStandardOutput(flags.truth))) {
@@ -206,6 +217,7 @@ Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const st
   options.unit = *unit;
   options.synthetic.quantity = unit->quantity;
   options.synthetic.model = *model;
+  options.plan = flags.plan;
   options.count = flags.count;
   options.out = flags.out;
   options.truth_out = flags.truth;

@@ -34,6 +34,7 @@ struct SimulateFlags {
   std::string range;  ///< "low,high"; empty is unlimited.
   std::uint64_t seed = 1;
   int count = 1;
+  bool plan = false;                    ///< Predict standard errors instead of making recordings.
   std::string out;                      ///< Path, or "-" for stdout.
   std::string truth;                    ///< Path, "-" for stdout, or empty for none.
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
@@ -55,6 +56,7 @@ struct SimulateOptions {
   OutputUnit unit;
   double resolution = 0;             ///< In `unit`, 0 is none.
   std::optional<SensorRange> range;  ///< In `unit`.
+  bool plan = false;                 ///< A plan on standard output, and no recording.
   int count = 1;                     ///< Recordings.
   std::string out;                   ///< As in the flags.
   std::string truth_out;             ///< As in the flags; empty for none.

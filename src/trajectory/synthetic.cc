@@ -183,6 +183,15 @@ Result<Trajectory> TraceStart(const SyntheticOptions& options, double end) {
 
 }  // namespace
 
+std::vector<double> TrueParameters(const SyntheticOptions& options) {
+  const bool released = options.start == StartKind::kRelease;
+  std::vector<double> parameters = options.parameters;
+  parameters.push_back(released ? options.release_angle : options.initial_angle);
+  parameters.push_back(released ? options.release_time : options.initial_rate);
+  parameters.push_back(options.zero);
+  return parameters;
+}
+
 double SensorReading(double x, double resolution, const std::optional<SensorRange>& range) {
   const double low = range ? range->low : 0.0;
   if (resolution == 0) return range ? std::clamp(x, low, range->high) : x;

@@ -12,6 +12,12 @@
 namespace pendulum {
 namespace {
 
+TEST(ProbabilityText, HasTwoDigitsAndNoZero) {
+  EXPECT_EQ(ProbabilityText(0.0271), "0.027");
+  EXPECT_EQ(ProbabilityText(3.5e-19), "3.5e-19");
+  EXPECT_EQ(ProbabilityText(0), "< 1e-99");
+}
+
 TEST(NumberText, RoundsToSignificantDigits) {
   EXPECT_EQ(NumberText(0.0123456, 2), "0.012");
   EXPECT_EQ(NumberText(99.6, 2), "1e+02");

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/friction/registry.h"
@@ -35,7 +36,6 @@ inline FitReport ExampleFit() {
                     ExampleParameter(kViscous, "N m s/rad", 0.003, 0.0005), ExampleParameter(kCoulomb, "N m", 0, 0),
                     ExampleParameter(kReleaseAngle, "rad", 0.423, 0.0002)};
   fit.parameters[0].systematic_std_error = 0.001;
-  fit.parameters[0].closed_form = 0.0788;
   ParameterEstimate& coulomb = fit.parameters[2];
   coulomb.std_error.reset();
   coulomb.lower95 = 0;
@@ -68,12 +68,78 @@ inline FitReport ExampleFit() {
                12,
                "the residuals are 0.8 resolutions",
                0.125,
-               "AR(2)"};
+               {Autocorrelation::Kind::kAutoregressive, {0.5, 0.1}}};
   fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75, 0.04, 0.25, 1200.25};
   fit.solver = {7, 15, "Convergence. (made up)"};
   fit.trace_error = 2e-10;
   fit.warnings = {{"lack_of_fit", "the residuals are not white; friction may be of another kind"}};
   return fit;
+}
+
+/// Five turning points, located to 0.001 s and 0.002 rad.
+inline PeakTable ExamplePeaks() {
+  PeakTable table;
+  table.noise = 0.0035;
+  table.half_period = 0.65;
+  table.zero = {0.01, 0.0001};
+  const double values[] = {0.4, -0.375, 0.39, -0.365, 0.38};
+  for (int i = 0; i < 5; ++i) {
+    Peak peak;
+    peak.time = 2.5 + 0.65 * i;
+    peak.value = values[i];
+    peak.covariance = Eigen::Vector2d(1e-6, 4e-6).asDiagonal();
+    peak.continues = i > 0;
+    table.peaks.push_back(peak);
+  }
+  return table;
+}
+
+/// Closed forms of these turning points in units of G, numbers made up by hand.
+inline ClosedForms ExampleClosedForms() {
+  ClosedForms forms;
+  forms.table = ExamplePeaks();
+  forms.decay = {{0, Estimate{0.0041, 0.0008}, std::nullopt, 0},
+                 {1, Estimate{0.0039, 0.0008}, std::nullopt, 0},
+                 {2, Estimate{0.0042, 0.0008}, Estimate{0.0041, 0.0008}, 1},
+                 {3, std::nullopt, Estimate{0.0039, 0.0008}, 1},
+                 {4, std::nullopt, Estimate{0.00415, 0.0004}, 2}};
+  LogDecrement linear;
+  linear.first = 0;
+  linear.periods = 2;
+  linear.damped_frequency = {4.75, 0.0025};
+  linear.log_decrement = {0.0265, 0.0025};
+  linear.damping_ratio = {0.00425, 0.0004};
+  linear.natural_frequency = {4.7501, 0.0025};
+  linear.inertia = {0.0445, 0.000125};
+  linear.viscous = {0.00175, 0.00025};
+  linear.corrected_inertia = {0.044, 0.000125};
+  forms.linear = linear;
+  Decrement decrement;
+  decrement.model = {"coulomb", "coulomb", Gravity::kSine};
+  decrement.table = forms.table;
+  decrement.zero = forms.table.zero;
+  decrement.inertia = {0.04375, 0.000125};
+  decrement.friction = {{0.0015, 0.00025}, {0.005, 0.0005}};
+  decrement.chi_square = 4;
+  decrement.freedom = 2;
+  forms.decrement = decrement;
+  forms.envelopes = {{"viscous", "exponential", 6.5, 4, 0.25}, {"coulomb", "straight line", 40.5, 4, 1e-6}};
+  forms.envelope =
+      "as exponential (viscous friction alone, p 0.25); not as straight line (coulomb friction alone, p 1e-06)";
+  return forms;
+}
+
+/// A row that differs, one that agrees, and one without an error; no overlay but its summary.
+inline ClosedFormCheck ExampleCheck() {
+  ClosedFormCheck check;
+  check.rows = {{"inertia_small_angle", "1 / ω_n² of the linear formulas", "kg m^2", 0.0802, 0.0002, 0.079, 6.25, false,
+                 "finite amplitude: of the fitted model's own trajectory the formula makes 0.0801"},
+                {"viscous_log_decrement", "2 ζ / ω_n", "N m s/rad", 0.00306, 0.0005, 0.003, -0.04, true, ""},
+                {"inertia_point_mass", "all mass in the bob", "kg m^2", 0.0703, std::nullopt, 0.079, std::nullopt,
+                 std::nullopt, "the rig file gives no errors"}};
+  check.overlay.summary = "the nonlinear model with the textbook's numbers is further off: 0.02 rad";
+  check.summary = "1 of 2 quantities agree";
+  return check;
 }
 
 /// A run with a rig whose masses are uncertain, and one warning of the recording.
@@ -95,14 +161,22 @@ inline RunReport ExampleReport() {
   report.rig->source = {{"gravity_torque", {{"value", 1.8}, {"std_dev", 0.01}}},
                         {"inertia", {{"value", 0.076}, {"std_dev", 0.0005}}}};
   report.fits = {ExampleFit()};
+  report.sampling = Sampling{100, 0.0002, 1, 0.5, 0.8, 125, 62.5, 194, 20, 12, 0.8, 0.775};
+  report.closed_forms = ExampleClosedForms();
+  report.closed_forms_model = "coulomb";
+  report.checks = {ExampleCheck()};
   report.warnings = {{"gap", "there is a gap of 0.5 s after 7 s"}};
   return report;
 }
 
-/// The same for a gyro, without a rig, and not converged: no standard errors.
+/// The same for a gyro, without a rig, and not converged: no standard errors, nor closed forms.
 inline RunReport ExampleRateReport() {
   RunReport report = ExampleReport();
   report.rig.reset();
+  report.sampling.reset();
+  report.closed_forms.reset();
+  report.no_closed_forms = "only 2 turning points can be located";
+  report.checks.clear();
   report.data.unit = "rad/s";
   report.data.resolution = 0;
   report.data.resolution_source.clear();
@@ -128,7 +202,7 @@ inline RunReport ExampleRateReport() {
   fit.systematic_names.clear();
   fit.systematic_covariance.resize(0, 0);
   fit.identifiability.clear();
-  fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, 0, "the readings stand on no levels", 0.125, "white"};
+  fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, 0, "the readings stand on no levels", 0.125, {}};
   return report;
 }
 

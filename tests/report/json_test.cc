@@ -41,13 +41,34 @@ TEST(ToJsonText, GivesTheExampleByteForByte) {
 
 TEST(ToJson, KeepsTheOrderOfKeys) {
   const Json json = ToJson(ExampleReport());
-  EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "warnings"));
-  EXPECT_THAT(Keys(json["fits"][0]), ElementsAre("model", "status", "reason", "parameters", "derived", "covariance",
-                                                 "correlation", "noise", "systematic_covariance", "std_error_method",
-                                                 "interval_method", "identifiability", "statistics", "solver"));
+  EXPECT_THAT(Keys(json),
+              ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "closed_forms", "warnings"));
+  EXPECT_THAT(Keys(json["fits"][0]),
+              ElementsAre("model", "status", "reason", "parameters", "derived", "covariance", "correlation", "noise",
+                          "systematic_covariance", "std_error_method", "interval_method", "identifiability",
+                          "statistics", "closed_form", "solver"));
   EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
               ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
   EXPECT_EQ(json["tool"]["version"], kVersion);
+}
+
+TEST(ToJson, GoesWithoutAFit) {
+  RunReport report = ExampleReport();
+  report.fits.clear();
+  report.checks.clear();
+  const Json json = ToJson(report);
+  EXPECT_EQ(json["fits"], Json::array());
+  EXPECT_TRUE(json["data"]["start"].is_null());
+  EXPECT_EQ(json["closed_forms"]["turning_points"], 5);
+}
+
+TEST(ToJson, SaysWhyThereAreNoClosedForms) {
+  const Json json = ToJson(ExampleRateReport());
+  EXPECT_TRUE(json["closed_forms"].is_null());
+  EXPECT_EQ(json["reason"], "only 2 turning points can be located");
+  EXPECT_EQ(json["fits"][0]["closed_form"], Json::array());
+  EXPECT_TRUE(json["data"]["sampling"].is_null());
+  EXPECT_FALSE(ToJson(ExampleReport()).contains("reason"));
 }
 
 TEST(ToJson, SaysWhyThereIsNoStandardError) {

@@ -42,6 +42,20 @@ TEST(AllWarnings, SaysEachOnceDataFirst) {
                                                Field(&Warning::message, "another gap")));
 }
 
+TEST(RunReport, HasTheCheckOfAFitOrNone) {
+  RunReport report = ExampleReport();
+  EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
+  EXPECT_EQ(report.CheckOf(1), nullptr);
+  report.checks.clear();
+  EXPECT_EQ(report.CheckOf(0), nullptr);
+}
+
+TEST(AllWarnings, AreThoseOfTheRecordingWithoutAFit) {
+  RunReport report = ExampleReport();
+  report.fits.clear();
+  EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
+}
+
 TEST(Correlation, IsCovarianceOverBothStandardErrors) {
   const FitReport fit = ExampleFit();
   EXPECT_DOUBLE_EQ(Correlation(fit, 0, 1), 0.5);

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/series.h"
 
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/report/example_report.h"
 
 namespace pendulum {
 namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Recording ThreeSamples() {
   Recording used;
@@ -17,35 +26,127 @@ Recording ThreeSamples() {
 
 FitReport FitOfThreeSamples() {
   FitReport fit;
+  fit.model = {"coulomb", "coulomb", Gravity::kSine};
   fit.fitted = Eigen::Vector3d(0.25, 0, 0.5);
   fit.residual = Eigen::Vector3d(0.25, -1e-7, -0.125);
   return fit;
 }
 
+TextbookOverlay OverlayOfThreeSamples() {
+  TextbookOverlay overlay;
+  overlay.linear = Eigen::Vector3d(0.5, 0.25, 0.125);
+  overlay.nonlinear = Eigen::Vector3d(1, 2, 3);
+  return overlay;
+}
+
+/// Three samples, their fit and its overlay, and the turning points of the example.
+RunReport ReportOfThreeSamples() {
+  RunReport report = ExampleReport();
+  report.fits = {FitOfThreeSamples()};
+  report.checks[0].overlay = OverlayOfThreeSamples();
+  return report;
+}
+
+std::vector<std::string> Keys(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return keys;
+}
+
 TEST(ToResidualCsv, GivesEveryDigitInSi) {
-  EXPECT_EQ(ToResidualCsv(ThreeSamples(), FitOfThreeSamples()),
-            "time_s,measured_rad,fitted_rad,residual_rad\n"
-            "0,0.5,0.25,0.25\n"
-            "0.1,-1e-07,0,-1e-07\n"
-            "0.2,0.3333333333333333,0.5,-0.125\n");
+  EXPECT_EQ(ToResidualCsv(ThreeSamples(), FitOfThreeSamples(), OverlayOfThreeSamples()),
+            "time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad\n"
+            "0,0.5,0.25,0.25,0.5,1\n"
+            "0.1,-1e-07,0,-1e-07,0.25,2\n"
+            "0.2,0.3333333333333333,0.5,-0.125,0.125,3\n");
 }
 
 TEST(ToResidualCsv, NamesTheUnitOfARate) {
   Recording used = ThreeSamples();
   used.quantity = Quantity::kRate;
   const std::string csv = ToResidualCsv(used, FitOfThreeSamples());
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "time_s,measured_rad_s,fitted_rad_s,residual_rad_s");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "time_s,measured_rad_s,fitted_rad_s,residual_rad_s,linear_closed_form_rad_s,nonlinear_closed_form_rad_s");
 }
 
-TEST(ToResidualCsv, LeavesFieldsEmptyThatAFailedFitDoesNotHave) {
+TEST(ToResidualCsv, LeavesFieldsEmptyThatThereAreNot) {
   EXPECT_EQ(ToResidualCsv(ThreeSamples(), FitReport()),
-            "time_s,measured_rad,fitted_rad,residual_rad\n"
-            "0,0.5,,\n"
-            "0.1,-1e-07,,\n"
-            "0.2,0.3333333333333333,,\n");
+            "time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad\n"
+            "0,0.5,,,,\n"
+            "0.1,-1e-07,,,,\n"
+            "0.2,0.3333333333333333,,,,\n");
   FitReport fit = FitOfThreeSamples();
-  fit.fitted[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(ToResidualCsv(ThreeSamples(), fit).find("\n0.1,-1e-07,,-1e-07\n"), std::string::npos);
+  fit.fitted[1] = kNan;
+  EXPECT_NE(ToResidualCsv(ThreeSamples(), fit).find("\n0.1,-1e-07,,-1e-07,,\n"), std::string::npos);
+}
+
+TEST(SeriesJson, HasSamplesAndModelsByName) {
+  const Json series = SeriesJson(ThreeSamples(), ReportOfThreeSamples());
+  EXPECT_THAT(Keys(series), ElementsAre("time_s", "measured", "unit", "extrema", "peaks", "profiles", "models"));
+  EXPECT_EQ(series["time_s"].dump(), "[0.0,0.1,0.2]");
+  EXPECT_EQ(series["measured"].dump(), "[0.5,-1e-07,0.3333333333333333]");
+  EXPECT_EQ(series["unit"], "rad");
+  EXPECT_TRUE(series["profiles"].is_null());
+  EXPECT_EQ(series["models"].dump(),
+            R"({"coulomb":{"fitted":[0.25,0.0,0.5],"residual":[0.25,-1e-07,-0.125],)"
+            R"("linear_closed_form":[0.5,0.25,0.125],"nonlinear_closed_form":[1.0,2.0,3.0]}})");
+}
+
+// The standard errors are the roots of the variances 1e-6 s² and 4e-6 rad².
+TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
+  const Json peaks = SeriesJson(ThreeSamples(), ReportOfThreeSamples())["peaks"];
+  ASSERT_EQ(peaks.size(), 5);
+  EXPECT_EQ(peaks[2].dump(),
+            R"({"number":3,"time_s":3.8,"time_std_error":0.001,"angle_rad":0.39,"std_error":0.002,)"
+            R"("zeta_pair":0.0042,"zeta_pair_std_error":0.0008,"zeta":0.0041,"zeta_std_error":0.0008,"periods":1})");
+  for (const char* key : {"zeta", "zeta_std_error", "periods"}) EXPECT_TRUE(peaks[0][key].is_null()) << key;
+  for (const char* key : {"zeta_pair", "zeta_pair_std_error"}) EXPECT_TRUE(peaks[4][key].is_null()) << key;
+}
+
+TEST(SeriesJson, NamesTheUnitOfARateOrOfCounts) {
+  Recording used = ThreeSamples();
+  RunReport report = ReportOfThreeSamples();
+  used.unit = "counts";
+  EXPECT_TRUE(SeriesJson(used, report)["peaks"][0].contains("angle_counts"));
+  used.unit = "rad/s";
+  used.quantity = report.closed_forms->table.quantity = Quantity::kRate;
+  EXPECT_TRUE(SeriesJson(used, report)["peaks"][0].contains("rate_rad_s"));
+}
+
+TEST(SeriesJson, IsNullForWhatThereIsNot) {
+  RunReport report = ReportOfThreeSamples();
+  report.closed_forms.reset();
+  report.checks.clear();
+  report.fits[0].fitted[1] = kNan;
+  report.fits[0].residual.resize(0);
+  const Json series = SeriesJson(ThreeSamples(), report);
+  EXPECT_EQ(series["extrema"], Json::array());
+  EXPECT_EQ(series["peaks"], Json::array());
+  EXPECT_EQ(series["models"]["coulomb"].dump(),
+            R"({"fitted":[0.25,null,0.5],"residual":null,"linear_closed_form":null,"nonlinear_closed_form":null})");
+  report.fits.clear();
+  EXPECT_EQ(SeriesJson(ThreeSamples(), report)["models"], Json::object());
+}
+
+// cos(2π t / 1 s) over 0.2 to 3.8 s turns at every half second from 0.5 to 3.5 s, by -1 and 1 in turn; a parabola
+// through samples 0.01 s apart is off by some (2π 0.01)³.
+TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
+  Recording used;
+  used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
+  used.value = (2 * kPi * used.time.array()).cos();
+  const Json extrema = SeriesJson(used, RunReport())["extrema"];
+  ASSERT_EQ(extrema.size(), 7);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_NEAR(extrema[i][0].get<double>(), 0.5 + 0.5 * static_cast<double>(i), 5e-4);
+    EXPECT_NEAR(extrema[i][1].get<double>(), i % 2 == 0 ? -1 : 1, 5e-4);
+  }
+}
+
+TEST(ToSeriesJsonText, IsOneLineOfTheSame) {
+  const RunReport report = ReportOfThreeSamples();
+  const std::string text = ToSeriesJsonText(ThreeSamples(), report);
+  EXPECT_EQ(text.find('\n'), text.size() - 1);
+  EXPECT_EQ(Json::parse(text), SeriesJson(ThreeSamples(), report));
 }
 
 }  // namespace

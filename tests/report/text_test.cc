@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/text.h"
 
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,12 +12,17 @@
 namespace pendulum {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-// Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg; 0.079 / 0.076 = 1.039. The rest is rounding by hand.
-TEST(ToText, GivesTheWholeReport) {
-  EXPECT_EQ(ToText(ExampleReport()), R"([[Data]]
+// Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg. The rest is rounding by hand; closed forms:
+// closed_form_text_test.cc.
+TEST(ToText, GivesTheWholeFit) {
+  RunReport report = ExampleReport();
+  report.sampling.reset();
+  report.closed_forms.reset();
+  EXPECT_EQ(ToText(report), R"([[Data]]
     file        swing.csv
     samples     1801 used of 2000
     window      1.5 s to 19.5 s, 100 Hz on average
@@ -26,20 +34,19 @@ TEST(ToText, GivesTheWholeReport) {
     start  held at an angle, then released
     status  converged: the last step changed no parameter by more than 0.001 standard errors
 [[Parameters]]
-    name           symbol     value ± std error  unit       95 % interval       ± systematic  closed form
-    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]  ± 0.0010      0.07880
+    name           symbol     value ± std error  unit       95 % interval       ± systematic
+    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]  ± 0.0010
     viscous        b         0.0030 ± 0.0005     N m s/rad  [0.0020, 0.0040]
-    coulomb        τ_c            0              N m        [0, 0.000125]                                  at its bound
+    coulomb        τ_c            0              N m        [0, 0.000125]                     at its bound
     release_angle  θ_r      0.42300 ± 0.00020    rad        [0.42260, 0.42340]
                              24.236 ± 0.011      deg        [24.213, 24.259]
-    zero_angle     z           0.01              rad                                                       fixed
+    zero_angle     z           0.01              rad                                          fixed
                            0.572958              deg
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
     viscous is weakly identifiable (traded for coulomb): let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
-    The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger.
 [[Derived quantities]]
     natural_frequency  4.778 ± 0.008  rad/s  [4.763, 4.793]
     damping_ratio      0.004          1
@@ -63,6 +70,17 @@ TEST(ToText, GivesTheWholeReport) {
   - there is a gap of 0.5 s after 7 s
   - the residuals are not white; friction may be of another kind
 )");
+}
+
+TEST(ToText, HasTheClosedFormsAfterTheFit) {
+  const std::string text = ToText(ExampleReport());
+  std::vector<std::string> sections;
+  for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
+    sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
+  }
+  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Fit", "Parameters", "Derived quantities", "Correlations",
+                                    "Noise and statistics", "Equation of motion", "Closed forms",
+                                    "Closed forms against the fit", "Turning points", "Warnings"));
 }
 
 TEST(ToText, TellsWithoutARigWhatToMeasure) {
@@ -140,17 +158,34 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
   viscous.systematic_std_error = 4e-8;
   EXPECT_THAT(
       ToText(report),
-      HasSubstr(
-          "    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]    ± 0.0010      0.07880\n"
-          "    viscous        b          (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]  ± 0.04e-06\n"));
+      HasSubstr("    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]    ± 0.0010\n"
+                "    viscous        b          (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]  ± 0.04e-06\n"));
 }
 
-TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigs) {
+// 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
+TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
   RunReport report = ExampleReport();
+  EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
+  report.checks.clear();
+  EXPECT_THAT(ToText(report),
+              HasSubstr("The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger.\n"));
   report.rig->inertia = RigValue{0.088, 0};
   EXPECT_THAT(ToText(report), HasSubstr("The rig file gives I_O = 0.088 kg m^2; the fitted I_O is 10 % smaller.\n"));
   report.rig->inertia.reset();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
+}
+
+TEST(ToText, GoesWithoutAFit) {
+  RunReport report = ExampleReport();
+  report.fits.clear();
+  report.checks.clear();
+  const std::string text = ToText(report);
+  for (const char* section : {"[[Data]]", "[[Sampling]]", "[[Closed forms]]", "[[Turning points]]", "[[Warnings]]"}) {
+    EXPECT_THAT(text, HasSubstr(section));
+  }
+  for (const char* section : {"[[Fit]]", "[[Parameters]]", "against the fit"}) {
+    EXPECT_THAT(text, Not(HasSubstr(section)));
+  }
 }
 
 TEST(ToText, HasNoWarningsSectionWithoutWarnings) {

@@ -197,8 +197,9 @@ class GoodRun(CliTest):
 
     def test_table_shows_what_people_look_for(self):
         table, _ = self.fit("--rig", "rig.json")
-        for part in ("[[Parameters]]", "inertia", "kg m^2", " ± ", "95 % interval", "closed form", "th'' + ",
-                     " sin th = 0", "[[Correlations]]", "The rig file gives I_O"):
+        for part in ("[[Parameters]]", "inertia", "kg m^2", " ± ", "95 % interval", "th'' + ", " sin th = 0",
+                     "[[Correlations]]", "[[Sampling]]", "[[Closed forms]]", "[[Closed forms against the fit]]",
+                     "[[Turning points]]"):
             self.assertIn(part, table)
 
     def test_without_a_rig_torques_are_in_units_of_gravitys(self):
@@ -232,11 +233,38 @@ class GoodRun(CliTest):
         self.fit("--residuals", "res.csv")
         with open(self.folder / "res.csv", encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(list(rows[0]), ["time_s", "measured_rad", "fitted_rad", "residual_rad"])
+        self.assertEqual(list(rows[0]), ["time_s", "measured_rad", "fitted_rad", "residual_rad",
+                                         "linear_closed_form_rad", "nonlinear_closed_form_rad"])
+        self.assertTrue(all(all(row.values()) for row in rows))
         self.assertEqual(len(rows), GOOD_DATA.count("\n") - 1)
         for row in rows:
             difference = float(row["measured_rad"]) - float(row["fitted_rad"])
             self.assertAlmostEqual(float(row["residual_rad"]), difference, delta=1e-15)
+
+    def test_the_check_stands_beside_the_fit(self):
+        _, result = self.fit("--rig", "rig.json")
+        rows = result["fits"][0]["closed_form"]
+        self.assertTrue(rows)
+        parameters = result["fits"][0]["parameters"]
+        for row in rows:
+            if row["quantity"].startswith("inertia"):
+                self.assertEqual((row["fit"], row["unit"]), (parameters["inertia"]["estimate"], "kg m^2"))
+        inertia = result["closed_forms"]["decrement"]["parameters"]["inertia"]
+        self.assertLess(abs(inertia["estimate"] - swing.TRUTH["inertia"]), 4 * inertia["std_error"])
+
+    def test_series_holds_samples_turning_points_and_models(self):
+        _, result = self.fit("--series", "series.json")
+        series = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
+        samples = result["data"]["used_samples"]
+        self.assertEqual((len(series["time_s"]), len(series["measured"]), series["unit"]), (samples, samples, "rad"))
+        self.assertEqual({name: {key: len(values) for key, values in model.items()}
+                          for name, model in series["models"].items()},
+                         {"coulomb": dict.fromkeys(("fitted", "residual", "linear_closed_form",
+                                                    "nonlinear_closed_form"), samples)})
+        peaks = series["peaks"]
+        self.assertEqual([peak["number"] for peak in peaks], list(range(1, len(peaks) + 1)))
+        self.assertEqual(len(peaks), result["closed_forms"]["turning_points"])
+        self.assertGreaterEqual(len(series["extrema"]), len(peaks))
 
     def test_dash_makes_standard_output_the_file_alone(self):
         run = self.run_tool("--data", "run.csv", "--json", "-")
@@ -275,11 +303,73 @@ class GoodRun(CliTest):
         self.assertAlmostEqual(strict_json(run.stdout)["fits"][0]["parameters"]["inertia"]["estimate"], 0.079, places=3)
 
 
+class ClosedFormsOnly(CliTest):
+    def forms(self, data, *flags):
+        run = self.run_tool("--data", data, "--closed_form_only", "--json", "-", *flags)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        result = strict_json(run.stdout)
+        self.assertEqual(result["fits"], [])
+        return result["closed_forms"], run.stderr
+
+    def assert_near_truth(self, forms, **truth):
+        for name, value in truth.items():
+            estimate = forms["decrement"]["parameters"][name]
+            self.assertLess(abs(estimate["estimate"] - value), 4 * estimate["std_error"], name)
+
+    def test_tells_people_the_turning_points_and_nothing_of_a_fit(self):
+        run = self.run_tool("--data", "run.csv", "--closed_form_only")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        self.assertRegex(run.stdout, r"(?s)\[\[Data\]\].*\[\[Sampling\]\].*\[\[Closed forms\]\].*\[\[Turning points\]\]")
+        for part in ("[[Fit]]", "[[Parameters]]", "against the fit"):
+            self.assertNotIn(part, run.stdout)
+
+    def test_finds_the_truth_of_an_angle(self):
+        forms, _ = self.forms("run.csv", "--rig", "rig.json")
+        self.assertEqual(forms["model"], "coulomb")
+        self.assert_near_truth(forms, **{name: swing.TRUTH[name] for name in ("inertia", "viscous", "coulomb", "zero_angle")})
+
+    def test_counts_need_no_calibration(self):
+        # 0.05 rad is small: sin th = th to 0.04 %, a period of 1 + 0.05^2 / 16. Viscous friction alone, as the linear law's.
+        truth = {**swing.TRUTH, "release_angle": 0.05, "coulomb": 0.0}
+        scale = 1e4  # counts in a radian
+        rows = [f"{time:.3f},{round(scale * angle + 5000)}" for time, angle, _ in swing.swing(12.0, truth=truth)]
+        self.write("counts.csv", "\n".join(["time_s,adc_counts", *rows]) + "\n")
+        forms, warnings = self.forms("counts.csv")
+        self.assertEqual((forms["model"], forms["decrement"]["parameters"]["zero_angle"]["unit"]), ("linear", "counts"))
+        self.assertIn("noise_counts", forms)
+        self.assertRegex(warnings, "warning: the readings are in counts.*model linear")
+        inertia = swing.TRUTH["inertia"] / swing.GRAVITY_TORQUE
+        self.assertAlmostEqual(forms["linear"]["inertia"]["estimate"] / inertia, 1, delta=1e-3)
+        viscous = swing.TRUTH["viscous"] / swing.GRAVITY_TORQUE
+        self.assertAlmostEqual(forms["linear"]["viscous"]["estimate"] / viscous, 1, delta=0.05)
+
+    def test_counts_are_refused_without_the_switch(self):
+        self.write("counts.csv", GOOD_DATA.replace("angle_deg", "adc_counts"))
+        self.assert_refused(4, "calibrat", "--data", "counts.csv", "--json", "fit.json")
+
+    def test_series_has_no_models(self):
+        self.forms("run.csv", "--series", "series.json")
+        series = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
+        self.assertEqual(series["models"], {})
+        self.assertTrue(series["peaks"])
+
+    def test_refuses_what_only_a_fit_needs(self):
+        self.assert_flags_refused("--closed_form_only makes no fit, which --residuals is for", "--data", "run.csv",
+                                  "--closed_form_only", "--residuals", "r.csv")
+
+    def test_needs_turning_points(self):
+        rows = "".join(f"{k / 100},{k * k / 1e4}\n" for k in range(1000))
+        self.write("bad.csv", "time_s,angle_deg\n" + rows)
+        self.assert_refused(5, "turn", "--data", "bad.csv", "--closed_form_only", "--from", "0", "--to", "9", "--json",
+                            "forms.json")
+
+
 class Answers(CliTest):
     def test_help_shows_our_flags_only(self):
         run = self.run_tool("--help")
         self.assertEqual(run.returncode, 0)
-        for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "calibration",
+        for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "series",
+                     "closed_form_only", "calibration",
                      "time_column", "value_column", "unit", "sample_rate_hz", "help", "version"):
             self.assertRegex(run.stdout, rf"(?m)^  --{flag} ")
         self.assertNotIn("logtostderr", run.stdout)

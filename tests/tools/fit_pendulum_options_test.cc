@@ -2,6 +2,9 @@
 #include "tools/fit_pendulum_options.h"
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,6 +59,7 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
   flags.fix = "drag=0.001,initial_angle=-0.25";
   flags.json = "-";
   flags.residuals = "r.csv";
+  flags.series = "s.json";
   const auto options = MakeFitPendulumOptions(flags);
   ASSERT_TRUE(options);
   EXPECT_EQ(options->fit.model, "drag");
@@ -64,9 +68,48 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
   EXPECT_EQ(options->swing.to, 20);
   EXPECT_THAT(options->fit.fixed, ElementsAre(Pair("drag", 0.001), Pair("initial_angle", -0.25)));
   EXPECT_THAT(options->Outputs(),
-              ElementsAre(testing::FieldsAre("--json", "-"), testing::FieldsAre("--residuals", "r.csv")));
+              ElementsAre(testing::FieldsAre("--json", "-"), testing::FieldsAre("--residuals", "r.csv"),
+                          testing::FieldsAre("--series", "s.json")));
+  EXPECT_FALSE(options->closed_form_only);
   EXPECT_THAT(options->Inputs(),
               ElementsAre(testing::FieldsAre("--data", "run.csv"), testing::FieldsAre("--rig", "rig.json")));
+}
+
+TEST(MakeFitPendulumOptions, MakesNoFitWithClosedFormsOnly) {
+  FitPendulumFlags flags = WithData();
+  flags.closed_form_only = true;
+  flags.model = "drag";
+  flags.rig = "rig.json";
+  flags.from = "2";
+  flags.json = "forms.json";
+  flags.series = "-";
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_TRUE(options->closed_form_only);
+  EXPECT_EQ(options->fit.model, "drag");
+  EXPECT_THAT(options->Outputs(),
+              ElementsAre(testing::FieldsAre("--json", "forms.json"), testing::FieldsAre("--series", "-")));
+  EXPECT_THAT(options->Outputs(1, 2), ElementsAre(testing::FieldsAre("--json", "forms_002.json"),
+                                                  testing::FieldsAre("--series", NumberedPath("-", 1, 2))));
+}
+
+TEST(MakeFitPendulumOptions, RefusesWithClosedFormsOnlyWhatOnlyAFitNeeds) {
+  const std::vector<std::pair<std::string FitPendulumFlags::*, std::string>> of_a_fit = {
+      {&FitPendulumFlags::residuals, "--residuals r.csv"}, {&FitPendulumFlags::start, "--start moving"},
+      {&FitPendulumFlags::fix, "--fix viscous=0"},         {&FitPendulumFlags::init, "--init viscous=0.1"},
+      {&FitPendulumFlags::bounds, "--bounds viscous=0:1"}, {&FitPendulumFlags::prior, "--prior viscous=1:1"},
+      {&FitPendulumFlags::noise, "--noise gaussian"},      {&FitPendulumFlags::loss, "--loss huber"},
+      {&FitPendulumFlags::interval, "--interval profile"}, {&FitPendulumFlags::seed, "--seed 2"},
+      {&FitPendulumFlags::threads, "--threads 1"}};
+  for (const auto& [member, text] : of_a_fit) {
+    const std::size_t blank = text.find(' ');
+    FitPendulumFlags flags = WithData();
+    flags.*member = text.substr(blank + 1);
+    EXPECT_EQ(Refusal(flags), "") << text;
+    flags.closed_form_only = true;
+    EXPECT_EQ(Refusal(flags),
+              "--closed_form_only makes no fit, which " + text.substr(0, blank) + " is for; leave one of them out");
+  }
 }
 
 TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {

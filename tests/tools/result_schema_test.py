@@ -43,7 +43,10 @@ class Schema(unittest.TestCase):
         for path in ([], ["tool"], ["data"], ["fits", 0], ["fits", 0, "parameters", "viscous"], ["fits", 0, "noise"],
                      ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"],
                      ["fits", 0, "systematic_covariance"], ["fits", 0, "identifiability", 0],
-                     ["fits", 0, "derived", "natural_frequency"], ["warnings", 0]):
+                     ["fits", 0, "derived", "natural_frequency"], ["warnings", 0], ["data", "sampling"],
+                     ["fits", 0, "closed_form", 0], ["closed_forms"], ["closed_forms", "linear"],
+                     ["closed_forms", "linear", "inertia"], ["closed_forms", "decrement"],
+                     ["closed_forms", "envelopes", 0]):
             part = EXAMPLE
             for step in path:
                 part = part[step]
@@ -62,6 +65,23 @@ class Schema(unittest.TestCase):
     def test_wants_a_reason_for_a_missing_standard_error(self):
         self.assert_refused(lambda result: result["fits"][0]["parameters"]["coulomb"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["derived"]["damping_ratio"].pop("reason"))
+        self.assert_refused(lambda result: result["fits"][0]["closed_form"][2].pop("reason"))
+
+    def test_wants_a_reason_for_missing_closed_forms(self):
+        for key in ("linear", "decrement"):
+            self.assert_refused(lambda result, key=key: result["closed_forms"].update({key: None}))
+            result = copy.deepcopy(EXAMPLE)
+            result["closed_forms"].update({key: None, "reason": "too few turning points"})
+            VALIDATOR.validate(result)
+
+    def test_holds_without_fits_and_without_closed_forms(self):
+        result = copy.deepcopy(EXAMPLE)
+        result["fits"] = []
+        result["data"]["start"] = None
+        VALIDATOR.validate(result)
+        result["closed_forms"] = None
+        result["reason"] = "only 2 turning points can be located"
+        VALIDATOR.validate(result)
 
     def test_wants_one_unit_for_residuals(self):
         self.assert_refused(lambda result: result["data"].update(resolution_rad_s=None))
@@ -106,6 +126,10 @@ class Results(unittest.TestCase):
 
     def test_resolution_in_the_file(self):
         self.assert_valid("# resolution: 0.00001\n" + swing.angle_csv(), "--from", "2.5")
+
+    def test_closed_forms_only(self):
+        self.assert_valid(swing.angle_csv(), "--closed_form_only", rig=swing.RIG)
+        self.assert_valid(swing.rate_csv(), "--closed_form_only", "--model", "drag")
 
     def test_fixed_parameters_and_one_at_its_bound(self):
         frictionless = {**swing.TRUTH, "viscous": 0.0, "coulomb": 0.0}

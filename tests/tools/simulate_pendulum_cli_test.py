@@ -111,6 +111,24 @@ class SimulatePendulumTest(unittest.TestCase):
                            "--set", f"drag=1,{MOTION}", "--out", "run.csv")
         self.check_refused(2, "is the output of --truth too", "--set", MOTION, "--out", "run.csv", "--truth", "run.csv")
 
+    def test_plan_predicts_on_stdout_and_makes_no_file(self):
+        self.write_rig('{"gravity_torque": 2}')
+        with_rig = self.check_made(*NOISY, "--plan", "--rig", "rig.json")
+        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.0000\d+ kg m\^2 +0\.\d+ %\n")
+        self.assertRegex(with_rig, r"\n    duration +80 s +\d")
+        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan")
+        self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.0000\d+ s\^2 +0\.\d+ %\n")
+        rows = [[line for line in text.splitlines() if line.startswith("    resolution")] for text in (with_rig, without)]
+        self.assertEqual(len(rows[0]), 3)
+        self.assertEqual([row.split()[:7] for row in rows[0]], [row.split()[:7] for row in rows[1]])  # % of inertia
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["rig.json"])
+
+    def test_plan_refuses_outputs_and_what_it_cannot_predict(self):
+        self.check_refused(2, "--out contradicts --plan", *NOISY, "--plan", "--out", "run.csv")
+        self.check_refused(2, "--count contradicts --plan", *NOISY, "--plan", "--count", "2")
+        self.check_refused(2, "--plan needs --noise or --resolution", "--set", MOTION, "--plan")
+        self.check_refused(5, "never moves", "--plan", "--noise", "1", "--set", f"inertia=0.04,coulomb=0.5,{START}")
+
     def test_missing_rig_exits_3_and_a_bad_one_4(self):
         self.check_refused(3, "rig.json", "--rig", "rig.json", "--set", MOTION, "--out", "run.csv")
         self.write_rig('{"gravity_torque": -1}')

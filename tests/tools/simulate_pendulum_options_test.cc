@@ -152,6 +152,29 @@ TEST(MakeSimulateOptions, ListsTheNamesThatTheModelHasWhenOneIsUnknown) {
             "initial_angle, initial_rate, zero_angle");
 }
 
+SimulateFlags PlanFlags() {
+  SimulateFlags flags = Flags("inertia=0.04," + std::string(kRelease));
+  flags.plan = true;
+  flags.out.clear();
+  flags.noise = 0.1;
+  return flags;
+}
+
+TEST(MakeSimulateOptions, PlansWithoutAnOutput) {
+  const Result<SimulateOptions> options = MakeSimulateOptions(PlanFlags(), {});
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_TRUE(options->plan);
+  EXPECT_THAT(options->synthetic.noise, DoubleEq(0.1 * kRadPerDeg));
+  EXPECT_FALSE(MakeSimulateOptions(Flags("inertia=0.04," + std::string(kRelease)), {})->plan);
+}
+
+TEST(MakeSimulateOptions, PlansWithAResolutionAlone) {
+  SimulateFlags flags = PlanFlags();
+  flags.noise = 0;
+  flags.resolution = 0.2;
+  EXPECT_TRUE(MakeSimulateOptions(flags, {}));
+}
+
 struct Refusal {
   std::string message;
   void (*spoil)(SimulateFlags&);
@@ -195,6 +218,24 @@ TEST(MakeSimulateOptions, RefusesWrongFlagsAndNamesThem) {
   };
   for (const Refusal& refusal : refusals) {
     SimulateFlags flags = Flags("inertia=0.04," + std::string(kRelease));
+    refusal.spoil(flags);
+    const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
+    ASSERT_FALSE(options) << refusal.message;
+    EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument) << refusal.message;
+    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+  }
+}
+
+TEST(MakeSimulateOptions, RefusesWhatAPlanHasNoUseFor) {
+  const std::vector<Refusal> refusals = {
+      {"--out contradicts --plan, which makes no recording", [](SimulateFlags& f) { f.out = "-"; }},
+      {"--truth contradicts --plan", [](SimulateFlags& f) { f.truth = "truth.json"; }},
+      {"--count contradicts --plan", [](SimulateFlags& f) { f.count = 2; }},
+      {"--plan needs --noise or --resolution", [](SimulateFlags& f) { f.noise = 0; }},
+      {"'stray' belongs to no flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
+  };
+  for (const Refusal& refusal : refusals) {
+    SimulateFlags flags = PlanFlags();
     refusal.spoil(flags);
     const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
     ASSERT_FALSE(options) << refusal.message;

@@ -12,6 +12,9 @@ std::string NumberText(double value, int significant_digits);
 /// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.
 std::string NumberText(double value);
 
+/// A probability for a sentence: "0.03", "< 1e-99".
+std::string ProbabilityText(double p);
+
 /// A lower-case hexadecimal digit; `digit` below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
 

@@ -23,7 +23,8 @@ struct FreeSwing {
   std::string begins, ends;      ///< Why it begins and ends there, to follow "begins: " and "ends: ".
   bool from_given = false;       ///< The user chose `from`; likewise:
   bool to_given = false;
-  bool beats = false;  ///< The amplitude rises again and again, though it decays: no single pendulum does that.
+  bool undersampled = false;  ///< Sampled too slowly to show turning points: not looked into.
+  bool beats = false;         ///< The amplitude rises again and again, though it decays: no single pendulum does that.
 };
 
 /// The free swings of a recording in time order: runs of two half swings and more that JudgeHalfSwings calls free. A

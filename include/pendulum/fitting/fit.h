@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/status.h"
+#include "pendulum/fitting/autocorrelation.h"
 #include "pendulum/fitting/derived.h"
 #include "pendulum/fitting/identifiability.h"
 #include "pendulum/fitting/noise.h"
@@ -40,9 +41,10 @@ struct FitOptions {
   StartChoice start = StartChoice::kAuto;
   std::optional<Rig> rig;
   ParameterValues fixed;
-  ParameterValues initial;  ///< Where parameters begin instead of where the data say.
-  ParameterRanges bounds;   ///< Bounds within a parameter's own.
-  ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
+  ParameterValues initial;                  ///< Where parameters begin instead of where the data say.
+  std::optional<StartValues> start_values;  ///< Complete ones, instead of those of EstimateStartValues.
+  ParameterRanges bounds;                   ///< Bounds within a parameter's own.
+  ParameterPriors priors;                   ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
   NoiseChoice noise = NoiseChoice::kAuto;
   Loss loss = Loss::kNone;
   IntervalMethod interval = IntervalMethod::kAuto;
@@ -90,7 +92,7 @@ struct NoiseEstimate {
   Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
   std::string why;                        ///< Why this family, in words.
   double lag1_correlation = 0;            ///< Of the quantile residuals.
-  std::string correlation = "white";      ///< What describes the quantile residuals: white, AR(3), ARMA(1,1) ...
+  Autocorrelation memory;                 ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
 };
 
 /// What the solver did, over all its runs.
@@ -126,6 +128,9 @@ struct FitReport {
   /// The parameter of that name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 };
+
+/// Takes out of a report the errors, intervals and covariance, which do not hold; the free parameters say `why`.
+void WithdrawErrors(std::string_view why, FitReport& fit);
 
 /// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
 /// initial_rate, zero_angle or rate_bias, and its drift if it `drifts`.

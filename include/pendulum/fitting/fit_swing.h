@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "pendulum/closed_form/free_swing.h"
@@ -26,8 +27,10 @@ struct ChosenSwings {
 };
 
 /// Finds the free swings and chooses. An end the user gave is the end of the window; with both nothing is looked for.
+/// What is sampled too slowly for a pendulum such as the rig's (IsUndersampled) is one swing from end to end.
 /// kInvalidArgument: no swing of that number, or an empty window. kFailedPrecondition: as FindFreeSwings.
-Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice);
+Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
+                                  const std::optional<Rig>& rig = std::nullopt);
 
 /// A fit to one free swing.
 struct SwingFit {
@@ -38,8 +41,9 @@ struct SwingFit {
 
 /// Fits a free swing. Where more than noise is left, turning points at its ends are left out as long as the rest then
 /// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
-/// stay. Warns `left_out` of larger motion outside. What is no pendulum's swing ends kNotConverged, `not_a_pendulum`.
-/// Errors as FitRecording. Cost: that of FitRecording, and where something is wrong some tens of small fits more.
+/// stay. A swing that is undersampled goes to FitUndersampled. Warns `left_out` of larger motion outside. What is no
+/// pendulum's swing ends kNotConverged, `not_a_pendulum`. Errors as FitRecording. Cost: that of FitRecording, and where
+/// something is wrong some tens of small fits more.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,10 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/base/status.h"
+#include "pendulum/closed_form/closed_forms.h"
+#include "pendulum/closed_form/sampling.h"
 #include "pendulum/fitting/fit.h"
 #include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/rig.h"
@@ -47,8 +51,16 @@ struct RunReport {
   DataSummary data;
   std::optional<Rig> rig;
   nlohmann::ordered_json calibration;  ///< What turned counts or volts into angles, as it was given; null for none.
-  std::vector<FitReport> fits;         ///< At least one, in the order asked for.
-  std::vector<Warning> warnings;       ///< Of the recording; a fit's own stand in its FitReport.
+  std::vector<FitReport> fits;         ///< In the order asked for; empty: closed forms only.
+  std::optional<Sampling> sampling;    ///< Of the used samples.
+  std::optional<ClosedForms> closed_forms;  ///< Of the used samples, with the friction of the first model.
+  std::string closed_forms_model;           ///< The name of that model; empty when no closed forms were asked for.
+  std::string no_closed_forms;              ///< Why there are none.
+  std::vector<ClosedFormCheck> checks;      ///< One for each fit, in their order, or none at all.
+  std::vector<Warning> warnings;            ///< Of the recording; a fit's own stand in its FitReport.
+
+  /// The check of the fit of that index, or nullptr.
+  const ClosedFormCheck* CheckOf(std::size_t fit) const { return fit < checks.size() ? &checks[fit] : nullptr; }
 };
 
 /// The warnings of the recording, then those of the fits, each said once.

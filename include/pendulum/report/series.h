@@ -3,15 +3,31 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
+#include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/fitting/fit.h"
 #include "pendulum/recording/recording.h"
+#include "pendulum/report/run_report.h"
 
 namespace pendulum {
 
 /// The samples beside the fit as CSV, one line a sample in SI with every digit a double has:
-/// time_s,measured_rad,fitted_rad,residual_rad (or ..._rad_s for a rate), residual = measured - fitted.
-/// used: the N samples that were fitted. Where the fit has not N numbers, or one that is not finite, its fields are
-/// empty.
-std::string ToResidualCsv(const Recording& used, const FitReport& fit);
+/// time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad (or ..._rad_s for a
+/// rate), residual = measured - fitted. used: the N samples that were fitted. Where fit or overlay have not N numbers,
+/// or one that is not finite, its fields are empty.
+std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
+
+/// The samples and what was made of them, beside the result: {"time_s", "measured", "unit" (of all readings),
+/// "extrema":
+/// [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error", "angle_rad" (or
+/// rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta", "zeta_std_error",
+/// "periods"}], "profiles": null, "models": {name: {"fitted", "residual", "linear_closed_form",
+/// "nonlinear_closed_form"}}}. used: the N samples of the report. What there is not is null: an array, a number in one,
+/// the damping ratio (zeta) of a turning point that none on its side follows.
+nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report);
+
+/// SeriesJson as one line of UTF-8 text.
+std::string ToSeriesJsonText(const Recording& used, const RunReport& report);
 
 }  // namespace pendulum

@@ -39,6 +39,10 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
 
+/// The parameters with which the recording is made, in the order a fit has them: of the model (units of G), of the
+/// start, and the zero.
+std::vector<double> TrueParameters(const SyntheticOptions& options);
+
 /// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the
 /// levels of [low, high], as an ADC seen through a linear calibration. Without a resolution x clipped to the range.
 double SensorReading(double x, double resolution, const std::optional<SensorRange>& range);

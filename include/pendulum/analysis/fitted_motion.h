@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/fit.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// The motion that a fit found, to be followed at any instants, with another gravity or other parameters.
+class FittedMotion {
+ public:
+  /// `used` is what was fitted.
+  FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig);
+
+  /// The recording's instants, true s from its first sample.
+  const Eigen::VectorXd& instants() const { return instants_; }
+
+  double small_angle_period() const;  ///< true s
+
+  /// The same start, zero and parameters with that gravity.
+  FittedMotion WithGravity(Gravity gravity) const;
+
+  bool drifts() const { return drifts_; }
+
+  /// The same with a zero that stays where it is at first.
+  FittedMotion WithoutDrift() const;
+
+  /// The same start and zero with viscous friction alone: inertia [s^2] and viscous [s], as its report, in units of G.
+  FittedMotion WithViscous(double inertia, double viscous) const;
+
+  /// The readings at instants (N, s from the first sample, increasing), rad or rad/s; and unless null their N x P
+  /// derivatives, in the units of the fit's report. Nothing when the motion cannot be traced.
+  std::optional<Eigen::VectorXd> Readings(const Eigen::VectorXd& instants, Eigen::MatrixXd* jacobian = nullptr) const;
+
+ private:
+  MotionModel model_;
+  StartKind start_;
+  Quantity quantity_;
+  bool drifts_ = false;
+  std::vector<double> parameters_;  // P, units of G, times from the first sample
+  std::vector<double> reported_;    // P: report's unit per unit of parameters_
+  Eigen::VectorXd instants_;
+};
+
+}  // namespace pendulum

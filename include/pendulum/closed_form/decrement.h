@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/closed_form/estimate.h"
+#include "pendulum/closed_form/peaks.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// Zero, period and friction from the turning points alone. For K friction parameters, units of G; an uncalibrated
+/// angle keeps its unit.
+struct Decrement {
+  MotionModel model;
+  PeakTable table;
+  Estimate zero;                   ///< rad or rad/s
+  Estimate inertia;                ///< s^2
+  std::vector<Estimate> friction;  ///< K; may come out negative
+  Eigen::MatrixXd covariance;      ///< 2 + K square, of (zero, inertia, friction); rows of parameters left out are 0
+  Eigen::MatrixXd gradient;        ///< 2 + K x 2 M: how they follow the M turning points, as for CovarianceOf.
+  double chi_square = 0;           ///< Of the times and values of all turning points.
+  int freedom = 0;                 ///< Degrees of freedom of chi_square.
+
+  /// Probability of a chi_square as large where the law is right and the errors of the turning points are.
+  double Probability() const;
+};
+
+/// Fits the turning points of a model, exact at any amplitude, to those of a recording: weighted least squares of their
+/// times and values over the amplitude and the time of the first, the zero, the natural frequency and the friction law
+/// (MODEL.md eq. (32), (34)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W. Liang, J.
+/// Sound Vib. 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), each without their small
+/// angles, and without them it is the period corrected by the elliptic integral. Errors are those of the turning
+/// points, times sqrt(chi_square / freedom) where that is above 1. Turning points are located again once the kinks are
+/// known. kFailedPrecondition: as LocatePeaks, or too few turning points for so many unknowns, or no such motion. Cost:
+/// some milliseconds for 30 turning points.
+Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model);
+
+/// The same from turning points as they were located; friction parameters that are not `included` (K) are 0.
+Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included);
+
+/// One term of friction alone, and whether the turning points follow it.
+struct EnvelopeLaw {
+  std::string term;   ///< A friction parameter of the richest law.
+  std::string shape;  ///< Of the amplitudes over time: "exponential", ...
+  double chi_square = 0;
+  int freedom = 0;
+  double probability = 0;  ///< As Decrement::Probability, where the richest law's errors are the true ones.
+};
+
+/// What the turning points say of friction laws: those of the richest law's terms alone, and that with all of them.
+struct EnvelopeComparison {
+  std::vector<EnvelopeLaw> single;
+  double richest_chi_square = 0;
+  int richest_freedom = 0;
+};
+
+/// Which law the envelope follows: dry friction alone makes it a straight line, viscous an exponential, drag a
+/// hyperbola. Each is fitted alone; errors are enlarged until the law with all terms fits. `gravity` as the model's.
+/// Errors as FitDecrement.
+Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity);
+
+}  // namespace pendulum

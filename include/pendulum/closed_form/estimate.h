@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace pendulum {
+
+/// A number and its standard error, both in the unit said where it stands.
+struct Estimate {
+  double value = 0;
+  double std_error = 0;
+};
+
+}  // namespace pendulum

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/closed_form/sampling.h"
+#include "pendulum/report/run_report.h"
+
+namespace pendulum {
+
+/// "sampling" of the data; null without it.
+nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling);
+
+/// "closed_form" of a fit: a row for each quantity, none where `check` is null.
+nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
+
+/// "closed_forms" of the result, without the turning points, which are in the series; null when there are none. SI with
+/// a rig, units of G without.
+nlohmann::ordered_json ClosedFormsJson(const RunReport& report);
+
+}  // namespace pendulum

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/closed_form_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/analysis/difference_causes.h"
+#include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/autocorrelation.h"
+#include "pendulum/model/friction/viscous.h"
+#include "pendulum/model/geometric_inertia.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What a formula says of one quantity.
+struct FormulaRow {
+  std::string quantity, method;
+  std::string parameter;  ///< The fit's counterpart, a parameter or "damping_ratio".
+  std::string amplitude;  ///< What finite amplitude does to it, where it does.
+};
+
+/// Formulas that are applied together, K of them; in units of G.
+struct FormulaGroup {
+  std::vector<FormulaRow> rows;
+  std::string assumption;  // beside the model's
+  VectorXd value, error;   // K
+  MatrixXd gradient;       // K x 2 M
+  FormulaValues apply;     // to another recording
+};
+
+constexpr std::string_view kDampingRatio = "damping_ratio";
+
+std::optional<std::size_t> PeakAt(const PeakTable& table, double time) {
+  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+    if (std::abs(table.peaks[i].time - time) < 0.5 * table.half_period) return i;
+  }
+  return std::nullopt;
+}
+
+VectorXd LinearValues(const LogDecrement& linear) {
+  return Eigen::Vector4d(linear.damping_ratio.value, linear.inertia.value, linear.viscous.value,
+                         linear.corrected_inertia.value);
+}
+
+/// The textbook's formulas, over the same turning points wherever they are applied.
+FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
+  const LogDecrement& linear = *forms.linear;
+  FormulaGroup group;
+  const std::string small = "finite amplitude, where the formula takes small angles";
+  group.rows = {{"damping_ratio_log_decrement", "log decrement", std::string(kDampingRatio), small},
+                {"inertia_small_angle", "damped period and log decrement, small angles", "inertia", small},
+                {"viscous_log_decrement", "log decrement", "viscous", small},
+                {"inertia_elliptic_period", "the same period corrected by the elliptic integral", "inertia",
+                 "an amplitude that falls within each half swing, where the elliptic integral takes its mean"}};
+  group.assumption = "the formula's friction, which is viscous alone";
+  if (forms.gravity == Gravity::kLinear) group.rows.pop_back();  // nothing to correct
+  group.value = LinearValues(linear);
+  group.error = Eigen::Vector4d(linear.damping_ratio.std_error, linear.inertia.std_error, linear.viscous.std_error,
+                                linear.corrected_inertia.std_error);
+  group.gradient = linear.gradient;
+  const double first = used.clock_scale * (forms.table.peaks[linear.first].time - used.time[0]);
+  const int periods = linear.periods;
+  const Kink kink = forms.table.kink;
+  group.apply = [=](const Recording& recording, Gravity gravity) -> std::optional<VectorXd> {
+    const Result<PeakTable> table = LocatePeaks(recording, kink);
+    const std::optional<std::size_t> from = table ? PeakAt(*table, first) : std::nullopt;
+    if (!from) return std::nullopt;
+    std::optional<LogDecrement> there = ApplyLogDecrement(*table, gravity, *from, periods);
+    if (!there) there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // the last turn may be at the end
+    if (!there) return std::nullopt;
+    return LinearValues(*there);
+  };
+  return group;
+}
+
+VectorXd DecrementValues(const Decrement& decrement) {
+  VectorXd values(2 + static_cast<Index>(decrement.friction.size()));
+  values[0] = decrement.zero.value;
+  values[1] = decrement.inertia.value;
+  for (Index k = 2; k < values.size(); ++k) values[k] = decrement.friction[static_cast<std::size_t>(k - 2)].value;
+  return values;
+}
+
+FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity) {
+  const Decrement& decrement = *forms.decrement;
+  FormulaGroup group;
+  const std::string method = "least squares over all turning points";
+  const auto add = [&](std::string_view name) {
+    group.rows.push_back({std::string(name) + "_turning_points", method, std::string(name), "finite amplitude"});
+  };
+  group.assumption = "the turning points, found on polynomials";
+  add(quantity == Quantity::kAngle ? kZeroAngle.name : kRateBias.name);
+  for (const ParameterInfo& info : PhysicalParameters(decrement.model)) add(info.name);
+  group.value = DecrementValues(decrement);
+  group.error = decrement.covariance.diagonal().cwiseSqrt();
+  group.gradient = decrement.gradient;
+  group.apply = [model = decrement.model](const Recording& recording, Gravity gravity) -> std::optional<VectorXd> {
+    MotionModel with_gravity = model;
+    with_gravity.gravity = gravity;
+    const Result<Decrement> there = FitDecrement(recording, with_gravity);
+    if (!there) return std::nullopt;
+    return DecrementValues(*there);
+  };
+  return group;
+}
+
+/// The fit as the check needs it: estimates, and how they follow the readings.
+class FitSide {
+ public:
+  FitSide(const Recording& used, const FitReport& fit, const FittedMotion& motion)
+      : used_(used), fit_(fit), motion_(motion) {}
+
+  struct Value {
+    double value = 0;
+    std::optional<double> std_error;  ///< 0 for what was held.
+    double scale = 1;                 ///< The report's unit per unit of the closed form.
+    std::string unit, reason;
+    VectorXd weights;  ///< P: derivatives with respect to the parameters.
+  };
+
+  std::optional<Value> Find(const std::string& name, double gravity_torque) const {
+    if (name == kDampingRatio) return DampingRatio();
+    for (std::size_t i = 0; i < fit_.parameters.size(); ++i) {
+      const ParameterEstimate& parameter = fit_.parameters[i];
+      if (parameter.info.name != name) continue;
+      Value value{parameter.estimate, parameter.std_error, 1, parameter.unit, parameter.reason, {}};
+      if (parameter.fixed || parameter.at_bound) value.std_error = 0;
+      if (parameter.info.scales_with_gravity()) value.scale = gravity_torque;
+      value.weights = VectorXd::Unit(static_cast<Index>(fit_.parameters.size()), static_cast<Index>(i));
+      return value;
+    }
+    return std::nullopt;
+  }
+
+  /// Standard deviation of a closed form less the fit, where noise of that size and memory moves both: `influence` (N)
+  /// and `weights` (P) are in the report's units.
+  std::optional<double> DifferenceDeviation(const VectorXd& influence, const VectorXd& weights, double noise,
+                                            const Autocorrelation& memory) {
+    if (!Linearize()) return std::nullopt;
+    const VectorXd difference = influence - solver_.transpose() * weights;
+    const double sum = CorrelatedSum(memory, motion_.instants(), difference)(0, 0);
+    return noise * std::sqrt(std::max(sum, 0.0));
+  }
+
+ private:
+  /// ζ = b / (2 sqrt(I)) in units of G; b and I may be in others, whose ratio counts.
+  std::optional<Value> DampingRatio() const {
+    const auto found = std::ranges::find(fit_.derived, kDampingRatio, &DerivedQuantity::name);
+    const ParameterEstimate* inertia = fit_.Find(kInertia.name);
+    const ParameterEstimate* viscous = fit_.Find(kViscous.name);
+    if (found == fit_.derived.end() || viscous == nullptr) return std::nullopt;
+    Value value{found->estimate, found->std_error, 1, "1", "", {}};
+    if (viscous->at_bound || viscous->fixed) value.std_error = value.std_error.value_or(0);
+    value.weights = VectorXd::Zero(static_cast<Index>(fit_.parameters.size()));
+    value.weights[inertia - fit_.parameters.data()] = -0.5 * found->estimate / inertia->estimate;
+    if (viscous->estimate != 0) {
+      value.weights[viscous - fit_.parameters.data()] = found->estimate / viscous->estimate;
+    }
+    return value;
+  }
+
+  /// (JᵀJ)⁻¹ Jᵀ over the parameters that have an error, columns scaled alike.
+  bool Linearize() {
+    if (solver_.size() > 0) return true;
+    MatrixXd jacobian;
+    if (!motion_.Readings(motion_.instants(), &jacobian)) return false;
+    std::vector<Index> free;
+    for (std::size_t i = 0; i < fit_.parameters.size(); ++i) {
+      if (fit_.parameters[i].std_error) free.push_back(static_cast<Index>(i));
+    }
+    const MatrixXd part = jacobian(Eigen::all, free);
+    const VectorXd norm = part.colwise().norm();
+    const MatrixXd scaled = part * norm.cwiseInverse().asDiagonal();
+    const MatrixXd inverse =
+        norm.cwiseInverse().asDiagonal() * (scaled.transpose() * scaled).ldlt().solve(MatrixXd(scaled.transpose()));
+    solver_ = MatrixXd::Zero(jacobian.cols(), jacobian.rows());
+    for (Index i = 0; i < static_cast<Index>(free.size()); ++i)
+      solver_.row(free[static_cast<std::size_t>(i)]) = inverse.row(i);
+    return solver_.allFinite();
+  }
+
+  const Recording& used_;
+  const FitReport& fit_;
+  const FittedMotion& motion_;
+  MatrixXd solver_;  // P x N
+};
+
+class Checker {
+ public:
+  Checker(const Recording& used, const ClosedForms& forms, const FitReport& fit, const std::optional<Rig>& rig)
+      : used_(used),
+        forms_(forms),
+        fit_(fit),
+        gravity_torque_(rig ? rig->gravity_torque.value : 1.0),
+        motion_(used, fit, rig),
+        side_(used, fit, motion_) {}
+
+  void Add(const FormulaGroup& group, std::vector<ClosedFormRow>& rows) {
+    std::optional<FormulaStages> stages;
+    bool tried = false;
+    for (Index k = 0; k < static_cast<Index>(group.rows.size()); ++k) {
+      const FormulaRow& formula = group.rows[static_cast<std::size_t>(k)];
+      const auto fitted = side_.Find(formula.parameter, gravity_torque_);
+      if (!fitted) continue;
+      ClosedFormRow row{formula.quantity,
+                        formula.method,
+                        fitted->unit,
+                        fitted->scale * group.value[k],
+                        fitted->scale * group.error[k],
+                        fitted->value,
+                        {},
+                        {},
+                        ""};
+      const std::optional<double> deviation = Deviation(row, *fitted, group.gradient.row(k));
+      if (!deviation) row.why = "the fit has no standard error" + (fitted->reason.empty() ? "" : ": " + fitted->reason);
+      if (deviation) Judge(*deviation, row);
+      if (row.agrees == false && !std::exchange(tried, true)) {
+        stages = ApplyInStages(motion_, used_, fit_.model.gravity, group.apply);
+      }
+      if (row.agrees == false && !stages) row.why = "the formula cannot be applied to the fitted motion itself";
+      if (row.agrees == false && stages) {
+        row.why = DescribeCauses(SplitDifference(*stages, k, fitted->scale, row.closed_form, row.fit), *deviation,
+                                 row.unit, NamesOf(group, formula));
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+
+ private:
+  /// Hausman's, while the residuals are white and it is no small difference of large numbers. Residuals of a wrong law
+  /// remember it and are no noise: then it is that of neighbouring samples.
+  std::optional<double> Deviation(const ClosedFormRow& row, const FitSide::Value& fitted, const VectorXd& gradient) {
+    constexpr double kSmallDifference = 0.25;
+    if (!fitted.std_error) return std::nullopt;
+    const double own = *row.std_error * *row.std_error;
+    const double hausman = own - *fitted.std_error * *fitted.std_error;
+    const bool white = fit_.noise.memory.kind == Autocorrelation::Kind::kWhite;
+    if (white && forms_.wrong_law.empty() && hausman > kSmallDifference * own) return std::sqrt(hausman);
+    const VectorXd influence = fitted.scale * InfluenceOf(forms_.table, gradient.transpose(), used_.size());
+    if (!forms_.wrong_law.empty()) return side_.DifferenceDeviation(influence, fitted.weights, forms_.table.noise, {});
+    return side_.DifferenceDeviation(influence, fitted.weights, fit_.statistics.rms_residual, fit_.noise.memory);
+  }
+
+  static void Judge(double deviation, ClosedFormRow& row) {
+    if (!(deviation > 0)) return;
+    row.z = (row.closed_form - row.fit) / deviation;
+    row.agrees = std::abs(*row.z) < kAgrees;
+  }
+
+  CauseNames NamesOf(const FormulaGroup& group, const FormulaRow& formula) const {
+    return {group.assumption, formula.amplitude, DescribeMisfit()};
+  }
+
+  /// What the readings have that the fitted law has not.
+  std::string DescribeMisfit() const {
+    constexpr double kRejected = 0.01;
+    if (!forms_.wrong_law.empty()) return "the friction law (" + forms_.wrong_law + ")";
+    const std::string misfit = "what the recording has beyond the fitted motion";
+    if (!forms_.decrement || forms_.decrement->Probability() >= kRejected) return misfit;
+    const double scatter = forms_.decrement->chi_square / forms_.decrement->freedom;
+    return misfit + " (its turning points follow no law of friction here: chi2/dof " + NumberText(scatter, 3) + ")";
+  }
+
+  const Recording& used_;
+  const ClosedForms& forms_;
+  const FitReport& fit_;
+  double gravity_torque_;
+  FittedMotion motion_;
+  FitSide side_;
+};
+
+std::string Percent(double ratio) {
+  return NumberText(std::abs(100 * (ratio - 1)), 2) + (ratio > 1 ? " % larger" : " % smaller");
+}
+
+/// Rows of the rig's own inertia and of a point mass. The clock's error is the fit's alone: I goes with its square.
+void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, std::vector<ClosedFormRow>& rows) {
+  const ParameterEstimate* fitted = fit.Find(kInertia.name);
+  if (fitted == nullptr) return;
+  const std::optional<double> fit_error = fitted->fixed ? 0.0 : fitted->std_error;
+  const double clock_error = 2 * fitted->estimate * used.clock_scale_std_dev / used.clock_scale;
+  for (const GeometricInertia& inertia : GeometricInertias(rig, fitted->estimate)) {
+    ClosedFormRow row{inertia.is_point_mass ? "inertia_point_mass" : "inertia_geometry",
+                      inertia.is_point_mass ? "all mass at the end of the rod" : "the rig file",
+                      fitted->unit,
+                      inertia.value,
+                      inertia.std_error,
+                      fitted->estimate,
+                      {},
+                      {},
+                      ""};
+    const std::string percent = Percent(inertia.value / fitted->estimate) + " than the fit's";
+    if (!inertia.std_error || !fit_error) {
+      row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to judge that by";
+    } else {
+      row.z = (inertia.value - fitted->estimate) / std::hypot(inertia.difference_std_error, *fit_error, clock_error);
+      row.agrees = std::abs(*row.z) < kAgrees;
+      if (!*row.agrees) row.why = percent + ", more than the rig's errors allow";
+    }
+    rows.push_back(std::move(row));
+  }
+}
+
+/// Whether a point mass would do for this rig, in words; empty where it has none.
+std::string DescribePointMass(const std::vector<ClosedFormRow>& rows) {
+  const auto row = std::ranges::find(rows, "inertia_point_mass", &ClosedFormRow::quantity);
+  if (row == rows.end()) return "";
+  constexpr double kWouldDo = 0.01;  // where the rig gives no errors
+  const double ratio = row->closed_form / row->fit;
+  const bool would_do = row->agrees.value_or(std::abs(ratio - 1) < kWouldDo);
+  return std::string("; a point mass would ") + (would_do ? "do" : "not do") + ": its inertia is " + Percent(ratio) +
+         " than the fit's";
+}
+
+double Rms(const VectorXd& measured, const VectorXd& modelled) {
+  return std::sqrt((measured - modelled).squaredNorm() / static_cast<double>(measured.size()));
+}
+
+TextbookOverlay MakeOverlay(const Recording& used, const LogDecrement& linear, const FitReport& fit,
+                            const FittedMotion& motion) {
+  TextbookOverlay overlay;
+  const FittedMotion textbook = motion.WithViscous(linear.inertia.value, linear.viscous.value);
+  const auto sine = textbook.WithGravity(Gravity::kSine).Readings(motion.instants());
+  const auto small = textbook.WithGravity(Gravity::kLinear).Readings(motion.instants());
+  if (!sine || !small) return overlay;
+  overlay.linear = *small;
+  overlay.nonlinear = *sine;
+  overlay.linear_rms = Rms(used.value, *small);
+  overlay.nonlinear_rms = Rms(used.value, *sine);
+  overlay.fitted_rms = fit.statistics.rms_residual;
+  return overlay;
+}
+
+/// With parameters of the linear formulas the linear model may be nearer than the nonlinear one: they hold the longer
+/// period of large swings.
+std::string DescribeOverlay(const TextbookOverlay& overlay, const LogDecrement& linear, const std::string& unit) {
+  const auto rms = [&](double value) { return NumberText(value, 2) + " " + unit; };
+  std::string text = "With the linear formulas' inertia and damping the linear model leaves " +
+                     rms(overlay.linear_rms) + " rms, the nonlinear one " + rms(overlay.nonlinear_rms) + ", the fit " +
+                     rms(overlay.fitted_rms);
+  constexpr double kClearly = 1.1;
+  if (!(overlay.nonlinear_rms > kClearly * overlay.linear_rms)) return text;
+  const double excess = linear.inertia.value / linear.corrected_inertia.value - 1;
+  return text +
+         ": the linear model looks better because its parameters were found with it. Its inertia holds the longer "
+         "period of large swings" +
+         (excess > 0 ? " (" + NumberText(100 * excess, 2) + " % of it)" : "") +
+         ", which the nonlinear model adds once more";
+}
+
+std::string Summarize(const std::vector<ClosedFormRow>& rows, const std::string& wrong_law) {
+  const auto judged = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees.has_value(); });
+  const auto agree = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees == true; });
+  return std::to_string(agree) + " of " + std::to_string(judged) + " closed forms agree with the fit within " +
+         NumberText(kAgrees) + " standard deviations of the difference" + DescribePointMass(rows) +
+         (wrong_law.empty() ? "" : "; wrong friction law: " + wrong_law);
+}
+
+}  // namespace
+
+ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,
+                                 const std::optional<Rig>& rig) {
+  ClosedFormCheck check;
+  if (fit.termination == Termination::kFailed) return check;
+  Checker checker(used, forms, fit, rig);
+  if (forms.linear) checker.Add(LinearFormulas(forms, used), check.rows);
+  if (forms.decrement) checker.Add(DecrementFormulas(forms, fit.quantity), check.rows);
+  if (rig) AddGeometry(used, *rig, fit, check.rows);
+  if (forms.linear) {
+    check.overlay = MakeOverlay(used, *forms.linear, fit, FittedMotion(used, fit, rig));
+    if (check.overlay.linear.size() > 0) {
+      check.overlay.summary = DescribeOverlay(check.overlay, *forms.linear, fit.reading_unit);
+    }
+  }
+  check.summary = Summarize(check.rows, forms.wrong_law);
+  return check;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/fitted_motion.h"
+
+#include <cmath>
+#include <memory>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/trajectory_cost.h"
+
+namespace pendulum {
+
+FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig)
+    : model_(fit.model), start_(fit.start), quantity_(fit.quantity) {
+  instants_ = used.clock_scale * (used.time.array() - used.time[0]);
+  const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    const std::string_view name = parameter.info.name;
+    const bool is_release = name == kReleaseTime.name;
+    drifts_ = drifts_ || name == kZeroDrift.name || name == kBiasDrift.name;
+    reported_.push_back(is_release                             ? 1 / used.clock_scale
+                        : parameter.info.scales_with_gravity() ? gravity_torque
+                                                               : 1.0);
+    const double from = is_release ? used.time[0] : 0.0;
+    parameters_.push_back((parameter.estimate - from) / reported_.back());
+  }
+}
+
+double FittedMotion::small_angle_period() const { return 2 * kPi * std::sqrt(parameters_[0]); }
+
+FittedMotion FittedMotion::WithGravity(Gravity gravity) const {
+  FittedMotion motion = *this;
+  motion.model_.gravity = gravity;
+  return motion;
+}
+
+FittedMotion FittedMotion::WithoutDrift() const {
+  FittedMotion motion = *this;
+  if (drifts_) motion.parameters_.back() = 0;
+  return motion;
+}
+
+FittedMotion FittedMotion::WithViscous(double inertia, double viscous) const {
+  FittedMotion motion = *this;
+  const auto friction_end = static_cast<std::ptrdiff_t>(PhysicalParameters(model_).size());
+  motion.model_.friction = "viscous";
+  motion.parameters_.assign({inertia, viscous});
+  motion.parameters_.insert(motion.parameters_.end(), parameters_.begin() + friction_end, parameters_.end());
+  motion.reported_.assign(motion.parameters_.size(), 1.0);
+  return motion;
+}
+
+std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& instants,
+                                                      Eigen::MatrixXd* jacobian) const {
+  TrajectoryData data;
+  data.quantity = quantity_;
+  data.time.assign(instants.begin(), instants.end());
+  data.value.assign(data.time.size(), 0.0);
+  data.natural_frequency = 1 / std::sqrt(parameters_[0]);
+  data.latest_release = instants[instants.size() - 1];
+  data.drifts = drifts_;
+  const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model_, start_, data);
+  Eigen::VectorXd readings;
+  if (!cost->Readings(parameters_, &readings, jacobian)) return std::nullopt;
+  if (jacobian != nullptr) {
+    for (Eigen::Index k = 0; k < jacobian->cols(); ++k) jacobian->col(k) /= reported_[static_cast<std::size_t>(k)];
+  }
+  return readings;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "pendulum/analysis/cramer_rao.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/fit.h"
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+constexpr std::array kAmplitudeFactors = {0.25, 0.5, 1.0, 2.0};
+constexpr std::array kDurationFactors = {0.5, 1.0, 2.0, 4.0};
+constexpr std::array kOtherFactors = {0.25, 1.0, 4.0};
+
+struct TurningPoint {
+  double time = 0;   ///< s
+  double angle = 0;  ///< rad
+};
+
+/// From the release, or the first one of a moving start, until `end` [s]. Swings begin at rate 0, exactly.
+std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end) {
+  const bool released = run.start == StartKind::kRelease;
+  const Start<double> start{run.start, released ? run.release_time : run.start_time,
+                            released ? run.release_angle : run.initial_angle, released ? 0.0 : run.initial_rate};
+  TraceOptions options;
+  options.end = end;
+  options.tolerance = 1e-12;
+  std::vector<TurningPoint> turns;
+  FrictionModels::Visit(run.model.friction, [&]<typename F>() {
+    Pendulum<F, double> pendulum{run.model.gravity, run.parameters[0], {}};
+    std::copy(run.parameters.begin() + 1, run.parameters.end(), pendulum.friction.begin());
+    TraceTrajectory(pendulum, start, options, [&](const Segment<double>& segment) {
+      if (segment.order > 0 && segment.angle[1] == 0) turns.push_back({segment.start, segment.angle[0]});
+    });
+  });
+  return turns;
+}
+
+/// The largest |θ| without friction [rad]; none for a pendulum that goes over the top.
+std::optional<double> Amplitude(const SyntheticOptions& run) {
+  if (run.start == StartKind::kRelease) return std::abs(run.release_angle);
+  const double rate = std::sqrt(run.parameters[0]) * run.initial_rate;  // in units of ω0
+  if (run.model.gravity == Gravity::kLinear) return std::hypot(run.initial_angle, rate);
+  const double half_sine = std::hypot(std::sin(0.5 * run.initial_angle), 0.5 * rate);
+  if (std::abs(run.initial_angle) >= kPi || half_sine >= 1) return std::nullopt;
+  return 2 * std::asin(half_sine);
+}
+
+/// The same start, at the same phase of a larger or smaller swing. Both amplitudes positive.
+SyntheticOptions WithAmplitude(SyntheticOptions run, double from, double to) {
+  if (run.start == StartKind::kRelease) {
+    run.release_angle = std::copysign(to, run.release_angle);
+  } else if (run.model.gravity == Gravity::kLinear) {
+    run.initial_angle *= to / from;
+    run.initial_rate *= to / from;
+  } else {
+    const double factor = std::sin(0.5 * to) / std::sin(0.5 * from);
+    run.initial_angle = 2 * std::asin(factor * std::sin(0.5 * run.initial_angle));
+    run.initial_rate *= factor;
+  }
+  return run;
+}
+
+/// A case to be looked at: its row without results, and its recording.
+struct Case {
+  PlanRow row;
+  SyntheticOptions run;
+};
+
+void AddAmplitudes(const SyntheticOptions& base, std::vector<Case>& cases) {
+  const std::optional<double> amplitude = Amplitude(base);
+  if (!amplitude || *amplitude == 0) return;
+  const std::string_view name = base.start == StartKind::kRelease ? kReleaseAngle.name : "amplitude";
+  for (const double factor : kAmplitudeFactors) {
+    const double value = factor == 1 ? *amplitude : std::min(factor * *amplitude, kLargestPlannedAmplitude);
+    if (factor > 1 && value <= *amplitude) continue;
+    const SyntheticOptions run = factor == 1 ? base : WithAmplitude(base, *amplitude, value);
+    cases.push_back({{name, "rad", value, factor == 1, {}, {}, {}}, run});
+  }
+}
+
+/// Multiples of a number that the options have.
+void AddMultiples(const SyntheticOptions& base, std::string_view name, std::string_view unit,
+                  double SyntheticOptions::*number, std::span<const double> factors, std::vector<Case>& cases) {
+  for (const double factor : factors) {
+    SyntheticOptions run = base;
+    run.*number *= factor;
+    cases.push_back({{name, unit, run.*number, factor == 1, {}, {}, {}}, run});
+  }
+}
+
+std::vector<Case> Cases(const SyntheticOptions& base) {
+  std::vector<Case> cases;
+  AddAmplitudes(base, cases);
+  AddMultiples(base, "duration", "s", &SyntheticOptions::duration, kDurationFactors, cases);
+  AddMultiples(base, "rate", "Hz", &SyntheticOptions::sample_rate, kOtherFactors, cases);
+  const std::string_view unit = base.quantity == Quantity::kAngle ? "rad" : "rad/s";
+  if (base.resolution > 0) {
+    AddMultiples(base, "resolution", unit, &SyntheticOptions::resolution, kOtherFactors, cases);
+  }
+  return cases;
+}
+
+/// The standard deviation of a reading's rounding (Widrow & Kollár, Quantization Noise, 2008).
+double NoiseOfLevels(double resolution) { return resolution / std::sqrt(12.0); }
+
+/// Readings without noise repeat their rounding error throughout a hold, which thus is one reading.
+std::vector<std::optional<double>> StdErrors(SyntheticOptions run, const Eigen::VectorXd& time) {
+  if (run.noise > 0) return CramerRaoBounds(run, time);
+  run.noise = NoiseOfLevels(run.resolution);
+  run.resolution = run.noise_correlation = run.noise_freedom = 0;
+  Eigen::Index first = 0;
+  while (run.start == StartKind::kRelease && first + 1 < time.size() && time[first + 1] <= run.release_time) ++first;
+  return CramerRaoBounds(run, time.tail(time.size() - first));
+}
+
+void Predict(const SyntheticOptions& run, PlanRow& row) {
+  const Result<Recording> recording = SimulateRecording(run);
+  row.std_errors.resize(run.parameters.size() + 3);
+  if (!recording) {
+    row.reason = recording.error().message;
+    return;
+  }
+  row.std_errors = StdErrors(run, recording->time);
+  row.linear_bias = LinearInertiaBias(run, recording->time[recording->size() - 1]);
+}
+
+bool BiasExceedsError(const SyntheticOptions& run, const Eigen::VectorXd& time) {
+  const std::optional<double> bias = LinearInertiaBias(run, time[time.size() - 1]);
+  if (!bias) return false;
+  const std::optional<double> error = StdErrors(run, time).front();
+  return error && std::abs(*bias) > *error / run.parameters.front();
+}
+
+/// Halves the amplitude from the largest until the bias no longer exceeds the error, then bisects that octave.
+std::optional<double> AmplitudeOfEqualBias(const SyntheticOptions& base, const Eigen::VectorXd& time) {
+  constexpr double kSmallest = 1e-6;  // rad
+  constexpr double kAccuracy = 1e-4;  // relative
+  const std::optional<double> amplitude = Amplitude(base);
+  if (!amplitude || *amplitude == 0) return std::nullopt;
+  const auto exceeds = [&](double at) { return BiasExceedsError(WithAmplitude(base, *amplitude, at), time); };
+  double high = kLargestPlannedAmplitude;
+  if (!exceeds(high)) return std::nullopt;
+  double low = 0.5 * high;
+  for (; exceeds(low); low *= 0.5) {
+    if (low < kSmallest) return std::nullopt;
+    high = low;
+  }
+  while (high - low > kAccuracy * low) {
+    const double middle = std::sqrt(low * high);
+    (exceeds(middle) ? high : low) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
+}  // namespace
+
+std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end) {
+  const std::vector<TurningPoint> turns = TurningPoints(run, end);
+  if (turns.size() < 3) return std::nullopt;
+  const std::size_t periods = (turns.size() - 1) / 2;
+  const TurningPoint &first = turns.front(), &last = turns[2 * periods];
+  if (std::abs(first.angle) >= kPi) return std::nullopt;  // once over the top, the angle counts from elsewhere
+  const auto n = static_cast<double>(periods);
+  const double damped_frequency = 2 * kPi * n / (last.time - first.time);
+  const double decrement = std::log(first.angle / last.angle) / n;
+  const double damping_ratio = decrement / std::hypot(2 * kPi, decrement);
+  const double inertia = (1 - damping_ratio * damping_ratio) / (damped_frequency * damped_frequency);
+  return inertia / run.parameters.front() - 1;
+}
+
+Result<Plan> MakePlan(const SyntheticOptions& base) {
+  if (base.noise == 0 && base.resolution == 0) {
+    return Error(StatusCode::kInvalidArgument,
+                 "noise and resolution are both 0: nothing limits what such a recording tells; give one of them");
+  }
+  const Result<Recording> recording = SimulateRecording(base);
+  if (!recording) return tl::unexpected(recording.error());
+  Plan plan;
+  plan.parameters = FitParameters(base.model, base.start, base.quantity);
+  plan.truth = TrueParameters(base);
+  plan.physical = base.parameters.size();
+  if (base.noise == 0) plan.noise_of_levels = NoiseOfLevels(base.resolution);
+  for (Case& one : Cases(base)) {
+    Predict(one.run, one.row);
+    plan.rows.push_back(std::move(one.row));
+  }
+  plan.amplitude_of_equal_bias = AmplitudeOfEqualBias(base, recording->time);
+  return plan;
+}
+
+}  // namespace pendulum

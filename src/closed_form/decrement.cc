@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/decrement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/half_swing_map.h"
+#include "pendulum/closed_form/period.h"
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Turning points that follow each other: [first, first + count) of the table.
+struct PeakRun {
+  std::size_t first;
+  std::size_t count;
+};
+
+/// Runs of at least two; a lone turning point tells nothing but the zero.
+std::vector<PeakRun> Runs(const PeakTable& table) {
+  std::vector<PeakRun> runs;
+  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+    if (i == 0 || !table.peaks[i].continues) runs.push_back({i, 0});
+    ++runs.back().count;
+  }
+  std::erase_if(runs, [](const PeakRun& run) { return run.count < 2; });
+  return runs;
+}
+
+/// The least squares over x = (zero, natural frequency, friction (K), amplitude and time of each run).
+///
+/// Amplitude and time of a run are those of the turning point it begins with; seen by a rate sensor, whose readings
+/// peak between turning points, of the one before its first peak.
+class DecrementProblem {
+ public:
+  DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included)
+      : table_(table), model_(model), included_(std::move(included)), runs_(Runs(table)) {
+    for (const PeakRun& run : runs_) peaks_ += static_cast<Index>(run.count);
+    for (const Peak& peak : table.peaks) {
+      const Eigen::Matrix2d root = peak.covariance.llt().matrixL();
+      whitening_.push_back(root.inverse());
+    }
+  }
+
+  Index friction() const { return static_cast<Index>(included_.size()); }
+  Index unknowns() const { return 2 + friction() + 2 * static_cast<Index>(runs_.size()); }
+  Index observations() const { return 2 * peaks_; }
+
+  /// The unknowns that are sought.
+  std::vector<Index> Free() const {
+    std::vector<Index> free;
+    for (Index i = 0; i < unknowns(); ++i) {
+      const bool left_out = i >= 2 && i < 2 + friction() && !included_[static_cast<std::size_t>(i - 2)];
+      if (!left_out) free.push_back(i);
+    }
+    return free;
+  }
+
+  /// Small viscous-like friction, and periods and amplitudes as they stand in the table.
+  VectorXd Start() const {
+    VectorXd x = VectorXd::Zero(unknowns());
+    x[0] = table_.zero.value;
+    const double amplitude = table_.Amplitude(runs_[0].first);
+    const bool is_rate = table_.quantity == Quantity::kRate;
+    x[1] = kPi / table_.half_period;
+    if (model_.gravity == Gravity::kSine) {
+      const double angle = AngleAmplitude(table_.quantity, amplitude, x[1], model_.gravity);
+      x[1] *= PeriodRatio(0.8 * angle);  // most of the run is at smaller amplitudes
+    }
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const Index at = 2 + friction() + 2 * static_cast<Index>(r);
+      x[at] = AngleAmplitude(table_.quantity, table_.Amplitude(runs_[r].first), x[1], model_.gravity);
+      x[at + 1] = table_.peaks[runs_[r].first].time - (is_rate ? 0.5 * table_.half_period : 0.0);
+    }
+    return x;
+  }
+
+  /// What the table has beyond the model, in standard errors; nothing where the model does not swing so far.
+  std::optional<VectorXd> Residuals(const VectorXd& x) const {
+    VectorXd residuals(observations());
+    Index row = 0;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      if (!AddRun(r, x, row, residuals)) return std::nullopt;
+    }
+    return residuals;
+  }
+
+  /// Derivatives of the residuals (rows) with respect to (time, value) of each peak in the table.
+  MatrixXd Whitening() const {
+    MatrixXd whitening = MatrixXd::Zero(observations(), 2 * static_cast<Index>(table_.peaks.size()));
+    Index row = 0;
+    for (const PeakRun& run : runs_) {
+      for (std::size_t peak = run.first; peak < run.first + run.count; ++peak, row += 2) {
+        whitening.block<2, 2>(row, 2 * static_cast<Index>(peak)) = whitening_[peak];
+      }
+    }
+    return whitening;
+  }
+
+  /// Forward differences: good to 1e-6 of themselves, which Gauss-Newton does not notice.
+  MatrixXd Jacobian(const VectorXd& x, const VectorXd& residuals, const std::vector<Index>& free) const {
+    constexpr double kStep = 1e-7;
+    MatrixXd jacobian(residuals.size(), static_cast<Index>(free.size()));
+    for (Index k = 0; k < jacobian.cols(); ++k) {
+      VectorXd moved = x;
+      const Index i = free[static_cast<std::size_t>(k)];
+      const double step = kStep * Scale(i, x);
+      moved[i] += step;
+      const std::optional<VectorXd> there = Residuals(moved);
+      if (there) {
+        jacobian.col(k) = (*there - residuals) / step;
+      } else {
+        jacobian.col(k).setZero();
+      }
+    }
+    return jacobian;
+  }
+
+ private:
+  /// What change of an unknown matters.
+  double Scale(Index i, const VectorXd& x) const {
+    const double amplitude = x[2 + friction()];
+    const double peak_rate = x[1] * amplitude;
+    if (i == 0) return table_.quantity == Quantity::kAngle ? amplitude : peak_rate;
+    if (i == 1) return x[1];
+    // A friction of 1 percent of gravity at the largest rate.
+    if (i < 2 + friction()) return 0.01 * amplitude / UnitTorque(i - 2, peak_rate);
+    return (i - friction()) % 2 == 0 ? amplitude : table_.half_period;
+  }
+
+  double UnitTorque(Index k, double rate) const {
+    double torque = 1;
+    FrictionModels::Visit(model_.friction, [&]<typename F>() {
+      std::array<double, kFrictionParameters<F>> unit{};
+      unit[static_cast<std::size_t>(k)] = 1;
+      torque = F::Torque(rate, 1.0, unit.data());
+    });
+    return torque;
+  }
+
+  bool AddRun(std::size_t r, const VectorXd& x, Index& row, VectorXd& residuals) const {
+    const std::span<const double> friction_parameters(x.data() + 2, included_.size());
+    double amplitude = x[2 + friction() + 2 * static_cast<Index>(r)];
+    double time = x[2 + friction() + 2 * static_cast<Index>(r) + 1];
+    const bool is_rate = table_.quantity == Quantity::kRate;
+    for (std::size_t i = 0; i < runs_[r].count; ++i) {
+      const std::size_t peak = runs_[r].first + i;
+      if (!(amplitude > 0 && x[1] > 0)) return false;
+      if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
+      if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
+      if (!is_rate && i + 1 == runs_[r].count) break;
+      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1]);
+      if (!end) return false;
+      if (is_rate) Add(peak, time + end->peak_delay, x[0] + table_.Side(peak) * end->peak_rate, row, residuals);
+      amplitude = end->amplitude;
+      time += end->duration;
+    }
+    return true;
+  }
+
+  void Add(std::size_t peak, double time, double value, Index& row, VectorXd& residuals) const {
+    const Peak& seen = table_.peaks[peak];
+    residuals.segment<2>(row) = whitening_[peak] * Eigen::Vector2d(seen.time - time, seen.value - value);
+    row += 2;
+  }
+
+  const PeakTable& table_;
+  const MotionModel& model_;
+  std::vector<bool> included_;
+  std::vector<PeakRun> runs_;
+  std::vector<Eigen::Matrix2d> whitening_;  // of each peak in the table
+  Index peaks_ = 0;                         // in the runs
+};
+
+/// Where a least squares ended; `free` unknowns were sought.
+struct LeastSquares {
+  VectorXd x;
+  MatrixXd inverse;   // (JᵀJ)⁻¹ over `free`
+  MatrixXd jacobian;  // J, of the residuals at x
+  double sum = 0;
+};
+
+/// Levenberg-Marquardt with Marquardt's scaling, until a step is a thousandth of the standard errors.
+std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
+  constexpr int kMostSteps = 100;
+  constexpr double kSmallStep = 1e-6;  // squared, in standard errors
+  std::optional<VectorXd> residuals = problem.Residuals(x);
+  if (!residuals) return std::nullopt;
+  double damping = 1e-3;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const MatrixXd jacobian = problem.Jacobian(x, *residuals, free);
+    const MatrixXd normal = jacobian.transpose() * jacobian;
+    const VectorXd gradient = jacobian.transpose() * *residuals;
+    bool better = false;
+    while (!better && damping < 1e12) {
+      MatrixXd damped = normal;
+      damped.diagonal() *= 1 + damping;
+      const VectorXd change = -damped.ldlt().solve(gradient);
+      VectorXd trial = x;
+      trial(free) += change;
+      const std::optional<VectorXd> there = problem.Residuals(trial);
+      better = there && there->squaredNorm() <= residuals->squaredNorm();
+      damping = better ? 0.1 * damping : 10 * damping;
+      if (!better) continue;
+      x = trial;
+      residuals = there;
+      if (change.dot(normal * change) > kSmallStep) break;
+      const MatrixXd last = problem.Jacobian(x, *residuals, free);
+      const Index size = last.cols();
+      const MatrixXd inverse = (last.transpose() * last).ldlt().solve(MatrixXd::Identity(size, size));
+      return LeastSquares{x, inverse, last, residuals->squaredNorm()};
+    }
+    if (!better) break;
+  }
+  return std::nullopt;
+}
+
+double ProbabilityBeyond(double chi_square, int freedom) {
+  const boost::math::chi_squared_distribution<double> law(freedom);
+  return boost::math::cdf(boost::math::complement(law, chi_square));
+}
+
+/// Unknowns of the fit to the quantities of Decrement: ω0 becomes I = 1/ω0², and errors follow.
+void Report(const DecrementProblem& problem, const LeastSquares& solution, const std::vector<Index>& free,
+            Decrement& decrement) {
+  const auto size = static_cast<Index>(2 + decrement.friction.size());
+  const double frequency = solution.x[1];
+  VectorXd factor = VectorXd::Ones(size);
+  factor[1] = -2 / (frequency * frequency * frequency);
+  const double scale = std::max(1.0, solution.sum / decrement.freedom);
+  decrement.covariance = MatrixXd::Zero(size, size);
+  for (Index i = 0; i < static_cast<Index>(free.size()); ++i) {
+    for (Index j = 0; j < static_cast<Index>(free.size()); ++j) {
+      const Index a = free[static_cast<std::size_t>(i)];
+      const Index b = free[static_cast<std::size_t>(j)];
+      if (a < size && b < size) decrement.covariance(a, b) = scale * solution.inverse(i, j) * factor[a] * factor[b];
+    }
+  }
+  const MatrixXd follow = -solution.inverse * solution.jacobian.transpose() * problem.Whitening();
+  decrement.gradient = MatrixXd::Zero(size, follow.cols());
+  for (Index i = 0; i < static_cast<Index>(free.size()); ++i) {
+    const Index a = free[static_cast<std::size_t>(i)];
+    if (a < size) decrement.gradient.row(a) = factor[a] * follow.row(i);
+  }
+  const VectorXd errors = decrement.covariance.diagonal().cwiseSqrt();
+  decrement.zero = {solution.x[0], errors[0]};
+  decrement.inertia = {1 / (frequency * frequency), errors[1]};
+  for (Index k = 2; k < size; ++k) decrement.friction[static_cast<std::size_t>(k - 2)] = {solution.x[k], errors[k]};
+}
+
+/// The torque at rest of the friction that was found.
+double StickingAngle(const Decrement& decrement) {
+  double torque = 0;
+  FrictionModels::Visit(decrement.model.friction, [&]<typename F>() {
+    std::array<double, kFrictionParameters<F>> friction{};
+    for (std::size_t k = 0; k < friction.size(); ++k) friction[k] = decrement.friction[k].value;
+    torque = F::Torque(0.0, 1.0, friction.data());
+  });
+  return torque;
+}
+
+/// The shape a single term gives the envelope.
+std::string_view EnvelopeShape(std::string_view term) {
+  if (term == kViscous.name) return "exponential";
+  if (term == kCoulomb.name) return "straight line";
+  return term == kDrag.name ? "hyperbola" : "";
+}
+
+Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
+                          std::optional<VectorXd>& start) {
+  Decrement decrement{model, table, {}, {}, std::vector<Estimate>(included.size()), {}, {}, 0, 0};
+  const DecrementProblem problem(table, model, included);
+  const std::vector<Index> free = problem.Free();
+  decrement.freedom = static_cast<int>(problem.observations()) - static_cast<int>(free.size());
+  if (decrement.freedom < 1) {
+    return Error(StatusCode::kFailedPrecondition,
+                 std::to_string(problem.observations() / 2) + " turning points are too few for the " +
+                     std::to_string(free.size()) + " unknowns of the closed form; record for longer");
+  }
+  if (!start || start->size() != problem.unknowns()) start = problem.Start();
+  const std::optional<LeastSquares> solution = Solve(problem, *start, free);
+  if (!solution) {
+    return Error(StatusCode::kFailedPrecondition, "the turning points follow no " + std::string(model.friction) +
+                                                      " friction: their least squares has no end");
+  }
+  start = solution->x;
+  decrement.chi_square = solution->sum;
+  Report(problem, *solution, free, decrement);
+  return decrement;
+}
+
+}  // namespace
+
+double Decrement::Probability() const { return ProbabilityBeyond(chi_square, freedom); }
+
+Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included) {
+  std::optional<VectorXd> start;
+  return FitFrom(table, model, included, start);
+}
+
+Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model) {
+  Result<PeakTable> table = LocatePeaks(recording);
+  if (!table) return tl::unexpected(table.error());
+  const std::vector<bool> all(PhysicalParameters(model).size() - 1, true);
+  std::optional<VectorXd> start;
+  Result<Decrement> decrement = FitFrom(*table, model, all, start);
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds && decrement; ++round) {
+    const Kink kink{StickingAngle(*decrement), 1 / std::sqrt(decrement->inertia.value)};
+    if (kink.sticking_angle == 0) break;
+    table = LocatePeaks(recording, kink);
+    if (!table) return tl::unexpected(table.error());
+    decrement = FitFrom(*table, model, all, start);
+  }
+  return decrement;
+}
+
+Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity) {
+  const MotionModel richest = {"drag", "drag", gravity};
+  const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
+  const std::size_t terms = infos.size() - 1;
+  const Result<Decrement> all = FitDecrement(table, richest, std::vector<bool>(terms, true));
+  if (!all) return tl::unexpected(all.error());
+  const double scale = std::max(1.0, all->chi_square / all->freedom);
+  EnvelopeComparison laws{{}, all->chi_square, all->freedom};
+  for (std::size_t k = 0; k < terms; ++k) {
+    std::vector<bool> alone(terms, false);
+    alone[k] = true;
+    const Result<Decrement> one = FitDecrement(table, richest, alone);
+    if (!one) continue;
+    const std::string_view name = infos[k + 1].name;
+    laws.single.push_back({std::string(name), std::string(EnvelopeShape(name)), one->chi_square, one->freedom,
+                           ProbabilityBeyond(one->chi_square / scale, one->freedom)});
+  }
+  return laws;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/half_swing_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Core>
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/friction/registry.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kNodes = 20;
+using Nodes = Eigen::Array<double, kNodes, 1>;
+
+/// P_0 to P_kNodes at x, by their three-term recurrence.
+std::array<double, kNodes + 1> LegendrePolynomials(double x) {
+  std::array<double, kNodes + 1> p{1, x};
+  for (int n = 1; n < kNodes; ++n) p[n + 1] = ((2 * n + 1) * x * p[n] - n * p[n - 1]) / (n + 1);
+  return p;
+}
+
+/// Gauss-Legendre nodes x and weights on [-1, 1], and integrals from -1 of what is known at the nodes only: its series
+/// Σ (2n + 1) / 2 P_n(x) Σ_j w_j P_n(x_j) f(x_j), term by term.
+class Collocation {
+ public:
+  Collocation() {
+    using Gauss = boost::math::quadrature::gauss<double, kNodes>;
+    for (int i = 0; i < kNodes / 2; ++i) {
+      x[kNodes / 2 + i] = Gauss::abscissa()[i];
+      x[kNodes / 2 - 1 - i] = -Gauss::abscissa()[i];
+      weight[kNodes / 2 + i] = weight[kNodes / 2 - 1 - i] = Gauss::weights()[i];
+    }
+    for (int j = 0; j < kNodes; ++j) polynomials_[j] = LegendrePolynomials(x[j]);
+    for (int i = 0; i < kNodes; ++i) integrate.row(i) = WeightsTo(x[i]);
+  }
+
+  /// The weights with which the values at the nodes make the integral from -1 to x.
+  Eigen::Matrix<double, 1, kNodes> WeightsTo(double end) const {
+    const auto at = LegendrePolynomials(end);
+    Eigen::Matrix<double, 1, kNodes> weights;
+    for (int j = 0; j < kNodes; ++j) {
+      double sum = 0.5 * (1 + end);
+      for (int n = 1; n < kNodes; ++n) sum += 0.5 * (at[n + 1] - at[n - 1]) * polynomials_[j][n];
+      weights[j] = sum * weight[j];
+    }
+    return weights;
+  }
+
+  Nodes x, weight;
+  Eigen::Matrix<double, kNodes, kNodes> integrate;  ///< Row i: WeightsTo(x[i]).
+
+ private:
+  std::array<std::array<double, kNodes + 1>, kNodes> polynomials_;
+};
+
+/// Potential energy in units of G, and the angle >= 0 that has it.
+double PotentialAt(Gravity gravity, double angle) {
+  const double half_sine = std::sin(0.5 * angle);
+  return gravity == Gravity::kSine ? 2 * half_sine * half_sine : 0.5 * angle * angle;
+}
+double AngleWith(Gravity gravity, double potential) {
+  return gravity == Gravity::kSine ? 2 * std::asin(std::sqrt(0.5 * potential)) : std::sqrt(2 * potential);
+}
+
+/// The way from -before to after as θ = m + h sin(π x / 2), along which energy and rate over cos(π x / 2) are smooth,
+/// the turning points included.
+template <FrictionModel F>
+class HalfSwingWay {
+ public:
+  HalfSwingWay(Gravity gravity, const double* friction, double before, double natural_frequency)
+      : gravity_(gravity), friction_(friction), before_(before), natural_frequency_(natural_frequency) {}
+
+  /// dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard's iteration on the energies at the nodes; `after` follows from the last.
+  std::optional<HalfSwingEnd> Solve() {
+    constexpr int kMostRounds = 200;
+    constexpr double kSame = 4e-15;
+    const double energy_before = PotentialAt(gravity_, before_);
+    Nodes energy = Nodes::Constant(energy_before);
+    double after = before_;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const Nodes loss = Loss(energy, after);
+      energy = energy_before - (Rule().integrate * loss.matrix()).array();
+      const double energy_after = energy_before - (Rule().weight * loss).sum();
+      if (!(energy_after > 0) || (gravity_ == Gravity::kSine && !(energy_after < 2))) return std::nullopt;
+      const double last = std::exchange(after, AngleWith(gravity_, energy_after));
+      if (std::abs(last - after) <= kSame * before_) return End(loss, after);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static const Collocation& Rule() {
+    static const Collocation rule;
+    return rule;
+  }
+
+  double RateAt(double energy, double angle) const {
+    const double kinetic = energy - PotentialAt(gravity_, angle);
+    return natural_frequency_ * std::sqrt(std::max(2 * kinetic, 1e-30));
+  }
+
+  /// T dθ/dx at the nodes; sets rate_ and slope_ on the way.
+  Nodes Loss(const Nodes& energy, double after) {
+    static const Nodes sine = (kPi / 2 * Rule().x).sin();
+    static const Nodes cosine = (kPi / 2 * Rule().x).cos();
+    const double half = 0.5 * (before_ + after);
+    slope_ = half * kPi / 2 * cosine;
+    Nodes loss;
+    for (int i = 0; i < kNodes; ++i) {
+      rate_[i] = RateAt(energy[i], 0.5 * (after - before_) + half * sine[i]);
+      loss[i] = F::Torque(rate_[i], 1.0, friction_) * slope_[i];
+    }
+    return loss;
+  }
+
+  /// The rate is largest where g(θ) = -T(ω): a few rounds, for T hardly changes there.
+  HalfSwingEnd End(const Nodes& loss, double after) const {
+    constexpr int kMostRounds = 50;
+    constexpr double kSame = 1e-13;
+    const double middle = 0.5 * (after - before_);
+    const double half = 0.5 * (before_ + after);
+    double angle = 0;
+    double x = 0;
+    double rate = 0;
+    for (int round = 0; round < kMostRounds; ++round) {
+      x = 2 / kPi * std::asin(std::clamp((angle - middle) / half, -1.0, 1.0));
+      rate = RateAt(PotentialAt(gravity_, before_) - Rule().WeightsTo(x).dot(loss.matrix()), angle);
+      const double torque = std::clamp(F::Torque(rate, 1.0, friction_), -1.0, 1.0);
+      const double last = std::exchange(angle, gravity_ == Gravity::kSine ? -std::asin(torque) : -torque);
+      if (std::abs(last - angle) <= kSame * half) break;
+    }
+    const Nodes pace = slope_ / rate_;  // dt/dx
+    return {after, (Rule().weight * pace).sum(), rate, Rule().WeightsTo(x).dot(pace.matrix())};
+  }
+
+  Gravity gravity_;
+  const double* friction_;
+  double before_, natural_frequency_;
+  Nodes rate_, slope_;  // ω and dθ/dx at the nodes
+};
+
+}  // namespace
+
+std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
+                                         double natural_frequency) {
+  std::optional<HalfSwingEnd> end;
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency).Solve();
+  });
+  return end;
+}
+
+}  // namespace pendulum

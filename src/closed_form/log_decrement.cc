@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/log_decrement.h"
+
+#include <cmath>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/period.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kFormulas = 7;  // those of LogDecrement, in its order
+
+/// First turning points of the runs, and one past the last.
+std::vector<std::size_t> RunStarts(const PeakTable& table) {
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+    if (i == 0 || !table.peaks[i].continues) starts.push_back(i);
+  }
+  starts.push_back(table.peaks.size());
+  return starts;
+}
+
+/// The n periods the formulas are applied to.
+struct Stretch {
+  const PeakTable& table;
+  Gravity gravity;
+  std::size_t first;
+  int periods;
+
+  std::size_t last() const { return first + 2 * static_cast<std::size_t>(periods); }
+  const Peak& from() const { return table.peaks[first]; }
+  const Peak& to() const { return table.peaks[last()]; }
+};
+
+/// What the formulas take: two times [s], two readings from the zero, and the mean over the half swings of their period
+/// over that of a small swing.
+using Inputs = Eigen::Matrix<double, 5, 1>;
+using Outputs = Eigen::Matrix<double, kFormulas, 1>;
+
+Outputs Formulas(const Inputs& inputs, int periods) {
+  const double damped = 2 * kPi * periods / (inputs[1] - inputs[0]);
+  const double decrement = std::log(inputs[2] / inputs[3]) / periods;
+  const double ratio = decrement / std::sqrt(4 * kPi * kPi + decrement * decrement);
+  const double natural = damped / std::sqrt(1 - ratio * ratio);
+  const double inertia = 1 / (natural * natural);
+  Outputs outputs;
+  outputs << damped, decrement, ratio, natural, inertia, 2 * ratio / natural, inertia / (inputs[4] * inputs[4]);
+  return outputs;
+}
+
+/// The mean period ratio, and its derivatives (M) with respect to the values of the turning points.
+double MeanPeriodRatio(const Stretch& stretch, VectorXd& gradient) {
+  gradient = VectorXd::Zero(static_cast<Index>(stretch.table.peaks.size()));
+  if (stretch.gravity == Gravity::kLinear) return 1;
+  constexpr double kStep = 1e-4;  // of the amplitude
+  const double share = 1 / (2.0 * stretch.periods);
+  const double frequency = kPi / stretch.table.half_period;
+  const auto ratio_at = [&](double amplitude) {
+    return PeriodRatio(AngleAmplitude(stretch.table.quantity, amplitude, frequency));
+  };
+  double sum = 0;
+  for (std::size_t i = stretch.first; i < stretch.last(); ++i) {
+    const double amplitude = 0.5 * (stretch.table.Amplitude(i) + stretch.table.Amplitude(i + 1));
+    sum += share * ratio_at(amplitude);
+    const double step = kStep * amplitude;
+    const double slope = (ratio_at(amplitude + step) - ratio_at(amplitude - step)) / (2 * step);
+    for (const std::size_t k : {i, i + 1}) {
+      gradient[static_cast<Index>(k)] += 0.5 * share * slope * stretch.table.Side(k);
+    }
+  }
+  return sum;
+}
+
+/// Derivatives (kFormulas x 2 M) with respect to the turning points, of whose values the zero is made too.
+MatrixXd Gradient(const Stretch& stretch, const Inputs& inputs, const VectorXd& ratio_gradient) {
+  constexpr double kStep = 1e-6;
+  Eigen::Matrix<double, kFormulas, 5> slopes;
+  for (Index k = 0; k < 5; ++k) {
+    const double step = kStep * (k < 2 ? inputs[1] - inputs[0] : inputs[k]);
+    const Inputs change = step * Inputs::Unit(k);
+    slopes.col(k) =
+        (Formulas(inputs + change, stretch.periods) - Formulas(inputs - change, stretch.periods)) / (2 * step);
+  }
+  const Index count = ratio_gradient.size();
+  MatrixXd by_value = slopes.col(4) * ratio_gradient.transpose();
+  by_value -= (slopes.col(2) + slopes.col(3)) * stretch.table.ZeroWeights().transpose();
+  by_value.col(static_cast<Index>(stretch.first)) += slopes.col(2);
+  by_value.col(static_cast<Index>(stretch.last())) += slopes.col(3);
+  MatrixXd gradient = MatrixXd::Zero(kFormulas, 2 * count);
+  gradient.col(2 * static_cast<Index>(stretch.first)) = slopes.col(0);
+  gradient.col(2 * static_cast<Index>(stretch.last())) = slopes.col(1);
+  for (Index i = 0; i < count; ++i) gradient.col(2 * i + 1) = by_value.col(i);
+  return gradient;
+}
+
+/// Whether turning points `first` and n periods later belong to one run, and both lie where their side is.
+bool Reaches(const PeakTable& table, std::size_t first, int periods) {
+  const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
+  if (periods < 1 || last >= table.peaks.size()) return false;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    if (!table.peaks[i].continues) return false;
+  }
+  return table.Side(first) == table.Side(last);
+}
+
+/// ζ of two turning points n periods apart, and its error without the rest of the formulas.
+std::optional<Estimate> DampingRatio(const PeakTable& table, std::size_t first, int periods) {
+  if (!Reaches(table, first, periods)) return std::nullopt;
+  const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
+  const double before = table.Amplitude(first);
+  const double after = table.Amplitude(last);
+  const double decrement = std::log(before / after) / periods;
+  const double square = 4 * kPi * kPi + decrement * decrement;
+  // The zero moves both amplitudes alike.
+  const double variance = table.peaks[first].covariance(1, 1) / (before * before) +
+                          table.peaks[last].covariance(1, 1) / (after * after) +
+                          std::pow(table.zero.std_error * (1 / before - 1 / after), 2);
+  const double slope = 4 * kPi * kPi / (square * std::sqrt(square));
+  return Estimate{decrement / std::sqrt(square), slope * std::sqrt(variance) / periods};
+}
+
+}  // namespace
+
+std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods) {
+  if (!Reaches(table, first, periods)) return std::nullopt;
+  const Stretch stretch{table, gravity, first, periods};
+  VectorXd ratio_gradient;
+  const double ratio = MeanPeriodRatio(stretch, ratio_gradient);
+  const double zero = table.zero.value;
+  Inputs inputs;
+  inputs << stretch.from().time, stretch.to().time, stretch.from().value - zero, stretch.to().value - zero, ratio;
+  const Outputs value = Formulas(inputs, periods);
+  const MatrixXd gradient = Gradient(stretch, inputs, ratio_gradient);
+  const VectorXd error = CovarianceOf(table, gradient).diagonal().cwiseSqrt();
+  if (!value.allFinite() || !error.allFinite()) return std::nullopt;
+  const auto estimate = [&](Index k) { return Estimate{value[k], error[k]}; };
+  LogDecrement result{first,       periods,     estimate(0), estimate(1), estimate(2),
+                      estimate(3), estimate(4), estimate(5), estimate(6), {}};
+  result.gradient = gradient.bottomRows(kFormulas - 2)(std::vector<Index>{0, 2, 3, 4}, Eigen::all);
+  return result;
+}
+
+std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity) {
+  const std::vector<std::size_t> starts = RunStarts(table);
+  std::size_t longest = 0;
+  for (std::size_t r = 1; r + 1 < starts.size(); ++r) {
+    if (starts[r + 1] - starts[r] > starts[longest + 1] - starts[longest]) longest = r;
+  }
+  int best = 0;
+  double smallest = 0;
+  for (int n = 1; Reaches(table, starts[longest], n); ++n) {
+    const double error = DampingRatio(table, starts[longest], n)->std_error;
+    if (best == 0 || error < smallest) best = n, smallest = error;
+  }
+  return ApplyLogDecrement(table, gravity, starts[longest], best);
+}
+
+std::vector<DecayRow> TabulateDecay(const PeakTable& table) {
+  std::vector<DecayRow> rows;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+    if (!table.peaks[i].continues) start = i;
+    DecayRow row{i, DampingRatio(table, i, 1), std::nullopt, static_cast<int>((i - start) / 2)};
+    row.so_far = DampingRatio(table, start + (i - start) % 2, row.periods);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace pendulum

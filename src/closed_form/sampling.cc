@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/median.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// A rig's inertia from masses and lengths is good to some ten percent, its frequency to half of that and finite
+/// amplitude.
+constexpr double kExpectedWithin = 0.15;
+
+/// Fewer samples a period leave a turning point, a parabola through three of them, off by more than 1 % of the
+/// amplitude.
+constexpr double kFewestPerPeriod = 8;
+
+/// What to sample with: turning points are then good to a thousandth.
+constexpr double kGoodPerPeriod = 20;
+
+/// Fewer levels peak to peak tell the amplitude to no better than some percent, whatever the noise. Near rest every
+/// swing spans few.
+constexpr double kFewestCounts = 8;
+
+/// An interval of so many ordinary ones lacks readings.
+constexpr double kGap = 3;
+
+/// Beyond this share of the interval, methods that count samples instead of using their stamps go wrong.
+constexpr double kMuchJitter = 0.1;
+
+void DescribeIntervals(const Eigen::VectorXd& time, Sampling& sampling) {
+  std::vector<double> intervals;
+  for (Index i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+  const double interval = Median(intervals);
+  sampling.rate_hz = 1 / interval;
+  for (const double step : intervals) {
+    if (!(step > kGap * interval)) continue;
+    ++sampling.gaps;
+    sampling.longest_gap = std::max(sampling.longest_gap, step);
+  }
+  for (double& step : intervals) step = std::abs(step - interval);
+  constexpr double kSigmaPerMedian = 1.4826;
+  sampling.jitter = kSigmaPerMedian * Median(std::move(intervals));
+}
+
+void DescribeCounts(const Recording& used, Sampling& sampling) {
+  constexpr Index kFewest = 8;
+  const double q = used.resolution;
+  const auto peak_to_peak = [](const auto& values) { return values.maxCoeff() - values.minCoeff(); };
+  const auto in_period = static_cast<Index>(std::ceil(std::min(sampling.samples_per_period, 1e9)));
+  const Index last = std::min(std::max(in_period, kFewest), used.size());
+  if (q > 0) sampling.start_counts = std::round(peak_to_peak(used.value) / q);
+  if (q > 0) sampling.end_counts = std::round(peak_to_peak(used.value.tail(last)) / q);
+  if (!used.range) return;
+  const auto [low, high] = *used.range;
+  const double edge = q > 0 ? 0.5 * q : 1e-6 * (high - low);
+  sampling.saturated = (used.value.array() >= high - edge || used.value.array() <= low + edge).count();
+}
+
+std::string Hz(double frequency) { return NumberText(frequency, 3) + " Hz"; }
+
+std::string Advice(double frequency) { return "sample at least at " + Hz(kGoodPerPeriod * frequency); }
+
+/// Why the readings seem to swing more slowly than the pendulum.
+Warning AliasedWarning(const Sampling& sampling, double expected) {
+  const double apparent = ApparentFrequency(expected, sampling.rate_hz);
+  const double cycles = std::round(expected / sampling.rate_hz);
+  const std::string whole = NumberText(cycles) + (cycles == 1 ? " whole swing" : " whole swings");
+  std::string why = "the pendulum is expected to swing at " + Hz(expected) + " and was sampled at " +
+                    Hz(sampling.rate_hz) + ", less than twice a swing: between two samples it makes nearly " + whole +
+                    ", which leave no trace, and so the readings seem to swing at |" + NumberText(expected, 3) + " - " +
+                    NumberText(cycles * sampling.rate_hz, 3) + "| = " + Hz(apparent) + ", a period of " +
+                    NumberText(1 / apparent, 3) + " s";
+  if (sampling.seen_frequency_hz) why += " (" + NumberText(1 / *sampling.seen_frequency_hz, 3) + " s is seen)";
+  return {"aliased", why +
+                         "; periods and decrements of turning points are apparent ones, only a fit of the motion "
+                         "itself is right; " +
+                         Advice(expected)};
+}
+
+void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warning>& warnings) {
+  const double low = (1 - kExpectedWithin) * expected;
+  const double high = (1 + kExpectedWithin) * expected;
+  if (expected > 0.5 * sampling.rate_hz) {
+    warnings.push_back(AliasedWarning(sampling, expected));
+  } else if (high > 0.5 * sampling.rate_hz) {
+    warnings.push_back({"nearly_aliased", "the pendulum is expected to swing at " + Hz(expected) +
+                                              " and was sampled at " + Hz(sampling.rate_hz) +
+                                              ", hardly more than twice a swing; " + Advice(expected)});
+  }
+  if (!HoldsMirror(low, high, sampling.rate_hz)) return;
+  const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);
+  warnings.push_back({"once_a_cycle", "sampled at " + Hz(sampling.rate_hz) + " frequencies to both sides of " +
+                                          Hz(mirror) + " look the same, and the pendulum's, expected at " +
+                                          Hz(expected) +
+                                          ", may lie on either: samples once or twice a swing "
+                                          "cannot tell it; sample faster, or at " +
+                                          Hz(1.3 * sampling.rate_hz)});
+}
+
+void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {
+  if (sampling.gaps > 0) {
+    warnings.push_back({"gaps", "readings are missing in " + std::to_string(sampling.gaps) +
+                                    (sampling.gaps == 1 ? " place" : " places") + ", for " +
+                                    NumberText(sampling.longest_gap, 3) +
+                                    " s at most; the fit goes across by the "
+                                    "stamps, turning points in them are lost"});
+  }
+  if (sampling.jitter * sampling.rate_hz > kMuchJitter) {
+    warnings.push_back({"jitter", "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) +
+                                      " ms about " + NumberText(1e3 / sampling.rate_hz, 3) +
+                                      " ms; the stamps are taken as they are: if the sensor was read at even times and "
+                                      "only stamped late, give --time_column none with --sample_rate_hz"});
+  }
+}
+
+void WarnOfCounts(const Sampling& sampling, std::vector<Warning>& warnings) {
+  if (!(sampling.start_counts > 0 && sampling.start_counts < kFewestCounts)) return;
+  warnings.push_back({"few_counts", "the swing spans " + NumberText(sampling.start_counts) +
+                                        " levels of the sensor at first and " + NumberText(sampling.end_counts) +
+                                        " at the end: turning points of so few are coarse; release from further out "
+                                        "or use a finer sensor"});
+}
+
+}  // namespace
+
+double ApparentFrequency(double frequency_hz, double rate_hz) {
+  return std::abs(frequency_hz - rate_hz * std::round(frequency_hz / rate_hz));
+}
+
+bool HoldsMirror(double low_hz, double high_hz, double rate_hz) {
+  return std::floor(2 * high_hz / rate_hz) >= std::max(std::ceil(2 * low_hz / rate_hz), 1.0);
+}
+
+Sampling DescribeSampling(const Recording& used, std::optional<double> half_period,
+                          std::optional<double> expected_frequency) {
+  Sampling sampling;
+  DescribeIntervals(used.time, sampling);
+  sampling.expected_frequency_hz = expected_frequency;
+  if (half_period && *half_period > 0) sampling.seen_frequency_hz = 0.5 / *half_period;
+  // An aliased swing shows another frequency than its own.
+  const double expected = expected_frequency.value_or(0);
+  const bool aliases = (1 + kExpectedWithin) * expected > 0.5 * sampling.rate_hz;
+  sampling.frequency_hz = aliases ? expected : sampling.seen_frequency_hz.value_or(expected);
+  if (sampling.frequency_hz > 0) {
+    sampling.samples_per_period = sampling.rate_hz / sampling.frequency_hz;
+    sampling.nyquist_margin = 0.5 * sampling.samples_per_period;
+  }
+  DescribeCounts(used, sampling);
+  return sampling;
+}
+
+std::vector<Warning> SamplingWarnings(const Sampling& sampling) {
+  std::vector<Warning> warnings;
+  if (sampling.expected_frequency_hz) WarnOfAliasing(sampling, *sampling.expected_frequency_hz, warnings);
+  const bool aliases = !warnings.empty();
+  if (!aliases && sampling.frequency_hz > 0 && sampling.samples_per_period < kFewestPerPeriod) {
+    warnings.push_back({"slow_sampling", NumberText(sampling.samples_per_period, 2) +
+                                             " samples a period: measured turning points and closed-form estimates "
+                                             "are coarse, the fit is not; " +
+                                             Advice(sampling.frequency_hz)});
+  }
+  WarnOfCounts(sampling, warnings);
+  WarnOfTimes(sampling, warnings);
+  return warnings;
+}
+
+}  // namespace pendulum

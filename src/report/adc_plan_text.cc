@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/adc_plan_text.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/layout.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kIndent = 4;
+constexpr int kWidth = 100;  // columns, of prose
+constexpr int kDigits = 4;   // significant
+
+std::string Number(double value) { return NumberText(value, kDigits); }
+
+/// The swing about the middle of the travel that counts tell.
+std::string AboutTheMiddle(const AdcSensor& sensor) {
+  const SensorRange usable = sensor.UsableAnglesDeg();
+  const double swing = std::min(-usable.low, usable.high);
+  return swing > 0 ? "± " + Number(swing) : "none";
+}
+
+std::vector<std::string> SensorRow(const AdcSensor& sensor) {
+  const SensorRange usable = sensor.UsableAnglesDeg();
+  const SensorRange counts = sensor.ReadingRange();
+  return {Number(sensor.reference_voltage), Number(sensor.DegPerCount()),
+          Number(sensor.CountsPerDeg()),    Number(usable.low) + " to " + Number(usable.high),
+          AboutTheMiddle(sensor),           NumberText(counts.low) + " to " + NumberText(counts.high)};
+}
+
+/// Where the converter's range ends before the potentiometer's travel does.
+std::string SaturationText(const AdcSensor& sensor) {
+  const auto angle = sensor.SaturationAngleDeg();
+  if (!angle) return "";
+  AdcSensor divided = sensor;
+  divided.divider = sensor.reference_voltage / sensor.supply_voltage;
+  const double highest = sensor.divider * sensor.supply_voltage;
+  return Paragraph("With a reference of " + Number(sensor.reference_voltage) + " V, below the " + Number(highest) +
+                       " V that the potentiometer gives, all angles above " + Number(*angle) + " deg read " +
+                       NumberText(sensor.FullScale()) + (*angle <= 0 ? ", the middle of the travel among them" : "") +
+                       ". --divider " + Number(divided.divider) + " would bring the whole travel within it, at " +
+                       Number(divided.DegPerCount()) + " deg per count.",
+                   std::string(kIndent, ' '), kWidth);
+}
+
+}  // namespace
+
+std::string AdcPlanText(std::span<const AdcSensor> sensors) {
+  if (sensors.empty()) return "";
+  const AdcSensor& first = sensors.front();
+  std::vector<std::vector<std::string>> rows;
+  std::string remarks;
+  for (const AdcSensor& sensor : sensors) {
+    rows.push_back(SensorRow(sensor));
+    remarks += SaturationText(sensor);
+  }
+  return "[[Sensor]]\n" +
+         Paragraph("Potentiometer of " + Number(first.travel_deg) + " deg across " + Number(first.supply_voltage) +
+                       " V" + (first.divider == 1 ? "" : ", divided by " + Number(1 / first.divider)) + ", read by " +
+                       std::to_string(first.bits) + " bits; angles in deg from the middle of the travel.",
+                   std::string(kIndent, ' '), kWidth) +
+         AlignedTable({{"reference [V]", true},
+                       {"deg per count", true},
+                       {"counts per deg", true},
+                       {"usable [deg]", true},
+                       {"about the middle [deg]", true},
+                       {"counts", true}},
+                      rows, kIndent) +
+         remarks;
+}
+
+}  // namespace pendulum

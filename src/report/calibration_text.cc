@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/calibration_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Row = std::vector<std::string>;
+
+constexpr int kIndent = 4;
+constexpr int kWidth = 100;                   // columns, of prose
+constexpr int kDigits = 6;                    // significant, of a number without an error
+constexpr int kFewDigits = 3;                 // significant, of a number to be compared
+constexpr double kSignificance = 0.05;        // of the tests
+constexpr std::string_view kMargin = "    ";  // kIndent blanks
+
+std::string Prose(std::string_view text) { return Paragraph(text, kMargin, kWidth); }
+
+std::string Short(double value) { return NumberText(value, kFewDigits); }
+
+std::string ProbabilityText(double p) {
+  constexpr double kLeast = 1e-4;
+  return p < kLeast ? "p < 0.0001" : "p " + NumberText(p, 2);
+}
+
+std::string Span(double one, double other, const std::string& unit) {
+  return NumberText(std::min(one, other), kDigits) + " to " + NumberText(std::max(one, other), kDigits) + " " + unit;
+}
+
+std::string Power(int exponent, const std::string& base) {
+  return exponent == 0 ? "" : exponent == 1 ? base : base + "^" + std::to_string(exponent);
+}
+
+/// The curve with its numbers: -49.6077 + 0.198544 x
+std::string Polynomial(const std::vector<double>& coefficients) {
+  std::string text;
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    const double value = coefficients[k];
+    text += k == 0 ? (value < 0 ? "-" : "") : value < 0 ? " - " : " + ";
+    text += NumberText(std::abs(value), kDigits) + (k == 0 ? "" : " " + Power(static_cast<int>(k), "x"));
+  }
+  return text;
+}
+
+std::string DataText(const CalibrationTable& table, const CalibrationFit& fit) {
+  const Calibration& calibration = fit.calibration;
+  std::vector<Row> rows = {
+      {"table", table.path},
+      {"points", std::to_string(table.size()) + ", " +
+                     Span(table.reading.minCoeff(), table.reading.maxCoeff(), table.input) + ", " +
+                     Span(table.angle.minCoeff(), table.angle.maxCoeff(), table.angle_unit)},
+      {"curve", "angle = " + Polynomial(calibration.coefficients) + " " + table.angle_unit + ", x in " + table.input}};
+  if (calibration.input_range) {
+    rows.push_back({"sensor's range", Span(calibration.input_range->low, calibration.input_range->high, table.input)});
+  }
+  return "[[Calibration]]\n" + AlignedTable({{""}, {""}}, rows, kIndent);
+}
+
+std::string CoefficientsText(const CalibrationTable& table, const CalibrationFit& fit) {
+  const Calibration& calibration = fit.calibration;
+  const std::string reading_unit = table.input == "counts" ? "count" : "V";
+  const bool has_errors = calibration.covariance.size() > 0;
+  std::vector<Row> rows;
+  for (int k = 0; k <= fit.order; ++k) {
+    const double value = calibration.coefficients[k];
+    ValueAndError text{NumberText(value, kDigits), ""};
+    if (has_errors && calibration.covariance(k, k) > 0) text = PdgText(value, std::sqrt(calibration.covariance(k, k)));
+    const std::string unit = table.angle_unit + (k == 0 ? "" : "/" + Power(k, reading_unit));
+    rows.push_back({"c" + std::to_string(k), text.value, text.error.empty() ? "" : "± " + text.error, unit});
+  }
+  return "[[Coefficients]]\n" +
+         AlignedTable({{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kIndent);
+}
+
+std::string CorrelationText(const CalibrationFit& fit) {
+  const Eigen::MatrixXd& covariance = fit.calibration.covariance;
+  std::string text;
+  for (Index i = 0; i < covariance.rows(); ++i) {
+    for (Index j = i + 1; j < covariance.rows(); ++j) {
+      const double scale = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
+      if (!(scale > 0)) continue;
+      text += (text.empty() ? "" : ", ") + ("c" + std::to_string(i)) + " c" + std::to_string(j) + " " +
+              FixedText(covariance(i, j) / scale, 3);
+    }
+  }
+  return text.empty() ? "" : Prose("Correlations: " + text + ".");
+}
+
+// --- points ---------------------------------------------------------------------------------------------------------
+
+/// All points in the order of the table, or those with the largest residuals, the largest first.
+std::vector<Index> ShownPoints(const CalibrationFit& fit) {
+  std::vector<Index> points(fit.residual.size());
+  std::iota(points.begin(), points.end(), Index{0});
+  if (points.size() <= kShownPoints) return points;
+  std::ranges::stable_sort(points, std::greater(), [&](Index i) { return std::abs(fit.residual[i]); });
+  points.resize(kShownPoints);
+  return points;
+}
+
+/// Three digits of the largest residual; less than a millionth of the angles counts as nothing.
+int Decimals(const CalibrationTable& table, const CalibrationFit& fit) {
+  constexpr double kNothing = 1e-6;
+  const double scale = std::max(std::abs(fit.residual[fit.largest]), kNothing * table.angle.cwiseAbs().maxCoeff());
+  return std::max(0, kFewDigits - 1 - static_cast<int>(std::floor(std::log10(scale))));
+}
+
+std::string PointsText(const CalibrationTable& table, const CalibrationFit& fit) {
+  const Rounding rounding{Decimals(table, fit), 0};
+  const bool has_left_out = fit.left_out.size() > 0;
+  std::vector<Row> rows;
+  for (const Index i : ShownPoints(fit)) {
+    rows.push_back({NumberText(table.reading[i]), NumberText(table.angle[i]),
+                    RoundedText(table.angle[i] - fit.residual[i], rounding), RoundedText(fit.residual[i], rounding),
+                    has_left_out ? RoundedText(fit.left_out[i], rounding) : "",
+                    has_left_out && i == fit.largest ? "largest" : ""});
+  }
+  const std::string unit = " [" + table.angle_unit + "]";
+  const bool all = static_cast<Index>(rows.size()) == table.size();
+  return "[[Points]]" + (all ? "" : " (the " + std::to_string(kShownPoints) + " with the largest residuals)") + "\n" +
+         AlignedTable({{table.input, true},
+                       {"angle" + unit, true},
+                       {"curve" + unit, true},
+                       {"residual" + unit, true},
+                       {has_left_out ? "left out" + unit : "", true},
+                       {""}},
+                      rows, kIndent);
+}
+
+// --- in words -------------------------------------------------------------------------------------------------------
+
+std::string CurveName(int order) {
+  return order == 1 ? "a straight line" : "a curve of order " + std::to_string(order);
+}
+
+std::string ErrorsText(const CalibrationTable& table, const CalibrationFit& fit) {
+  const std::optional<double> left_out = fit.LeaveOneOutRms();
+  if (!left_out) {
+    return Prose(
+        "The curve has as many coefficients as the table has points and passes through each: there are no "
+        "residuals to tell standard errors, and none is given. Measure more angles.");
+  }
+  const std::string& unit = table.angle_unit;
+  return Prose("Residual standard deviation " + Short(*fit.calibration.residual_std_dev) + " " + unit + " (" +
+               std::to_string(table.size()) + " points less " + std::to_string(fit.order + 1) +
+               " coefficients); leave-one-out error " + Short(*left_out) + " " + unit +
+               " rms: how far the curve misses a point that did not take part (\"left out\" above).");
+}
+
+/// From 5 on "an order of magnitude above", from 50 on two, and so on.
+std::string MagnitudeText(double ratio) {
+  const int orders = static_cast<int>(std::floor(std::log10(2 * ratio)));
+  if (orders <= 0) return "above";
+  return (orders == 1 ? "an order" : std::to_string(orders) + " orders") + " of magnitude above";
+}
+
+/// Do the residuals come from the rounding to counts?
+std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& fit) {
+  if (fit.resolution == 0) return "";
+  const std::string& unit = table.angle_unit;
+  const double largest = std::abs(fit.residual[fit.largest]);
+  const double ratio = largest / fit.resolution;
+  const std::string count = "The resolution is " + NumberText(fit.resolution, 4) + " " + unit + ", one count";
+  if (!fit.rounding) return Prose(count + ".");
+  const std::string rounding =
+      "Rounding to counts would leave a standard deviation of " + Short(fit.rounding->std_dev) + " " + unit;
+  const std::string test = " (χ², " + ProbabilityText(fit.rounding->p) + ")";
+  if (fit.rounding->p >= kSignificance) {
+    return Prose(count + ". " + rounding + "; the residuals are no larger than that" + test +
+                 ": nothing shows a lack of fit.");
+  }
+  return Prose(
+      count + "; the residuals, up to " + Short(largest) + " " + unit + " at " +
+      NumberText(table.reading[fit.largest]) + " " + table.input + " (line " + std::to_string(table.line[fit.largest]) +
+      "), are " +
+      (ratio >= 2 ? MagnitudeText(ratio) + " it (" + NumberText(ratio, 2) + " counts)"
+                  : "of its size (" + NumberText(ratio, 2) + " counts)") +
+      ". " + rounding + ", and they have " + Short(*fit.calibration.residual_std_dev) + " " + unit + test +
+      ": lack of fit. The sensor is not as even as the curve, or the angles were not set as well as the sensor "
+      "resolves them.");
+}
+
+std::string FText(const OrderTest& test) {
+  const std::string f = std::isfinite(test.f) ? NumberText(test.f, kFewDigits) : "infinite";
+  return " (F(1, " + std::to_string(test.freedom) + ") " + f + ", " + ProbabilityText(test.p) + ")";
+}
+
+std::string OrdersText(const CalibrationFit& fit) {
+  std::string text;
+  if (fit.lower_order && fit.lower_order->p >= kSignificance) {
+    text += "This curve is not significantly better than " + CurveName(fit.order - 1) + FText(*fit.lower_order) +
+            ", which --order " + std::to_string(fit.order - 1) + " gives. ";
+  } else if (fit.lower_order) {
+    text += "This curve is significantly better than " + CurveName(fit.order - 1) + FText(*fit.lower_order) + ". ";
+  }
+  if (fit.higher_order) {
+    const bool better = fit.higher_order->p < kSignificance;
+    const std::string curve = "A" + CurveName(fit.order + 1).substr(1);
+    text += curve + (better ? " is significantly better" : " is not significantly better") + FText(*fit.higher_order) +
+            (better ? ": see --order " + std::to_string(fit.order + 1) : "") + ".";
+  }
+  return text.empty() ? "" : Prose(text);
+}
+
+/// Nothing is known outside of the table, and a curve may turn there.
+std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit) {
+  const double low = table.reading.minCoeff(), high = table.reading.maxCoeff();
+  std::string text = "Outside " + Span(low, high, table.input) + " the curve is extrapolated.";
+  const std::optional<SensorRange>& range = fit.calibration.input_range;
+  const auto turn = range ? TurningReading(fit.calibration, range->low, range->high) : std::nullopt;
+  if (turn) {
+    text += " In the sensor's range it turns at about " + NumberText(*turn, 4) + " " + table.input +
+            ": readings from there on would be taken for wrong angles.";
+  }
+  return Prose(text);
+}
+
+}  // namespace
+
+std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit) {
+  return DataText(table, fit) + CoefficientsText(table, fit) + CorrelationText(fit) + PointsText(table, fit) +
+         "[[Fit]]\n" + ErrorsText(table, fit) + LackOfFitText(table, fit) + OrdersText(fit) + OutsideText(table, fit);
+}
+
+}  // namespace pendulum

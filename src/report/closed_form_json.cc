@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/closed_form_json.h"
+
+#include <vector>
+
+#include "pendulum/report/closed_form_quantities.h"
+#include "pendulum/report/json_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json EstimateJson(const ReportedEstimate& reported) {
+  return NumberObject()
+      .Set("estimate", reported.estimate.value)
+      .Set("std_error", reported.estimate.std_error)
+      .Set("unit", Json(reported.unit))
+      .Done();
+}
+
+Json EstimatesJson(const std::vector<ReportedEstimate>& estimates) {
+  Json json = Json::object();
+  for (const ReportedEstimate& reported : estimates) json[reported.name] = EstimateJson(reported);
+  return json;
+}
+
+Json LinearJson(const LogDecrement& linear, const std::optional<Rig>& rig) {
+  Json json = EstimatesJson(LinearEstimates(linear, rig));
+  json["periods"] = linear.periods;
+  return json;
+}
+
+Json DecrementJson(const Decrement& decrement, const RunReport& report) {
+  return NumberObject()
+      .Set("parameters", EstimatesJson(DecrementEstimates(decrement, report.data.unit, report.rig)))
+      .Set("chi_square", decrement.chi_square)
+      .Set("dof", Json(decrement.freedom))
+      .Set("p", decrement.Probability())
+      .Done();
+}
+
+Json EnvelopesJson(const std::vector<EnvelopeLaw>& laws) {
+  Json json = Json::array();
+  for (const EnvelopeLaw& law : laws) {
+    json.push_back(NumberObject()
+                       .Set("term", Json(law.term))
+                       .Set("shape", Json(law.shape))
+                       .Set("chi_square", law.chi_square)
+                       .Set("dof", Json(law.freedom))
+                       .Set("p", law.probability)
+                       .Done());
+  }
+  return json;
+}
+
+Json RowJson(const ClosedFormRow& row) {
+  const std::string missing = row.why.empty() ? "there is no error to compare with" : row.why;
+  return NumberObject()
+      .Set("quantity", Json(row.quantity))
+      .Set("method", Json(row.method))
+      .Set("closed_form", row.closed_form)
+      .Set("std_error", row.std_error, missing)
+      .Set("fit", row.fit)
+      .Set("unit", Json(row.unit))
+      .Set("z", row.z, missing)
+      .Set("agrees", row.agrees ? Json(*row.agrees) : Json(nullptr))
+      .Set("why", TextOrNull(row.why))
+      .Done();
+}
+
+/// A number that 0 stands for when it is not known.
+std::optional<double> Known(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
+
+}  // namespace
+
+nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling) {
+  if (!sampling) return nullptr;
+  const std::string no_frequency = "neither turning points nor a rig tell the frequency of the swing";
+  const std::string no_counts = "the readings stand on no levels";
+  return NumberObject()
+      .Set("rate_hz", sampling->rate_hz)
+      .Set("jitter_s", sampling->jitter)
+      .Set("gaps", Json(sampling->gaps))
+      .Set("longest_gap_s", sampling->longest_gap)
+      .Set("frequency_hz", Known(sampling->frequency_hz), no_frequency)
+      .Set("seen_frequency_hz", NumberOrNull(sampling->seen_frequency_hz))
+      .Set("expected_frequency_hz", NumberOrNull(sampling->expected_frequency_hz))
+      .Set("samples_per_period", Known(sampling->samples_per_period), no_frequency)
+      .Set("nyquist_margin", Known(sampling->nyquist_margin), no_frequency)
+      .Set("start_counts", Known(sampling->start_counts), no_counts)
+      .Set("end_counts", Known(sampling->end_counts), no_counts)
+      .Set("saturated_samples", Json(sampling->saturated))
+      .Done();
+}
+
+nlohmann::ordered_json CheckJson(const ClosedFormCheck* check) {
+  Json rows = Json::array();
+  if (check == nullptr) return rows;
+  for (const ClosedFormRow& row : check->rows) rows.push_back(RowJson(row));
+  return rows;
+}
+
+nlohmann::ordered_json ClosedFormsJson(const RunReport& report) {
+  if (!report.closed_forms) return nullptr;
+  const ClosedForms& forms = *report.closed_forms;
+  NumberObject json;
+  json.Set("model", Json(report.closed_forms_model));
+  json.Set("linear", forms.linear ? LinearJson(*forms.linear, report.rig) : Json(nullptr));
+  if (!forms.linear) json.Because("linear: no two turning points a whole period apart follow each other");
+  json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, report) : Json(nullptr));
+  if (!forms.decrement) json.Because("decrement: " + forms.no_decrement);
+  return json.Set("envelopes", EnvelopesJson(forms.envelopes))
+      .Set("envelope", TextOrNull(forms.envelope))
+      .Set("turning_points", Json(forms.table.peaks.size()))
+      .Set(KeyWithUnit("noise", report.data.unit), forms.table.noise)
+      .Done();
+}
+
+}  // namespace pendulum

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/closed_form_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/closed_form_quantities.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+/// A fact too long for one line.
+std::string LongFact(const std::string& name, const std::string& text) {
+  return Paragraph(text, std::string(kTextIndent, ' ') + name + "  ", kTextWidth);
+}
+
+// --- sampling --------------------------------------------------------------------------------------------------------
+
+std::string JitterText(const Sampling& sampling) {
+  constexpr double kEven = 1e-6;  // of an interval: rounding of the stamps
+  if (sampling.jitter * sampling.rate_hz < kEven) return "even";
+  return "intervals scatter by " + NumberText(1e3 * sampling.jitter, 2) + " ms";
+}
+
+std::string GapsText(const Sampling& sampling) {
+  if (sampling.gaps == 0) return "none";
+  return std::to_string(sampling.gaps) + ", of " + NumberText(sampling.longest_gap, 3) + " s at most";
+}
+
+std::string SwingText(const Sampling& sampling) {
+  std::string text = NumberText(sampling.frequency_hz, 3) + " Hz: " + NumberText(sampling.samples_per_period, 3) +
+                     " samples a period, Nyquist margin " + NumberText(sampling.nyquist_margin, 3);
+  if (!sampling.expected_frequency_hz) return text;
+  return text + "; " + NumberText(*sampling.expected_frequency_hz, 3) + " Hz expected from the rig";
+}
+
+std::string LevelsText(const Sampling& sampling) {
+  return NumberText(sampling.start_counts) + " peak to peak at the start, " + NumberText(sampling.end_counts) +
+         " at the end";
+}
+
+// --- closed forms ----------------------------------------------------------------------------------------------------
+
+Cells EstimateCells(const ReportedEstimate& reported, const Conversion& conversion) {
+  const QuantityNumbers numbers(reported.estimate.value, reported.estimate.std_error, conversion.factor);
+  return {"", "", numbers.Value(), numbers.Error(), std::string(conversion.unit)};
+}
+
+/// `in_degrees`: what is in radians once more in degrees.
+std::string EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degrees) {
+  std::vector<Cells> rows;
+  for (const ReportedEstimate& reported : estimates) {
+    Cells row = EstimateCells(reported, {reported.unit});
+    row[0] = reported.name;
+    row[1] = reported.symbol;
+    rows.push_back(std::move(row));
+    const auto degrees = Degrees(reported.unit);
+    if (in_degrees && degrees) rows.push_back(EstimateCells(reported, *degrees));
+  }
+  return AlignedTable({{"name"}, {"symbol"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kTextIndent);
+}
+
+std::string LinearText(const ClosedForms& forms, const std::optional<Rig>& rig) {
+  if (!forms.linear) return Prose("No two turning points a whole period apart follow each other: no log decrement.");
+  const int periods = forms.linear->periods;
+  return Prose("Formulas of the linear pendulum, over " + std::to_string(periods) +
+               (periods == 1 ? " period" : " periods") + " from turning point " +
+               std::to_string(forms.linear->first + 1) +
+               " on; corrected_inertia: each period divided by the elliptic integral's ratio.") +
+         EstimateTable(LinearEstimates(*forms.linear, rig), false);
+}
+
+std::string DecrementText(const RunReport& report) {
+  const ClosedForms& forms = *report.closed_forms;
+  if (!forms.decrement) return Prose("No law was fitted to the turning points: " + forms.no_decrement + ".");
+  const Decrement& decrement = *forms.decrement;
+  std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
+  if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
+  return Prose("Fitted to all " + std::to_string(forms.table.peaks.size()) +
+               " turning points, exact at any amplitude, with the friction of model " + report.closed_forms_model +
+               ": chi-square " + NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
+               " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".") +
+         EstimateTable(estimates, true);
+}
+
+// --- the check -------------------------------------------------------------------------------------------------------
+
+/// 0.1 of a standard deviation is as fine as a z is read.
+std::string ZText(const std::optional<double>& z) { return z && std::isfinite(*z) ? RoundedText(*z, {1, 0}) : "-"; }
+
+Cells CheckCells(const ClosedFormRow& row) {
+  const QuantityNumbers numbers(row.closed_form, row.std_error);
+  const std::string value = numbers.Error().empty() ? numbers.Number(row.closed_form) : numbers.Value();
+  const std::string agrees = !row.agrees ? "-" : *row.agrees ? "yes" : "NO";
+  return {row.quantity, value, numbers.Error(), numbers.Number(row.fit), row.unit, ZText(row.z), agrees};
+}
+
+std::string CheckText(const ClosedFormCheck& check, const std::string& of) {
+  std::vector<Cells> rows;
+  std::string reasons;
+  for (const ClosedFormRow& row : check.rows) {
+    rows.push_back(CheckCells(row));
+    if (!row.why.empty()) reasons += Prose(row.quantity + ": " + row.why + ".");
+  }
+  const std::vector<Column> columns = {
+      {"quantity"}, {"closed form", true}, {"± std error", false, 1}, {"fit", true}, {"unit"}, {"z", true}, {"agrees"}};
+  std::string text = Heading("Closed forms against the fit" + of) + AlignedTable(columns, rows, kTextIndent) + reasons;
+  for (const std::string& summary : {check.overlay.summary, check.summary}) {
+    if (!summary.empty()) text += Prose(summary + ".");
+  }
+  return text;
+}
+
+// --- turning points --------------------------------------------------------------------------------------------------
+
+/// How many turning points are listed from the beginning and from the end.
+struct Listed {
+  std::size_t first, last;
+};
+
+constexpr Listed kBesideAFit = {10, 2};
+constexpr Listed kAlone = {58, 2};
+
+std::vector<Column> PeakColumns(const PeakTable& table, const std::string& unit) {
+  const std::string quantity = table.quantity == Quantity::kRate ? "rate" : "angle";
+  return {{"number", true},
+          {"t [s]", true},
+          {quantity + " [" + unit + "]", true},
+          {"ζ of the pair", true},
+          {"± std error", false, 1},
+          {"ζ over n periods", true},
+          {"± std error", false, 1},
+          {"n", true}};
+}
+
+/// A value and its error in two cells; empty when there is none.
+std::array<std::string, 2> RatioCells(const std::optional<Estimate>& ratio) {
+  if (!ratio) return {"", ""};
+  const QuantityNumbers numbers(ratio->value, ratio->std_error);
+  return {numbers.Value(), numbers.Error()};
+}
+
+Cells PeakCells(const ClosedForms& forms, std::size_t i, double factor) {
+  const Peak& peak = forms.table.peaks[i];
+  const QuantityNumbers time(peak.time, std::sqrt(peak.covariance(0, 0)));
+  const QuantityNumbers value(peak.value, std::sqrt(peak.covariance(1, 1)), factor);
+  Cells cells = {std::to_string(i + 1), time.Number(peak.time), value.Number(peak.value), "", "", "", "", ""};
+  if (i >= forms.decay.size()) return cells;
+  const DecayRow& decay = forms.decay[i];
+  std::ranges::copy(RatioCells(decay.pair), cells.begin() + 3);
+  std::ranges::copy(RatioCells(decay.so_far), cells.begin() + 5);
+  if (decay.so_far) cells[7] = std::to_string(decay.periods);
+  return cells;
+}
+
+/// A line put behind so many lines of a text.
+std::string WithLineAfter(std::size_t lines, const std::string& line, std::string text) {
+  std::size_t at = 0;
+  for (; lines > 0; --lines) at = text.find('\n', at) + 1;
+  return text.insert(at, std::string(kTextIndent, ' ') + line + "\n");
+}
+
+std::string TurningPointText(const RunReport& report) {
+  const ClosedForms& forms = *report.closed_forms;
+  const std::optional<Conversion> degrees = Degrees(report.data.unit);
+  const Conversion shown = degrees.value_or(Conversion{report.data.unit});
+  const Listed listed = report.fits.empty() ? kAlone : kBesideAFit;
+  const std::size_t count = forms.table.peaks.size();
+  const std::size_t left_out = count - std::min(count, listed.first + listed.last);
+  std::vector<Cells> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (left_out > 0 && i == listed.first) i += left_out;
+    rows.push_back(PeakCells(forms, i, shown.factor));
+  }
+  const std::string table = AlignedTable(PeakColumns(forms.table, std::string(shown.unit)), rows, kTextIndent);
+  const std::string more = "... " + std::to_string(left_out) + " more: --series";
+  return Heading("Turning points") + (left_out > 0 ? WithLineAfter(1 + listed.first, more, table) : table);
+}
+
+}  // namespace
+
+std::string SamplingText(const RunReport& report) {
+  if (!report.sampling) return "";
+  const Sampling& sampling = *report.sampling;
+  std::vector<Cells> rows = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
+                             {"gaps", GapsText(sampling)}};
+  if (sampling.frequency_hz > 0) rows.push_back({"swing", SwingText(sampling)});
+  if (sampling.start_counts > 0) rows.push_back({"levels", LevelsText(sampling)});
+  if (sampling.saturated > 0) {
+    rows.push_back({"saturated", std::to_string(sampling.saturated) + " readings at an end of the sensor's range"});
+  }
+  return Heading("Sampling") + Facts(rows);
+}
+
+std::string ClosedFormText(const RunReport& report) {
+  if (!report.closed_forms) {
+    if (report.no_closed_forms.empty()) return "";
+    return Heading("Closed forms") + Prose("There are none: " + report.no_closed_forms + ".");
+  }
+  std::string text = Heading("Closed forms") + LinearText(*report.closed_forms, report.rig) + DecrementText(report);
+  if (!report.closed_forms->envelope.empty()) text += LongFact("envelope", report.closed_forms->envelope);
+  for (std::size_t i = 0; i < report.checks.size(); ++i) {
+    const bool several = report.checks.size() > 1;
+    text += CheckText(report.checks[i], several ? " of " + std::string(report.fits[i].model.name) : "");
+  }
+  return text + TurningPointText(report);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/plan_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
+
+namespace pendulum {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+constexpr int kWidth = 120;
+constexpr int kIndent = 4;
+constexpr std::string_view kMargin = "    ";
+constexpr int kDigits = 4;
+constexpr int kDegreeDigits = 3;
+constexpr int kErrorDigits = 2;
+
+/// How the plan's numbers are shown, parameter by parameter.
+class Units {
+ public:
+  Units(const Plan& plan, const std::optional<Rig>& rig)
+      : plan_(plan), gravity_torque_(rig ? std::optional(rig->gravity_torque.value) : std::nullopt) {}
+
+  std::string Name(std::size_t i) const {
+    return std::string(gravity_torque_ ? plan_.parameters[i].unit : plan_.parameters[i].relative_unit);
+  }
+  /// The report's value of one in units of G.
+  double Factor(std::size_t i) const {
+    return plan_.parameters[i].scales_with_gravity() ? gravity_torque_.value_or(1.0) : 1.0;
+  }
+  bool IsPercent(std::size_t i) const { return i < plan_.physical && plan_.truth[i] != 0; }
+
+ private:
+  const Plan& plan_;
+  std::optional<double> gravity_torque_;
+};
+
+/// Two digits, as the rounding of errors keeps at most; three where a power of ten would follow them.
+std::string ErrorText(double error) { return NumberText(error, error < 100 ? kErrorDigits : kErrorDigits + 1); }
+
+std::string BiasCell(const std::optional<double>& share) {
+  constexpr double kRounding = 1e-10;  // of the formulas, which a linear pendulum with viscous friction obeys exactly
+  if (!share) return "-";
+  return NumberText(std::abs(*share) < kRounding ? 0.0 : 100 * *share, kErrorDigits);
+}
+
+std::string ErrorCell(const Plan& plan, const Units& units, const PlanRow& row, std::size_t i) {
+  if (!row.std_errors[i]) return "-";
+  const double error = *row.std_errors[i];
+  return ErrorText(units.IsPercent(i) ? 100 * error / std::abs(plan.truth[i]) : units.Factor(i) * error);
+}
+
+/// A value, angles and rates in degrees too.
+std::string ValueText(double value, std::string_view unit) {
+  std::string text = NumberText(value, kDigits) + " " + std::string(unit);
+  if (unit.substr(0, 3) != "rad") return text;
+  return text + " (" + NumberText(value / kRadFromDeg, kDegreeDigits) + " deg" + std::string(unit.substr(3)) + ")";
+}
+
+/// The parameters of the base case.
+std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base) {
+  std::vector<Cells> rows;
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    const double value = units.Factor(i) * plan.truth[i];
+    Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kDigits), "± -", units.Name(i), ""};
+    if (base.std_errors[i]) {
+      const ValueAndError text = PdgText(value, units.Factor(i) * *base.std_errors[i]);
+      cells[1] = text.value;
+      cells[2] = "± " + text.error;
+      if (units.IsPercent(i)) cells[4] = ErrorCell(plan, units, base, i) + " %";
+    }
+    rows.push_back(cells);
+  }
+  return std::string("[[Predicted standard errors]] ") +
+         (plan.noise_of_levels ? "(of least squares)\n" : "(Cramér-Rao: no unbiased fit has smaller ones)\n") +
+         AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kIndent);
+}
+
+std::vector<Column> FactorColumns(const Plan& plan) {
+  std::vector<Column> columns = {{"factor"}, {"value"}, {"", false, 1}};
+  for (const ParameterInfo& info : plan.parameters) columns.push_back({std::string(info.name), true});
+  columns.push_back({"linear bias", true});
+  return columns;
+}
+
+/// The unit of each column, and a blank line before each factor.
+std::string FactorTable(const Plan& plan, const Units& units) {
+  const std::vector<Column> columns = FactorColumns(plan);
+  Cells unit_cells(3);
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    unit_cells.push_back(units.IsPercent(i) ? "%" : units.Name(i));
+  }
+  unit_cells.emplace_back("%");
+  std::vector<Cells> rows = {unit_cells};
+  std::string_view factor;
+  for (const PlanRow& row : plan.rows) {
+    if (row.factor != factor) rows.emplace_back(columns.size());
+    factor = row.factor;
+    Cells cells = {std::string(factor), ValueText(row.value, row.unit), row.is_base ? "*" : ""};
+    for (std::size_t i = 0; i < plan.parameters.size(); ++i) cells.push_back(ErrorCell(plan, units, row, i));
+    cells.push_back(BiasCell(row.linear_bias));
+    rows.push_back(cells);
+  }
+  return "\n[[One thing changed at a time]] (* the recording as it is)\n" + AlignedTable(columns, rows, kIndent);
+}
+
+bool LacksSomething(const PlanRow& row) {
+  return !row.linear_bias || std::ranges::any_of(row.std_errors, [](const auto& error) { return !error; });
+}
+
+/// Why cells are "-".
+std::string MissingText(const Plan& plan) {
+  std::string text;
+  bool others = false;
+  for (const PlanRow& row : plan.rows) {
+    const std::string name = std::string(row.factor) + " " + ValueText(row.value, row.unit);
+    if (!row.reason.empty()) text += Paragraph(name + ": " + row.reason + ".", "    - ", kWidth);
+    others = others || (row.reason.empty() && LacksSomething(row));
+  }
+  if (!others) return text;
+  return text + Paragraph(
+                    "no bound is known for this noise and sensor, or the readings do not tell the parameter; "
+                    "for the linear formulas: less than one whole period.",
+                    "    - ", kWidth);
+}
+
+std::string BiasText(const Plan& plan, bool has_bound) {
+  const std::string formulas =
+      "The linear formulas (inertia from damped period and logarithmic decrement, sin θ = θ; all whole periods, "
+      "turning "
+      "points without error) ";
+  if (!has_bound) return formulas + "cannot be compared with a standard error that is not known.";
+  if (!plan.amplitude_of_equal_bias) {
+    return formulas + "have no amplitude up to " + NumberText(kLargestPlannedAmplitude) +
+           " rad from which on they are off by more than the standard error of inertia.";
+  }
+  const double amplitude = *plan.amplitude_of_equal_bias;
+  return formulas + "are off by more than the standard error of inertia above an amplitude of " +
+         NumberText(amplitude, kDegreeDigits) + " rad (" + NumberText(amplitude / kRadFromDeg, kDegreeDigits) +
+         " deg): beyond it, fit the full equation.";
+}
+
+std::string ReadingText(const Plan& plan, const std::optional<Rig>& rig) {
+  std::string text =
+      "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how "
+      "much the linear formulas miss it without any noise. ";
+  if (plan.noise_of_levels) {
+    text += "Levels without noise have no Cramér-Rao bound: they are taken for white noise of " +
+            NumberText(*plan.noise_of_levels, kDigits) + " " + std::string(plan.parameters.back().unit) +
+            " (their spacing over √12), as least squares sees them; a fit that knows the levels does better. ";
+  }
+  if (!rig) return text + "Torques and inertia are in units of the gravity torque G; with a rig, G's own error adds.";
+  const auto [torque, error] = rig->gravity_torque;
+  if (error == 0) return text + "The error of the rig's gravity torque G adds to those of inertia and torques.";
+  return text + "The error of the rig's gravity torque G, " + ErrorText(100 * error / torque) +
+         " %, adds to those of inertia and torques.";
+}
+
+}  // namespace
+
+std::string PlanText(const Plan& plan, const std::optional<Rig>& rig) {
+  const Units units(plan, rig);
+  const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
+  const std::string missing = MissingText(plan);
+  return BaseText(plan, units, *base) + FactorTable(plan, units) + (missing.empty() ? "" : "\n" + missing) +
+         "\n[[How to read it]]\n" + Paragraph(BiasText(plan, base->std_errors.front().has_value()), kMargin, kWidth) +
+         Paragraph(ReadingText(plan, rig), kMargin, kWidth);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/calibrate_sensor_options.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/recording/calibrate.h"
+#include "tools/command_line.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kMostBits = 32;
+constexpr int kUsualBits = 10;  // of the ATmega328P
+
+Result<void> CheckWhole(const std::string& flag, int value, int most) {
+  if (value >= 1 && value <= most) return {};
+  return BadFlag(flag + " is " + std::to_string(value) + "; it must be 1 to " + std::to_string(most));
+}
+
+/// A quantity that nothing sensible exceeds and no computation overflows with.
+Result<void> CheckQuantity(const std::string& flag, double value, double most) {
+  if (value >= 1e-6 && value <= most) return {};
+  return BadFlag(flag + " is " + NumberText(value) + "; it must be positive, 0.000001 to " + NumberText(most));
+}
+
+Result<SensorRange> ParseInputRange(const std::string& text) {
+  const std::vector<std::string> ends = Split(text, ',');
+  if (ends.size() != 2 || text.ends_with(',')) return BadFlag("--input_range is '" + text + "'; it must be low,high");
+  const Result<double> low = ParseNumber("--input_range", ends[0], "two numbers: low,high");
+  const Result<double> high = ParseNumber("--input_range", ends[1], "two numbers: low,high");
+  if (!low) return tl::unexpected(low.error());
+  if (!high) return tl::unexpected(high.error());
+  if (*low >= *high) return BadFlag("--input_range is '" + text + "'; low must be less than high");
+  return SensorRange{*low, *high};
+}
+
+/// A flag that was given although it says nothing of what is to be done.
+Result<void> CheckBelongs(bool is_given, const std::string& flag, bool plan) {
+  if (!is_given) return {};
+  return BadFlag(flag + (plan ? " belongs to the calibration of a table; leave it or --plan out"
+                              : " belongs to a plan; add --plan, or leave it out"));
+}
+
+Result<void> CheckTask(const CalibrateSensorFlags& flags) {
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.plan && flags.data.empty()) {
+    return BadFlag(
+        "--data is missing: a table of counts or volts and angles, or - for standard input; --plan needs none");
+  }
+  const CalibrateSensorFlags unset;
+  const std::array<std::pair<bool, const char*>, 5> of_a_table = {{{!flags.data.empty(), "--data"},
+                                                                   {flags.order != unset.order, "--order"},
+                                                                   {!flags.input_range.empty(), "--input_range"},
+                                                                   {!flags.json.empty(), "--json"},
+                                                                   {!flags.plot.empty(), "--plot"}}};
+  const std::array<std::pair<bool, const char*>, 4> of_a_plan = {
+      {{!flags.reference_voltage.empty(), "--reference_voltage"},
+       {flags.supply_voltage != unset.supply_voltage, "--supply_voltage"},
+       {flags.potentiometer_range_deg != unset.potentiometer_range_deg, "--potentiometer_range_deg"},
+       {flags.divider != unset.divider, "--divider"}}};
+  for (const auto& [is_given, flag] : of_a_table) {
+    if (auto checked = CheckBelongs(flags.plan && is_given, flag, true); !checked) return checked;
+  }
+  for (const auto& [is_given, flag] : of_a_plan) {
+    if (auto checked = CheckBelongs(!flags.plan && is_given, flag, false); !checked) return checked;
+  }
+  return flags.bits == 0 ? Result<void>() : CheckWhole("--bits", flags.bits, kMostBits);
+}
+
+Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
+  constexpr double kMostVolts = 1000, kMostDeg = 36000;
+  if (auto checked = CheckQuantity("--supply_voltage", flags.supply_voltage, kMostVolts); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (auto checked = CheckQuantity("--potentiometer_range_deg", flags.potentiometer_range_deg, kMostDeg); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (auto checked = CheckQuantity("--divider", flags.divider, 1); !checked) return tl::unexpected(checked.error());
+  const std::string list = flags.reference_voltage.empty() ? "5" : flags.reference_voltage;
+  if (list.ends_with(',')) return BadFlag("--reference_voltage is '" + list + "', which ends with a comma");
+  std::vector<AdcSensor> plan;
+  for (const std::string& text : Split(list, ',')) {
+    const auto volts = ParseNumber("--reference_voltage", text, "a number of volts, or several between commas");
+    if (!volts) return tl::unexpected(volts.error());
+    if (auto checked = CheckQuantity("--reference_voltage", *volts, kMostVolts); !checked) {
+      return tl::unexpected(checked.error());
+    }
+    plan.push_back({flags.bits == 0 ? kUsualBits : flags.bits, *volts, flags.supply_voltage,
+                    flags.potentiometer_range_deg, flags.divider});
+  }
+  return plan;
+}
+
+Result<void> ChooseRange(const CalibrateSensorFlags& flags, CalibrateSensorOptions& options) {
+  options.has_bits = flags.bits != 0;
+  if (options.has_bits && !flags.input_range.empty()) {
+    return BadFlag("--bits and --input_range both tell the sensor's range; leave one of them out");
+  }
+  if (options.has_bits) options.input_range = SensorRange{0, AdcSensor{.bits = flags.bits}.FullScale()};
+  if (flags.input_range.empty()) return {};
+  const Result<SensorRange> range = ParseInputRange(flags.input_range);
+  if (!range) return tl::unexpected(range.error());
+  options.input_range = *range;
+  return {};
+}
+
+}  // namespace
+
+std::vector<NamedFile> CalibrateSensorOptions::Outputs() const {
+  std::vector<NamedFile> outputs;
+  if (!json.empty()) outputs.push_back({"--json", json});
+  if (!plot.empty()) outputs.push_back({"--plot", plot});
+  return outputs;
+}
+
+std::vector<NamedFile> CalibrateSensorOptions::Inputs() const {
+  if (data.empty() || data == "-") return {};
+  return {{"--data", data}};
+}
+
+Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorFlags& flags) {
+  if (auto checked = CheckTask(flags); !checked) return tl::unexpected(checked.error());
+  CalibrateSensorOptions options;
+  if (flags.plan) {
+    Result<std::vector<AdcSensor>> plan = MakePlan(flags);
+    if (!plan) return tl::unexpected(plan.error());
+    options.plan = *std::move(plan);
+    return options;
+  }
+  if (auto checked = CheckWhole("--order", flags.order, kHighestCalibrationOrder); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (auto chosen = ChooseRange(flags, options); !chosen) return tl::unexpected(chosen.error());
+  options.data = flags.data;
+  options.order = flags.order;
+  options.json = flags.json;
+  options.plot = flags.plot;
+  return options;
+}
+
+}  // namespace pendulum

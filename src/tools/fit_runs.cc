@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fit_runs.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/closed_form/closed_forms.h"
+#include "pendulum/closed_form/sampling.h"
+#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/undersampled.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/data_list.h"
+#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/repair_values.h"
+#include "pendulum/recording/sensor.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// A recording that was read, and the swings to be fitted in it.
+struct ReadSwings {
+  Recording recording;
+  ChosenSwings swings;
+  Eigen::Index samples = 0;  ///< As read, before repairs.
+  RunReport common;          ///< What the reports of all its swings say.
+};
+
+/// `rig` wins over what the recording says of its rig.
+Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
+  auto read = ReadRecording(path, options.read);
+  if (!read) return tl::unexpected(read.error());
+  if (!rig && !read->rig_json.empty()) {
+    auto own = ParseRig(read->rig_json, read->path + ": # rig");
+    if (!own) return tl::unexpected(own.error());
+    rig = *std::move(own);
+  }
+  ReadSwings one;
+  one.samples = read->size();
+  // Readings far apart in time do not resemble their neighbours, which repairs rest on.
+  one.recording = IsUndersampled(*read, rig) ? *std::move(read) : RepairValues(*std::move(read));
+  auto swings = ChooseSwings(one.recording, options.swing, rig);
+  if (!swings) return tl::unexpected(swings.error());
+  one.swings = *std::move(swings);
+  one.common.rig = std::move(rig);
+  one.common.warnings = std::exchange(one.recording.warnings, {});
+  if (one.recording.calibration) one.common.calibration = one.recording.calibration->source;
+  return one;
+}
+
+/// The error of one among several runs, which names its recording and, unless 0, its release.
+tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
+  const std::string name = path == "-" ? "standard input" : path;
+  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
+  const std::string where = name + ": ";
+  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
+  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
+                                status.message.substr(skip));
+}
+
+/// The samples of a swing, without a fit.
+Result<SwingFit> TakeSwing(Recording recording, const FreeSwing& swing) {
+  auto used = SelectWindow(std::move(recording), swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  used->warnings.clear();
+  return SwingFit{*std::move(used), swing, {}};
+}
+
+/// The model whose closed forms are asked for. An angle in an unknown unit has only those of small angles.
+MotionModel ClosedFormModel(const FitPendulumOptions& options, const Recording& used, RunReport& report) {
+  const MotionModel asked = *FindMotionModel(options.fit.model);
+  const MotionModel linear = *FindMotionModel("linear");
+  if (used.is_calibrated() || asked.name == linear.name) return asked;
+  report.warnings.push_back(
+      {"uncalibrated", "the readings are in " + used.unit +
+                           ", not in an angle's unit; the closed forms are those of model linear, "
+                           "which takes small angles for granted"});
+  return linear;
+}
+
+/// Puts the closed forms beside the fits of a run.
+void AddClosedForms(const MotionModel& model, bool undersampled, Run& run) {
+  RunReport& report = run.report;
+  if (undersampled) {
+    report.no_closed_forms =
+        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+    return;
+  }
+  auto forms = EstimateClosedForms(run.used, model);
+  if (!forms) {
+    report.no_closed_forms = forms.error().message;
+    return;
+  }
+  report.closed_forms = *std::move(forms);
+  report.closed_forms_model = model.name;
+  const bool failed =
+      std::ranges::any_of(report.fits, [](const FitReport& fit) { return fit.termination == Termination::kFailed; });
+  if (failed) return;
+  for (const FitReport& fit : report.fits) {
+    report.checks.push_back(CheckClosedForms(run.used, *report.closed_forms, fit, report.rig));
+  }
+}
+
+/// How the swing was sampled, beside what turning points and rig tell of its period. An undersampled one shows none,
+/// and its fit has warned.
+void AddSampling(const FreeSwing& swing, Run& run) {
+  RunReport& report = run.report;
+  const double clock_scale = run.used.clock_scale;
+  double half_period = swing.half_period;
+  if (!(half_period > 0) && report.closed_forms) half_period = report.closed_forms->table.half_period / clock_scale;
+  const bool is_seen = half_period > 0 && !(swing.undersampled && report.rig);
+  const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
+  std::optional<double> expected = ExpectedFrequency(report.rig);
+  if (expected) *expected *= clock_scale;
+  report.sampling = DescribeSampling(run.used, seen, expected);
+  if (swing.undersampled) return;
+  std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
+}
+
+/// What is reported of one swing. kFailedPrecondition: there are neither fits nor closed forms.
+Result<Run> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, SwingFit swing) {
+  Run run{one.common, {}};
+  run.report.data = SummarizeData(swing, one.swings, release, one.samples);
+  run.used = std::move(swing.used);
+  MotionModel model = swing.fit.model;
+  if (options.closed_form_only) {
+    model = ClosedFormModel(options, run.used, run.report);
+  } else {
+    run.report.fits.push_back(std::move(swing.fit));
+  }
+  AddClosedForms(model, swing.swing.undersampled, run);
+  if (options.closed_form_only && !run.report.closed_forms) {
+    return Error(StatusCode::kFailedPrecondition, run.report.no_closed_forms);
+  }
+  AddSampling(swing.swing, run);
+  return run;
+}
+
+/// Fits the chosen swings of one recording one by one and appends their runs.
+void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwings one, bool among_others,
+            std::vector<Result<Run>>& runs) {
+  FitOptions fit_options = options.fit;
+  fit_options.rig = one.common.rig;
+  const bool several = one.swings.chosen.size() > 1;
+  for (const int release : one.swings.chosen) {
+    // The last one needs no copy: a long recording fills the memory.
+    const bool last = release == one.swings.chosen.back();
+    Recording recording = last ? std::exchange(one.recording, {}) : one.recording;
+    const FreeSwing& found = one.swings.found[static_cast<std::size_t>(release - 1)];
+    auto swing = options.closed_form_only ? TakeSwing(std::move(recording), found)
+                                          : FitSwing(std::move(recording), found, fit_options);
+    Result<Run> run = swing ? MakeRun(options, one, release, *std::move(swing)) : tl::unexpected(swing.error());
+    if (!run && (among_others || several)) run = ErrorAmong(run.error(), path, several ? release : 0);
+    runs.push_back(std::move(run));
+  }
+}
+
+}  // namespace
+
+Result<Setup> ReadSetup(FitPendulumOptions& options) {
+  Setup setup{options.data, options.Inputs(), std::nullopt};
+  if (!options.rig.empty()) {
+    auto rig = ReadRig(options.rig);
+    if (!rig) return tl::unexpected(rig.error());
+    setup.rig = *std::move(rig);
+  }
+  if (!options.calibration.empty()) {
+    auto calibration = ReadCalibration(options.calibration);
+    if (!calibration) return tl::unexpected(calibration.error());
+    options.read.calibration = *std::move(calibration);
+  }
+  if (options.data_list.empty()) return setup;
+  const auto listed = ReadDataList(options.data_list);
+  if (!listed) return tl::unexpected(listed.error());
+  for (const ListedFile& file : *listed) {
+    setup.paths.push_back(file.path.string());
+    setup.inputs.push_back({"--data_list", file.path.string()});
+  }
+  return setup;
+}
+
+Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count) {
+  if (count == 1) return {};
+  for (const NamedFile& output : options.Outputs()) {
+    if (!IsStandardOutput(output.path)) continue;
+    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
+                                                   std::to_string(count) + "; name a file, and they are numbered");
+  }
+  std::vector<NamedFile> outputs;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::ranges::move(options.Outputs(static_cast<int>(i), static_cast<int>(count)), std::back_inserter(outputs));
+  }
+  return CheckOutputs(outputs, setup.inputs);
+}
+
+Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
+  std::vector<Result<Run>> runs;
+  const std::size_t files = setup.paths.size();
+  std::size_t count = files;  // of places: at least one for each recording
+  for (const std::string& path : setup.paths) {
+    auto one = ReadOne(options, path, setup.rig);
+    if (!one) {
+      runs.emplace_back(files > 1 ? ErrorAmong(one.error(), path, 0) : tl::unexpected(one.error()));
+      continue;
+    }
+    if (const std::size_t more = one->swings.chosen.size() - 1; more > 0) {
+      count += more;
+      if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
+        return tl::unexpected(checked.error());
+      }
+    }
+    FitOne(options, path, *std::move(one), files > 1, runs);
+  }
+  return runs;
+}
+
+}  // namespace pendulum

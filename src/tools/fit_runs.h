@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/report/run_report.h"
+#include "tools/fit_pendulum_options.h"
+#include "tools/output.h"
+
+namespace pendulum {
+
+/// One free swing of one recording, fitted, or with its closed forms only.
+struct Run {
+  RunReport report;
+  Recording used;  ///< The samples of the swing.
+};
+
+/// What the runs need beside their flags.
+struct Setup {
+  std::vector<std::string> paths;  ///< Of the recordings.
+  std::vector<NamedFile> inputs;   ///< All that is read.
+  std::optional<Rig> rig;
+};
+
+/// Reads rig, calibration (into the options) and list of recordings. Errors as their readers.
+Result<Setup> ReadSetup(FitPendulumOptions& options);
+
+/// Numbered outputs are other files than those that were named; data of several fits have no place on one stream.
+/// kInvalidArgument, kCannotWrite: as CheckOutputs, or standard output for more than one.
+Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count);
+
+/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on.
+/// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
+Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
+
+}  // namespace pendulum

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+// The check's z: where it comes from, whether it scatters as it says, and where there is none.
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/analysis/checked_run.h"
+
+namespace pendulum {
+namespace {
+
+using testing::AllOf;
+using testing::DoubleNear;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Le;
+
+// ---- Its scatter where the model is right --------------------------------------------------------------------------
+
+/// 8 s at 50 Hz of a swing of 1 rad, friction four times the textbook's: tens of standard errors from its bound.
+SyntheticOptions ShortStrongRun(std::string_view model) {
+  SyntheticOptions run = NoisyTextbookRun(model);
+  run.release_angle = 1;
+  run.duration = 8;
+  run.sample_rate = 50;
+  for (std::size_t i = 1; i < run.parameters.size(); ++i) run.parameters[i] *= 4;
+  return run;
+}
+
+/// z of the exact formulas over seeded recordings, by quantity.
+std::map<std::string, std::vector<double>> Deviations(SyntheticOptions run, int count) {
+  std::map<std::string, std::vector<double>> z;
+  for (int i = 0; i < count; ++i) {
+    ++run.seed;
+    run.zero += 1e-4;  // another place among the levels
+    const CheckedRun checked = CheckRun(run, run.model.name);
+    for (const ClosedFormRow& row : checked.check.rows) {
+      if (row.quantity.ends_with("_turning_points")) z[row.quantity].push_back(row.z.value());
+    }
+  }
+  return z;
+}
+
+// Errors of turning points are enlarged where they seem too small and never made smaller: z scatters by 0.9 to 1.0 over
+// 200 recordings. 40 give it to 11 %, three of which are allowed. |z| > 3 happens once in 370.
+void ExpectScatterOfOne(const SyntheticOptions& run) {
+  constexpr int kCount = 40;
+  for (const auto& [quantity, z] : Deviations(run, kCount)) {
+    SCOPED_TRACE(std::string(run.model.name) + " " + quantity);
+    double sum = 0, squares = 0;
+    int far = 0;
+    for (const double value : z) {
+      sum += value;
+      squares += value * value;
+      far += std::abs(value) > 3 ? 1 : 0;
+    }
+    EXPECT_THAT(sum / kCount, DoubleNear(0, 4 / std::sqrt(kCount)));
+    EXPECT_THAT(std::sqrt(squares / kCount), AllOf(Ge(0.6), Le(1.33)));
+    EXPECT_THAT(far, Le(1));
+  }
+}
+
+TEST(ClosedFormRow, HasAZThatScattersByOneInWhiteNoise) {
+  for (const char* model : {"viscous", "coulomb", "drag"}) ExpectScatterOfOne(ShortStrongRun(model));
+}
+
+TEST(ClosedFormRow, HasAZThatScattersByOneOnCounts) {
+  SyntheticOptions run = ShortStrongRun("coulomb");
+  run.resolution = kCount;  // noise of 0.6
+  ExpectScatterOfOne(run);
+}
+
+// Samples 10 ms apart that remember 0.1 s, less than a turning point's.
+TEST(ClosedFormRow, HasAZThatScattersByOneInNoiseThatRemembers) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.noise_correlation = 0.9;
+  ExpectScatterOfOne(run);
+}
+
+// ---- Where it comes from -------------------------------------------------------------------------------------------
+
+// Of an efficient estimate and another one of the same data the variances subtract (Hausman 1978).
+TEST(ClosedFormRow, HasTheDifferenceOfTheVariancesInWhiteNoise) {
+  const CheckedRun checked = CheckRun(ShortStrongRun("viscous"), "viscous");
+  ASSERT_EQ(checked.run.fit.noise.memory.Name(), "white");
+  for (const char* parameter : {"zero_angle", "inertia", "viscous"}) {
+    const ClosedFormRow& row = checked.Row(std::string(parameter) + "_turning_points");
+    const double own = *row.std_error;
+    const double fit = checked.run.fit.Find(parameter)->std_error.value();
+    const double deviation = (row.closed_form - row.fit) / *row.z;
+    EXPECT_THAT(deviation * deviation / (own * own), DoubleNear(1 - fit * fit / (own * own), 1e-9)) << parameter;
+    EXPECT_GT(fit, 0.1 * own);  // so that the sign of the difference matters
+  }
+}
+
+// The way over the readings' influence on both, told of a memory that is none, is the same: it knows nothing of either
+// standard error. The noise of turning points and of all samples differ by some percent.
+TEST(ClosedFormRow, HasTheSameZByTheInfluenceOfEachReading) {
+  for (const char* model : {"viscous", "drag"}) {
+    for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
+      const CheckedRun checked = CheckRun(ShortStrongRun(model), model, rig);
+      FittedRun remembering = checked.run;
+      remembering.fit.noise.memory.kind = Autocorrelation::Kind::kAutoregressive;
+      remembering.fit.noise.memory.autoregressive = {1e-9};
+      remembering.fit.noise.memory.interval = 0.02;
+      const CheckedRun there = CheckFit(remembering);
+      for (const ClosedFormRow& row : checked.check.rows) {
+        if (!row.quantity.ends_with("_turning_points")) continue;
+        EXPECT_THAT(*there.Row(row.quantity).z / *row.z, DoubleNear(1, 0.15)) << model << " " << row.quantity;
+      }
+    }
+  }
+}
+
+TEST(ClosedFormRow, AgreesWithinThree) {
+  const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb", TextbookRig());
+  int agree = 0, differ = 0;
+  for (const ClosedFormRow& row : checked.check.rows) {
+    EXPECT_EQ(row.agrees, std::abs(row.z.value()) < 3) << row.quantity;
+    EXPECT_EQ(row.why.empty(), *row.agrees) << row.quantity;
+    EXPECT_EQ(std::signbit(*row.z), std::signbit(row.closed_form - row.fit)) << row.quantity;
+    ++(*row.agrees ? agree : differ);
+  }
+  EXPECT_THAT(checked.check.summary,
+              testing::StartsWith(std::to_string(agree) + " of " + std::to_string(agree + differ) +
+                                  " closed forms agree with the fit within 3 standard deviations of the difference"));
+}
+
+// What was held has no error: all of the difference's is the closed form's.
+TEST(ClosedFormRow, ComparesWithAFixedParameterAsItStands) {
+  FitOptions options = ModelOptions("viscous");
+  options.fixed["viscous"] = 0.003 / kTextbookTorque;
+  const CheckedRun checked = CheckFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options));
+  const ClosedFormRow& row = checked.Row("viscous_turning_points");
+  EXPECT_EQ(row.fit, options.fixed["viscous"]);
+  EXPECT_THAT(*row.z, DoubleNear((row.closed_form - row.fit) / *row.std_error, 1e-9));
+  EXPECT_EQ(row.agrees, true);
+}
+
+// Without friction the fit stops at 0, the turning points need not.
+TEST(ClosedFormRow, ComparesWithABoundAsItStands) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.parameters[1] = 0;
+  std::optional<CheckedRun> checked;
+  for (; !checked || !checked->run.fit.Find("viscous")->at_bound; ++run.seed) checked = CheckRun(run, "viscous");
+  for (const char* quantity : {"viscous_turning_points", "viscous_log_decrement", "damping_ratio_log_decrement"}) {
+    const ClosedFormRow& row = checked->Row(quantity);
+    EXPECT_EQ(row.fit, 0) << quantity;
+    EXPECT_THAT(*row.z, DoubleNear(row.closed_form / *row.std_error, 1e-9)) << quantity;
+    EXPECT_EQ(row.agrees, true) << quantity;
+  }
+}
+
+// ---- The rig's inertia ---------------------------------------------------------------------------------------------
+
+/// A swing of a rod and bob as their geometry has it.
+CheckedRun CheckRodAndBob(const std::string& description) {
+  const Rig rig = Must(ParseRig(description, "rig"));
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
+  return CheckRun(run, "viscous", rig);
+}
+
+TEST(ClosedFormRow, SaysThatAPointMassWouldNotDoForAHeavyRod) {
+  const CheckedRun checked = CheckRodAndBob(
+      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
+  const double inertia = 0.43 * 0.43 * (0.38 + 0.095 / 3);
+  const ClosedFormRow& geometry = checked.Row("inertia_geometry");
+  EXPECT_EQ(geometry.unit, "kg m^2");
+  EXPECT_THAT(geometry.closed_form, DoubleNear(inertia, 1e-12));
+  EXPECT_EQ(geometry.agrees, true);
+  EXPECT_EQ(geometry.why, "");
+  // Of the point mass the length moves I by 2 I / l and the fit's by I / l; (M + m) / (M + m / 3) = 1.154.
+  const ClosedFormRow& point = checked.Row("inertia_point_mass");
+  const double change = 0.001 / 0.43 * (2 * 0.475 * 0.43 * 0.43 - inertia);
+  EXPECT_THAT(*point.z, DoubleNear((0.475 * 0.43 * 0.43 - inertia) / change, 0.02 * std::abs(*point.z)));
+  EXPECT_EQ(point.agrees, false);
+  EXPECT_EQ(point.why, "15 % larger than the fit's, more than the rig's errors allow");
+  EXPECT_THAT(checked.check.summary, HasSubstr("a point mass would not do"));
+}
+
+TEST(ClosedFormRow, AgreesWithAPointMassWhereTheRodWeighsNothing) {
+  const CheckedRun checked = CheckRodAndBob(
+      R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
+  EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
+  EXPECT_EQ(checked.Row("inertia_point_mass").agrees, true);
+}
+
+TEST(ClosedFormRow, HasNoZWhereTheRigGivesNoErrors) {
+  const CheckedRun checked =
+      CheckRodAndBob(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
+  for (const char* quantity : {"inertia_geometry", "inertia_point_mass"}) {
+    const ClosedFormRow& row = checked.Row(quantity);
+    EXPECT_EQ(row.std_error, std::nullopt);
+    EXPECT_EQ(row.z, std::nullopt);
+    EXPECT_EQ(row.agrees, std::nullopt);
+    EXPECT_THAT(row.why, HasSubstr("the rig file gives no errors to judge that by"));
+  }
+  EXPECT_THAT(checked.Row("inertia_point_mass").why, testing::StartsWith("15 % larger than the fit's"));
+}
+
+TEST(ClosedFormRow, IsThereForAnInertiaThatTheRigNames) {
+  const CheckedRun checked =
+      CheckRodAndBob(R"({"gravity_torque": 1.8, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
+  EXPECT_EQ(checked.Row("inertia_geometry").closed_form, 0.08);
+  EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
+  EXPECT_FALSE(checked.Has("inertia_point_mass"));
+}
+
+TEST(ClosedFormRow, IsNotThereForAnInertiaThatTheRigDoesNotGive) {
+  const Rig rig = Must(ParseRig(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.01}})", "rig"));
+  const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", rig);
+  EXPECT_FALSE(checked.Has("inertia_geometry"));
+  EXPECT_FALSE(checked.Has("inertia_point_mass"));
+}
+
+// A clock 1 % fast by its own account: the fit's inertia is 2 % off and may be.
+TEST(ClosedFormRow, AllowsForTheClocksErrorBesideTheGeometry) {
+  const Rig rig = Must(ParseRig(
+      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": 9.81})",
+      "rig"));
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
+  Recording recording = Must(SimulateRecording(run));
+  recording.clock_scale = 1.01;
+  recording.clock_scale_std_dev = 0.01;
+  FitOptions options = ModelOptions("viscous");
+  options.rig = rig;
+  const CheckedRun checked = CheckFit(FitTo(recording, options));
+  EXPECT_EQ(checked.Row("inertia_geometry").agrees, true) << *checked.Row("inertia_geometry").z;
+}
+
+// The issue asks for words on the point mass, whichever way it comes out.
+TEST(ClosedFormRow, SaysWhetherAPointMassWouldDoWhereItWould) {
+  const Rig rig = Must(ParseRig(
+      R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
+      "rig"));
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
+  const CheckedRun checked = CheckRun(run, "viscous", rig);
+  EXPECT_THAT(checked.Row("inertia_point_mass").why + checked.check.summary, HasSubstr("point mass"));
+}
+
+// A fixed inertia has no error; the rig's is enough to judge by.
+TEST(ClosedFormRow, ComparesAFixedInertiaWithTheGeometryByTheRigsErrors) {
+  FitOptions options = ModelOptions("viscous");
+  options.rig = TextbookRig();
+  options.fixed["inertia"] = 0.079;
+  const CheckedRun checked = CheckFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options));
+  EXPECT_TRUE(checked.Row("inertia_geometry").z.has_value()) << checked.Row("inertia_geometry").why;
+}
+
+// ---- Fits without standard errors ----------------------------------------------------------------------------------
+
+/// The report as it is where the fit does not converge.
+FitReport NotConverged(FitReport fit) {
+  fit.termination = Termination::kNotConverged;
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.std_error.reset();
+    if (!parameter.fixed) parameter.reason = "the fit is not_converged";
+  }
+  for (DerivedQuantity& derived : fit.derived) derived.std_error.reset();
+  return fit;
+}
+
+TEST(ClosedFormRow, HasNoZWhereTheFitDidNotConverge) {
+  const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
+  const ClosedFormCheck check =
+      CheckClosedForms(checked.run.recording, checked.forms, NotConverged(checked.run.fit), checked.run.rig);
+  EXPECT_EQ(check.rows.size(), checked.check.rows.size());
+  for (const ClosedFormRow& row : check.rows) {
+    EXPECT_EQ(row.z, std::nullopt) << row.quantity;
+    EXPECT_EQ(row.agrees, std::nullopt) << row.quantity;
+    EXPECT_EQ(row.closed_form, checked.Row(row.quantity).closed_form);
+    EXPECT_THAT(row.why, testing::AnyOf(HasSubstr("the fit has no standard error"),
+                                        HasSubstr("the fit gives no errors to judge that by")))
+        << row.quantity;
+  }
+  EXPECT_THAT(check.rows[1].why, HasSubstr("the fit has no standard error: the fit is not_converged"));
+  EXPECT_THAT(
+      check.summary,
+      testing::StartsWith("0 of 0 closed forms agree with the fit within 3 standard deviations of the difference"));
+}
+
+TEST(ClosedFormRow, IsNotThereForAFitThatFailed) {
+  CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous");
+  checked.run.fit.termination = Termination::kFailed;
+  const ClosedFormCheck check = CheckClosedForms(checked.run.recording, checked.forms, checked.run.fit, {});
+  EXPECT_THAT(check.rows, IsEmpty());
+  EXPECT_EQ(check.overlay.linear.size(), 0);
+  EXPECT_EQ(check.summary, "");
+}
+
+}  // namespace
+}  // namespace pendulum

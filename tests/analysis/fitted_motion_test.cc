@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/fitted_motion.h"
+
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/closed_form/period.h"
+#include "tests/analysis/fitted_run.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+
+// The fit's trajectory is traced to 1e-8 rad, the motion's to 1e-10 a step.
+constexpr double kTraceError = 3e-8;
+
+/// θ of small swings with viscous friction, released from rest (units of G).
+double ViscousSwing(double time, double inertia, double viscous, double angle) {
+  const double decay = viscous / (2 * inertia);
+  const double frequency = std::sqrt(1 / inertia - decay * decay);
+  const double phase = frequency * std::max(time, 0.0);
+  return angle * std::exp(-decay * std::max(time, 0.0)) * (std::cos(phase) + decay / frequency * std::sin(phase));
+}
+
+/// A fit's report as it would be for the truth of a recording.
+FitReport TrueReport(const SyntheticOptions& run) {
+  FitReport fit;
+  fit.model = run.model;
+  fit.start = run.start;
+  fit.quantity = run.quantity;
+  const std::vector<double> truth = Truth(run);
+  const std::vector<ParameterInfo> infos = FitParameters(run.model, run.start, run.quantity);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    fit.parameters.push_back({});
+    fit.parameters.back().info = infos[i];
+    fit.parameters.back().estimate = truth[i];
+  }
+  return fit;
+}
+
+double MaxDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// d readings / d estimate by central differences of reports.
+Eigen::VectorXd Difference(const FittedRun& run, std::size_t parameter, double step) {
+  const auto readings = [&](double change) {
+    FitReport moved = run.fit;
+    moved.parameters[parameter].estimate += change;
+    const FittedMotion motion(run.recording, moved, run.rig);
+    return motion.Readings(motion.instants()).value();
+  };
+  return (readings(step) - readings(-step)) / (2 * step);
+}
+
+void ExpectJacobianOfDifferences(const FittedRun& run) {
+  const FittedMotion motion(run.recording, run.fit, run.rig);
+  Eigen::MatrixXd jacobian;
+  ASSERT_TRUE(motion.Readings(motion.instants(), &jacobian));
+  ASSERT_EQ(jacobian.cols(), static_cast<Eigen::Index>(run.fit.parameters.size()));
+  for (std::size_t i = 0; i < run.fit.parameters.size(); ++i) {
+    const double estimate = run.fit.parameters[i].estimate;
+    const Eigen::VectorXd expected = Difference(run, i, 1e-5 * std::max(std::abs(estimate), 1e-3));
+    const Eigen::VectorXd column = jacobian.col(static_cast<Eigen::Index>(i));
+    // Where a reversal or the release passes a sample a difference is off by some 1e-4 of the column.
+    EXPECT_LT((column - expected).norm(), 2e-3 * expected.norm()) << run.fit.parameters[i].info.name;
+  }
+}
+
+TEST(FittedMotion, GivesTheFitsOwnReadingsAtTheRecordingsInstants) {
+  for (const char* model : {"linear", "viscous", "coulomb", "drag"}) {
+    for (const SyntheticOptions& options : {NoisyRun(model), MovingRun(model)}) {
+      const FittedRun run = FitTo(options, model, TextbookRig());
+      const FittedMotion motion(run.recording, run.fit, run.rig);
+      EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError) << model;
+    }
+  }
+}
+
+TEST(FittedMotion, FollowsARateWithItsBias) {
+  SyntheticOptions options = NoisyRun();
+  options.quantity = Quantity::kRate;
+  options.zero = 0.07;
+  const FittedRun run = FitTo(options, "coulomb", {});
+  const FittedMotion motion(run.recording, run.fit, {});
+  EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), 10 * kTraceError);
+}
+
+// The file's clock starts at 1000 s and is 2 % slow.
+TEST(FittedMotion, CountsInstantsInTrueSecondsFromTheFirstSample) {
+  SyntheticOptions options = NoisyRun();
+  options.start_time = 1000;
+  options.release_time += 1000;
+  Recording recording = Must(SimulateRecording(options));
+  recording.clock_scale = 1.02;
+  const FittedRun run = FitTo(recording, ModelOptions("coulomb"));
+  const FittedMotion motion(run.recording, run.fit, {});
+  EXPECT_EQ(motion.instants()[0], 0);
+  EXPECT_THAT(motion.instants()[100], DoubleNear(1.02, 1e-9));  // 1 s of the file's
+  EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError);
+  ExpectJacobianOfDifferences(run);
+}
+
+TEST(FittedMotion, HasTheJacobianOfDifferencesInTheReportsUnits) {
+  for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
+    for (const char* model : {"viscous", "drag"}) {
+      SCOPED_TRACE(std::string(model) + (rig ? ", rig" : ", no rig"));
+      ExpectJacobianOfDifferences(FitTo(NoisyRun(model), model, rig));
+      ExpectJacobianOfDifferences(FitTo(MovingRun(model), model, rig));
+    }
+  }
+}
+
+TEST(FittedMotion, KeepsAZeroThatDrifts) {
+  SyntheticOptions options = NoisyRun();
+  Recording recording = Must(SimulateRecording(options));
+  recording.value.array() += 0.001 * recording.time.array();
+  FitOptions fit = ModelOptions("coulomb");
+  fit.initial["zero_drift"] = 0;
+  const FittedRun run = FitTo(recording, fit);
+  ASSERT_NE(run.fit.Find("zero_drift"), nullptr);
+  const FittedMotion motion(run.recording, run.fit, {});
+  EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError);
+  ExpectJacobianOfDifferences(run);
+}
+
+TEST(FittedMotion, IsFollowedAtInstantsThatAreNotTheRecordings) {
+  SyntheticOptions options = TextbookRun("coulomb");
+  const FitReport fit = TrueReport(options);
+  const FittedMotion motion(Must(SimulateRecording(options)), fit, {});
+  options.sample_rate = 37;
+  const Recording other = Must(SimulateRecording(options));
+  EXPECT_LT(MaxDifference(motion.Readings(other.time).value(), other.value), kTraceError);
+}
+
+TEST(FittedMotion, HasTheSmallAnglePeriodOfItsInertia) {
+  const SyntheticOptions options = TextbookRun("viscous");
+  const Recording recording = Must(SimulateRecording(options));
+  FitReport fit = TrueReport(options);
+  const double expected = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
+  EXPECT_THAT(FittedMotion(recording, fit, {}).small_angle_period(), DoubleNear(expected, 1e-12));
+  fit.parameters[0].estimate = 0.079;  // kg m², with a rig
+  EXPECT_THAT(FittedMotion(recording, fit, TextbookRig()).small_angle_period(), DoubleNear(expected, 1e-12));
+}
+
+// From the same start and zero the small-angle pendulum has a closed form.
+TEST(FittedMotion, SwingsAsTheDampedCosineWithLinearGravity) {
+  const SyntheticOptions options = TextbookRun("viscous");
+  const FittedMotion motion(Must(SimulateRecording(options)), TrueReport(options), {});
+  const FittedMotion linear = motion.WithGravity(Gravity::kLinear);
+  const Eigen::VectorXd readings = linear.Readings(linear.instants()).value();
+  for (Eigen::Index i = 0; i < readings.size(); i += 37) {
+    const double angle = ViscousSwing(linear.instants()[i] - options.release_time, options.parameters[0],
+                                      options.parameters[1], options.release_angle);
+    EXPECT_THAT(readings[i], DoubleNear(options.zero + angle, kTraceError)) << i;
+  }
+}
+
+// Coulomb and quadratic friction are gone, the start and the zero stay, the report's units do not matter.
+TEST(FittedMotion, SwingsWithTheInertiaAndTheViscousFrictionItIsGiven) {
+  const SyntheticOptions options = TextbookRun("drag");
+  const Recording recording = Must(SimulateRecording(options));
+  FitReport fit = TrueReport(options);
+  for (std::size_t i = 0; i < 4; ++i) fit.parameters[i].estimate *= TextbookRig().gravity_torque.value;
+  const double inertia = 0.05, viscous = 0.002;
+  const FittedMotion viscous_motion = FittedMotion(recording, fit, TextbookRig()).WithViscous(inertia, viscous);
+  EXPECT_THAT(viscous_motion.small_angle_period(), DoubleNear(2 * kPi * std::sqrt(inertia), 1e-12));
+  const FittedMotion motion = viscous_motion.WithGravity(Gravity::kLinear);
+  const Eigen::VectorXd readings = motion.Readings(motion.instants()).value();
+  for (Eigen::Index i = 0; i < readings.size(); i += 37) {
+    const double time = motion.instants()[i] - options.release_time;
+    EXPECT_THAT(readings[i],
+                DoubleNear(options.zero + ViscousSwing(time, inertia, viscous, options.release_angle), kTraceError));
+  }
+}
+
+// With sine gravity instead the first period is longer by the elliptic integral's ratio, but for 1e-3 of damping.
+TEST(FittedMotion, KeepsSineGravityWithOtherFriction) {
+  SyntheticOptions options = TextbookRun("coulomb");
+  options.release_angle = 1.5;
+  options.release_time = 0.5;
+  const FittedMotion motion =
+      FittedMotion(Must(SimulateRecording(options)), TrueReport(options), {}).WithViscous(0.05, 1e-9);
+  const double period = 2 * kPi * std::sqrt(0.05) * PeriodRatio(1.5);
+  const Eigen::VectorXd turns = Eigen::Vector3d(0.5, 0.5 + period / 2, 0.5 + period);
+  const Eigen::VectorXd readings = motion.Readings((Eigen::VectorXd(4) << 0.0, turns).finished()).value();
+  EXPECT_THAT(readings[2] - options.zero, DoubleNear(-1.5, 1e-6));
+  EXPECT_THAT(readings[3] - options.zero, DoubleNear(1.5, 1e-6));
+}
+
+TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
+  const SyntheticOptions options = TextbookRun("coulomb");
+  const Recording recording = Must(SimulateRecording(options));
+  FitReport fit = TrueReport(options);
+  fit.parameters[2].estimate = 1;  // dry friction holds it
+  const FittedMotion motion(recording, fit, {});
+  EXPECT_FALSE(motion.Readings(motion.instants()));
+}
+
+}  // namespace
+}  // namespace pendulum

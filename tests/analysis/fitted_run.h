@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording with its fit, for tests of what compares the two.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum {
+
+/// The textbook's rig, as measured with a scale and a ruler.
+inline Rig TextbookRig() {
+  return Must(ParseRig(R"({"bob_mass": {"value": 0.380, "std_dev": 0.001}, "rod_mass": 0.095,
+                           "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
+                       "rig"));
+}
+
+struct FittedRun {
+  Recording recording;
+  FitReport fit;
+  std::optional<Rig> rig;
+};
+
+inline FittedRun FitTo(Recording recording, const FitOptions& options) {
+  FitReport fit = Fit(recording, options);
+  return {std::move(recording), std::move(fit), options.rig};
+}
+
+/// Simulates the recording and fits a model to it.
+inline FittedRun FitTo(const SyntheticOptions& run, std::string_view model, const std::optional<Rig>& rig) {
+  FitOptions options = ModelOptions(model);
+  options.rig = rig;
+  return FitTo(Must(SimulateRecording(run)), options);
+}
+
+}  // namespace pendulum

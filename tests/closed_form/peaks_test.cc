@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/peaks.h"
+
+#include <cmath>
+#include <vector>
+
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+#include "tests/closed_form/reference_swing.h"
+
+namespace pendulum {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kFrequency = 4.8;          // rad/s
+constexpr double kTurn = kPi / kFrequency;  // s
+
+/// A small swing that turns at 0.3 s + k kTurn, at 0.02 ± 0.4.
+double Cosine(double t) { return 0.02 + 0.4 * std::cos(kFrequency * (t - 0.3)); }
+
+/// The linear pendulum with dry friction alone, released at 0: half swings of kTurn, each 2 x_k smaller than the one
+/// before, about the point where friction holds.
+double DryDecay(double t) {
+  constexpr double kAmplitude = 0.4, kSticking = 0.01;
+  const double k = std::floor(t / kTurn);
+  const double side = std::fmod(k, 2) == 0 ? 1 : -1;
+  return side * (kSticking + (kAmplitude - (2 * k + 1) * kSticking) * std::cos(kFrequency * t - kPi * k));
+}
+
+TEST(LocatePeaks, FindsACosinesTurningPointsExactly) {
+  for (const double rate : {12.0, 20.0, 100.0, 1000.0}) {
+    const PeakTable table = Must(LocatePeaks(Sample(Cosine, 10, rate)));
+    ASSERT_GE(table.peaks.size(), 13U) << rate;
+    for (const Peak& peak : table.peaks) {
+      const double turns = (peak.time - 0.3) / kTurn;
+      EXPECT_NEAR(turns, std::round(turns), 2e-4) << rate;
+      EXPECT_NEAR(std::abs(peak.value - 0.02), 0.4, 2e-5) << rate;
+    }
+    EXPECT_NEAR(table.zero.value, 0.02, 1e-5) << rate;
+    EXPECT_NEAR(table.half_period, kTurn, 2e-3 * kTurn) << rate;
+  }
+}
+
+TEST(LocatePeaks, LargeSwingsTurnWhereTheEllipticFunctionSays) {
+  constexpr double kAmplitude = 1.5;
+  const auto swing = [](double t) { return UndampedAngle(kAmplitude, 1 / (kFrequency * kFrequency), t - 0.5); };
+  const PeakTable table = Must(LocatePeaks(Sample(swing, 10, 100)));
+  const double turn = 2 / kFrequency * boost::math::ellint_1(std::sin(kAmplitude / 2));
+  for (const Peak& peak : table.peaks) {
+    const double turns = (peak.time - 0.5) / turn;
+    EXPECT_NEAR(turns, std::round(turns), 1e-6);
+    EXPECT_NEAR(std::abs(peak.value), kAmplitude, 2e-5);
+  }
+}
+
+TEST(LocatePeaks, ScatterAsTheirErrorsSay) {
+  const Recording clean = Sample(Cosine, 12, 100);
+  double time_squares = 0, value_squares = 0, count = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const PeakTable table = Must(LocatePeaks(WithNoise(clean, 0.002, seed)));
+    EXPECT_NEAR(table.noise, 0.002, 0.0002) << seed;
+    for (const Peak& peak : table.peaks) {
+      const double late = std::remainder(peak.time - 0.3, kTurn);
+      const double high = std::abs(peak.value - 0.02) - 0.4;
+      time_squares += late * late / peak.covariance(0, 0);
+      value_squares += high * high / peak.covariance(1, 1);
+      ++count;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(time_squares / count), 1, 0.08);  // 1000 turning points: 4 standard deviations
+  EXPECT_NEAR(std::sqrt(value_squares / count), 1, 0.08);
+}
+
+TEST(LocatePeaks, TakeTheKinkOfDryFrictionIntoAccount) {
+  const Recording recording = Sample(DryDecay, 8, 200);
+  const auto largest_delay = [&](const Kink& kink) {
+    double largest = 0;
+    for (const Peak& peak : Must(LocatePeaks(recording, kink)).peaks) {
+      largest = std::max(largest, std::abs(std::remainder(peak.time, kTurn)));
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_delay({0.01, kFrequency}), 2e-5);
+  EXPECT_GT(largest_delay({}), 1e-3);  // what the kink would do otherwise
+  EXPECT_GT(largest_delay({-0.01, kFrequency}), 2e-3);
+}
+
+TEST(LocatePeaks, FollowTheReadingsAsTheirInfluenceSays) {
+  Recording recording = WithNoise(Sample(Cosine, 8, 100), 0.001, 7);
+  const PeakTable before = Must(LocatePeaks(recording));
+  const Peak& peak = before.peaks[2];
+  const Eigen::Index sample = peak.influence.cols() / 3;
+  constexpr double kChange = 1e-5;
+  recording.value[peak.first + sample] += kChange;
+  const Peak after = Must(LocatePeaks(recording)).peaks[2];
+  EXPECT_NEAR((after.time - peak.time) / kChange, peak.influence(0, sample), 1e-3 * peak.influence.row(0).maxCoeff());
+  EXPECT_NEAR((after.value - peak.value) / kChange, peak.influence(1, sample), 1e-3);
+  // A constant added to all readings moves the value as much and the time not at all.
+  EXPECT_NEAR(peak.influence.row(0).sum(), 0, 1e-9);
+  EXPECT_NEAR(peak.influence.row(1).sum(), 1, 1e-9);
+}
+
+TEST(LocatePeaks, InfluenceAndCovarianceOfNumbersMadeFromThem) {
+  const PeakTable table = Must(LocatePeaks(WithNoise(Sample(Cosine, 8, 100), 0.001, 3)));
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(1, 2 * static_cast<Eigen::Index>(table.peaks.size()));
+  gradient(0, 0) = -1;  // the time between the first and the last turning point
+  gradient(0, gradient.cols() - 2) = 1;
+  const double expected = table.peaks.front().covariance(0, 0) + table.peaks.back().covariance(0, 0);
+  EXPECT_NEAR(CovarianceOf(table, gradient)(0, 0), expected, 1e-9 * expected);
+  const Eigen::MatrixXd influence = InfluenceOf(table, gradient, 800);
+  EXPECT_NEAR(influence.squaredNorm() * table.noise * table.noise, expected, 1e-9 * expected);
+}
+
+TEST(LocatePeaks, LeavesSaturatedTurningPointsOut) {
+  Recording recording = Sample(Cosine, 8, 100);
+  recording.range = SensorRange{-1, 0.4};
+  recording.value = recording.value.cwiseMin(0.4);
+  EXPECT_FALSE(LocatePeaks(recording));  // those below do not follow each other
+  recording.range = SensorRange{-1, 0.5};
+  recording.value = recording.value.cwiseMin(0.5);
+  EXPECT_TRUE(LocatePeaks(recording));
+}
+
+TEST(LocatePeaks, TellsWhereAGapBreaksTheSequence) {
+  const PeakTable table = Must(LocatePeaks(WithoutSamples(Sample(Cosine, 12, 100), 4.0, 6.1)));
+  int breaks = 0;
+  for (std::size_t i = 1; i < table.peaks.size(); ++i) {
+    const bool across = table.peaks[i - 1].time < 4.0 && table.peaks[i].time > 6.1;
+    EXPECT_EQ(table.peaks[i].continues, !across) << i;
+    breaks += across ? 1 : 0;
+  }
+  EXPECT_EQ(breaks, 1);
+}
+
+TEST(LocatePeaks, NeedsThreeThatFollowEachOther) {
+  const auto located = LocatePeaks(Sample(Cosine, 1.7, 100));
+  ASSERT_FALSE(located);
+  EXPECT_EQ(located.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(located.error().message, HasSubstr("record for longer"));
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/json_parts.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(NumberObject, HasNoReasonWhereNothingIsMissing) {
+  EXPECT_EQ(NumberObject().Set("a", 0.5).Set("b", std::optional(2.0), "unused").Set("c", Json("text")).Done().dump(),
+            R"({"a":0.5,"b":2.0,"c":"text"})");
+}
+
+TEST(NumberObject, SaysWhyNumbersAreMissingEachReasonOnce) {
+  NumberObject object;
+  object.Set("a", kInfinity).Set("b", std::nullopt, "not measured").Set("c", std::nullopt, "lost");
+  object.Set("d", std::nullopt, "not measured").Set("e", std::optional(kInfinity), "unused");
+  EXPECT_EQ(object.Done().dump(),
+            R"({"a":null,"b":null,"c":null,"d":null,"e":null,"reason":"a is not a finite number; not measured; lost; )"
+            R"(e is not a finite number"})");
+}
+
+TEST(NumberOrNull, IsNullForWhatIsNoNumber) {
+  EXPECT_EQ(NumberOrNull(0.25), Json(0.25));
+  EXPECT_TRUE(NumberOrNull(std::nullopt).is_null());
+  EXPECT_TRUE(NumberOrNull(kInfinity).is_null());
+  EXPECT_TRUE(TextOrNull("").is_null());
+}
+
+TEST(KeyWithUnit, SpellsASlashAsAnUnderscore) { EXPECT_EQ(KeyWithUnit("sigma", "rad/s"), "sigma_rad_s"); }
+
+}  // namespace
+}  // namespace pendulum

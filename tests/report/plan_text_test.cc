@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/plan_text.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr ParameterInfo kViscousInfo = {"viscous", "b", "N m s/rad", "s", 0, kUnbounded, ""};
+
+Rig ExampleRig(double std_dev = 0) {
+  Rig rig;
+  rig.gravity_torque = {2, std_dev};
+  return rig;
+}
+
+/// Inertia and viscous friction from a release angle, 20 s or 40 s.
+Plan ExamplePlan() {
+  Plan plan;
+  plan.parameters = {kInertia, kViscousInfo, kReleaseAngle, kReleaseTime, kZeroAngle};
+  plan.truth = {0.04, 0.0015, -0.423, 1.9, 0};
+  plan.physical = 2;
+  plan.rows = {{"release_angle", "rad", 0.2115, false, {1e-6, 3e-5, 9.2e-5, 1.1e-4, 3e-5}, 2.1e-3, {}},
+               {"release_angle", "rad", 0.423, true, {5.2e-7, 1.5e-5, 9e-5, 5.2e-5, 3e-5}, 0.0123, {}},
+               {"duration", "s", 20, true, {5.2e-7, 1.5e-5, 9e-5, 5.2e-5, 3e-5}, 0.0123, {}},
+               {"duration", "s", 40, false, {2e-7, 2e-6, 7.5e-5, 4.4e-5, 2.1e-5}, 6e-14, {}}};
+  plan.amplitude_of_equal_bias = 0.01134;
+  return plan;
+}
+
+// 5.2e-7 s² · 2 N m of 0.08 kg m², 1.5e-5 of 0.0015 s; rounded as the Particle Data Group does.
+TEST(PlanText, GivesTheBaseInSiWithARigAndTheRowsInPercent) {
+  EXPECT_EQ(
+      PlanText(ExamplePlan(), ExampleRig()),
+      "[[Predicted standard errors]] (Cramér-Rao: no unbiased fit has smaller ones)\n"
+      "    inertia        0.0800000  ± 0.0000010 kg m^2     0.0013 %\n"
+      "    viscous        0.003000   ± 0.000030  N m s/rad  1 %\n"
+      "    release_angle  -0.42300   ± 0.00009   rad\n"
+      "    release_time   1.90000    ± 0.00005   s\n"
+      "    zero_angle     (0.0       ± 3.0)e-05  rad\n"
+      "\n"
+      "[[One thing changed at a time]] (* the recording as it is)\n"
+      "    factor         value                    inertia  viscous  release_angle  release_time  zero_angle  linear "
+      "bias\n"
+      "                                                  %        %            rad             s         rad           "
+      " %\n"
+      "\n"
+      "    release_angle  0.2115 rad (12.1 deg)     0.0025        2        9.2e-05       0.00011       3e-05         "
+      "0.21\n"
+      "    release_angle  0.423 rad (24.2 deg)  *   0.0013        1          9e-05       5.2e-05       3e-05          "
+      "1.2\n"
+      "\n"
+      "    duration       20 s                  *   0.0013        1          9e-05       5.2e-05       3e-05          "
+      "1.2\n"
+      "    duration       40 s                      0.0005     0.13        7.5e-05       4.4e-05     2.1e-05           "
+      " 0\n"
+      "\n"
+      "[[How to read it]]\n"
+      "    The linear formulas (inertia from damped period and logarithmic decrement, sin θ = θ; all whole periods, "
+      "turning\n"
+      "    points without error) are off by more than the standard error of inertia above an amplitude of 0.0113 rad "
+      "(0.65\n"
+      "    deg): beyond it, fit the full equation.\n"
+      "    To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how much "
+      "the linear\n"
+      "    formulas miss it without any noise. The error of the rig's gravity torque G adds to those of inertia and "
+      "torques.\n");
+}
+
+TEST(PlanText, StaysInUnitsOfTheGravityTorqueWithoutARig) {
+  const std::string text = PlanText(ExamplePlan(), {});
+  EXPECT_THAT(text, HasSubstr("\n    inertia        0.0400000  ± 0.0000005 s^2  0.0013 %\n"));
+  EXPECT_THAT(text, HasSubstr("\n    viscous        0.001500   ± 0.000015  s    1 %\n"));
+  EXPECT_THAT(text, HasSubstr("Torques and inertia are in units of the gravity torque G"));
+}
+
+TEST(PlanText, RemindsOfTheRigsOwnError) {
+  EXPECT_THAT(PlanText(ExamplePlan(), ExampleRig(0.005)), HasSubstr("rig's gravity torque G, 0.25 %, adds to"));
+}
+
+TEST(PlanText, GivesTheErrorOfAParameterThatIs0InItsUnit) {
+  Plan plan = ExamplePlan();
+  plan.truth[1] = 0;
+  const std::string text = PlanText(plan, ExampleRig());
+  EXPECT_THAT(text, ContainsRegex("\n    viscous +\\(0.0 +± 3.0\\)e-05 +N m s/rad\n"));
+  EXPECT_THAT(text, ContainsRegex("% +N m s/rad +rad +s +rad +%\n"));
+  EXPECT_THAT(text, ContainsRegex("40 s +0.0005 +4e-06 "));
+}
+
+TEST(PlanText, WritesPercentAboveAHundredWithoutAPowerOfTen) {
+  Plan plan = ExamplePlan();
+  plan.rows[3].std_errors[1] = 0.00333;
+  EXPECT_THAT(PlanText(plan, {}), ContainsRegex("40 s +0.0005 +222 "));
+}
+
+TEST(PlanText, SaysWhyThereIsNoRecording) {
+  Plan plan = ExamplePlan();
+  plan.rows[3] = {"duration", "s", 0.5, false, std::vector<std::optional<double>>(5), {}, "too few samples"};
+  const std::string text = PlanText(plan, {});
+  EXPECT_THAT(text, ContainsRegex("\n    duration +0.5 s +- +- +- +- +- +-\n"));
+  EXPECT_THAT(text, HasSubstr("\n\n    - duration 0.5 s: too few samples.\n\n[[How to read it]]"));
+  EXPECT_THAT(text, Not(HasSubstr("no bound is known")));
+}
+
+TEST(PlanText, SaysWhatADashStandsFor) {
+  Plan plan = ExamplePlan();
+  plan.rows[0].std_errors[4].reset();
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("\n    - no bound is known for this noise and sensor, or the readings"));
+  EXPECT_THAT(PlanText(ExamplePlan(), {}), Not(HasSubstr("no bound is known")));
+  plan = ExamplePlan();
+  plan.rows[0].linear_bias.reset();
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("less than one whole period"));
+}
+
+TEST(PlanText, ComparesNothingWithAnErrorThatIsNotKnown) {
+  Plan plan = ExamplePlan();
+  for (PlanRow& row : plan.rows) row.std_errors.assign(5, std::nullopt);
+  plan.amplitude_of_equal_bias.reset();
+  const std::string text = PlanText(plan, ExampleRig());
+  EXPECT_THAT(text, HasSubstr("\n    inertia        0.08    ± - kg m^2\n"));
+  EXPECT_THAT(text, HasSubstr("cannot be compared with a standard error that is not known"));
+}
+
+TEST(PlanText, SaysThatTheLinearFormulasNeverFail) {
+  Plan plan = ExamplePlan();
+  plan.amplitude_of_equal_bias.reset();
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("have no amplitude up to 2.5 rad from which on they are off"));
+}
+
+TEST(PlanText, SaysWhatLevelsWithoutNoiseAreTakenFor) {
+  Plan plan = ExamplePlan();
+  plan.noise_of_levels = 0.001;
+  const std::string text = PlanText(plan, {});
+  EXPECT_THAT(text, testing::StartsWith("[[Predicted standard errors]] (of least squares)\n"));
+  EXPECT_THAT(text, HasSubstr("    0.001 rad (their spacing"));
+  plan.parameters.back() = kRateBias;
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("    0.001 rad/s (their spacing"));
+}
+
+TEST(PlanText, ShowsTheLevelsOfARateInDegreesPerSecond) {
+  Plan plan = ExamplePlan();
+  plan.rows[3].factor = "resolution";
+  plan.rows[3].unit = "rad/s";
+  plan.rows[3].value = 0.01;
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("    resolution     0.01 rad/s (0.573 deg/s)     0.0005"));
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/text_parts.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+// 0.0790 ± 0.0012: leading digits 120 keep two (PDG); other numbers have the same decimal.
+TEST(QuantityNumbers, ShowsAllToTheDecimalOfTheError) {
+  const QuantityNumbers numbers(0.07901, 0.0012);
+  EXPECT_EQ(numbers.Value(), "0.0790");
+  EXPECT_EQ(numbers.Error(), "± 0.0012");
+  EXPECT_EQ(numbers.Number(0.08), "0.0800");
+  EXPECT_EQ(numbers.Interval(0.07, std::nullopt), "[0.0700, ?]");
+  EXPECT_EQ(numbers.Interval(std::nullopt, std::nullopt), "");
+  EXPECT_EQ(numbers.SecondError(0.0005), "± 0.0005");
+  EXPECT_EQ(numbers.SecondError(std::nullopt), "");
+}
+
+TEST(QuantityNumbers, MultipliesEveryNumberByTheFactor) {
+  const QuantityNumbers numbers(0.079, 0.0012, 10);
+  EXPECT_EQ(numbers.Value(), "0.790");
+  EXPECT_EQ(numbers.Error(), "± 0.012");
+  EXPECT_EQ(numbers.Number(0.08), "0.800");
+}
+
+TEST(QuantityNumbers, BracketsValueAndErrorButNoNumberByItself) {
+  const QuantityNumbers numbers(3e-6, 1.2e-7);
+  EXPECT_EQ(numbers.Value() + " " + numbers.Error(), "(3.00 ± 0.12)e-06");
+  EXPECT_EQ(numbers.Number(3e-6), "3.00e-06");
+}
+
+TEST(QuantityNumbers, HasSixDigitsWithoutAUsableError) {
+  for (const auto& error : {std::optional<double>(), std::optional(std::numeric_limits<double>::infinity()),
+                            std::optional(std::numeric_limits<double>::quiet_NaN())}) {
+    const QuantityNumbers numbers(0.123456789, error);
+    EXPECT_EQ(numbers.Value(), "0.123457");
+    EXPECT_EQ(numbers.Error(), "");
+    EXPECT_EQ(numbers.Number(0.123456789), "0.1235");
+  }
+}
+
+// 0.25 deg = 0.00436332 rad.
+TEST(ReadingText, AddsDegreesToRadians) {
+  EXPECT_EQ(ReadingText(0.00436332, "rad"), "0.00436 rad (0.25 deg)");
+  EXPECT_EQ(ReadingText(0.00436332, "rad/s"), "0.00436 rad/s (0.25 deg/s)");
+  EXPECT_EQ(ReadingText(0.5, "counts"), "0.5 counts");
+}
+
+TEST(Facts, AreIndentedBelowTheirHeading) {
+  EXPECT_EQ(Heading("Data") + Facts({{"a", "one"}, {"long", "two"}}) + Prose("three"),
+            "[[Data]]\n    a     one\n    long  two\n    three\n");
+}
+
+}  // namespace
+}  // namespace pendulum
