@@ -117,8 +117,7 @@ FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity) {
 /// The fit as the check needs it: estimates, and how they follow the readings.
 class FitSide {
  public:
-  FitSide(const Recording& used, const FitReport& fit, const FittedMotion& motion)
-      : used_(used), fit_(fit), motion_(motion) {}
+  FitSide(const FitReport& fit, const FittedMotion& motion) : fit_(fit), motion_(motion) {}
 
   struct Value {
     double value = 0;
@@ -189,11 +188,17 @@ class FitSide {
     return solver_.allFinite();
   }
 
-  const Recording& used_;
   const FitReport& fit_;
   const FittedMotion& motion_;
   MatrixXd solver_;  // P x N
 };
+
+/// z and verdict, where there is a standard deviation of the difference.
+void Judge(double deviation, ClosedFormRow& row) {
+  if (!(deviation > 0)) return;
+  row.z = (row.closed_form - row.fit) / deviation;
+  row.agrees = std::abs(*row.z) < kAgrees;
+}
 
 class Checker {
  public:
@@ -203,7 +208,7 @@ class Checker {
         fit_(fit),
         gravity_torque_(rig ? rig->gravity_torque.value : 1.0),
         motion_(used, fit, rig),
-        side_(used, fit, motion_) {}
+        side_(fit, motion_) {}
 
   void Add(const FormulaGroup& group, std::vector<ClosedFormRow>& rows) {
     std::optional<FormulaStages> stages;
@@ -218,6 +223,7 @@ class Checker {
                         fitted->scale * group.value[k],
                         fitted->scale * group.error[k],
                         fitted->value,
+                        fitted->std_error,
                         {},
                         {},
                         ""};
@@ -238,7 +244,7 @@ class Checker {
 
  private:
   /// Hausman's, while the residuals are white and it is no small difference of large numbers. Residuals of a wrong law
-  /// remember it and are no noise: then it is that of neighbouring samples.
+  /// remember it and are no noise: then it is that of neighbouring samples, or the closed form's own if that is larger.
   std::optional<double> Deviation(const ClosedFormRow& row, const FitSide::Value& fitted, const VectorXd& gradient) {
     constexpr double kSmallDifference = 0.25;
     if (!fitted.std_error) return std::nullopt;
@@ -247,14 +253,11 @@ class Checker {
     const bool white = fit_.noise.memory.kind == Autocorrelation::Kind::kWhite;
     if (white && forms_.wrong_law.empty() && hausman > kSmallDifference * own) return std::sqrt(hausman);
     const VectorXd influence = fitted.scale * InfluenceOf(forms_.table, gradient.transpose(), used_.size());
-    if (!forms_.wrong_law.empty()) return side_.DifferenceDeviation(influence, fitted.weights, forms_.table.noise, {});
+    if (!forms_.wrong_law.empty()) {
+      const auto noise = side_.DifferenceDeviation(influence, fitted.weights, forms_.table.noise, {});
+      return std::max(noise.value_or(0), *row.std_error);
+    }
     return side_.DifferenceDeviation(influence, fitted.weights, fit_.statistics.rms_residual, fit_.noise.memory);
-  }
-
-  static void Judge(double deviation, ClosedFormRow& row) {
-    if (!(deviation > 0)) return;
-    row.z = (row.closed_form - row.fit) / deviation;
-    row.agrees = std::abs(*row.z) < kAgrees;
   }
 
   CauseNames NamesOf(const FormulaGroup& group, const FormulaRow& formula) const {
@@ -263,11 +266,11 @@ class Checker {
 
   /// What the readings have that the fitted law has not.
   std::string DescribeMisfit() const {
-    constexpr double kRejected = 0.01;
+    constexpr double kFarMore = 3;  // than the errors of the turning points
     if (!forms_.wrong_law.empty()) return "the friction law (" + forms_.wrong_law + ")";
-    const std::string misfit = "what the recording has beyond the fitted motion";
-    if (!forms_.decrement || forms_.decrement->Probability() >= kRejected) return misfit;
-    const double scatter = forms_.decrement->chi_square / forms_.decrement->freedom;
+    std::string misfit = "what the recording has beyond the fitted motion";
+    const double scatter = forms_.decrement ? forms_.decrement->chi_square / forms_.decrement->freedom : 0;
+    if (scatter < kFarMore) return misfit;
     return misfit + " (its turning points follow no law of friction here: chi2/dof " + NumberText(scatter, 3) + ")";
   }
 
@@ -296,6 +299,7 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
                       inertia.value,
                       inertia.std_error,
                       fitted->estimate,
+                      fit_error,
                       {},
                       {},
                       ""};
@@ -303,9 +307,8 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
     if (!inertia.std_error || !fit_error) {
       row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to judge that by";
     } else {
-      row.z = (inertia.value - fitted->estimate) / std::hypot(inertia.difference_std_error, *fit_error, clock_error);
-      row.agrees = std::abs(*row.z) < kAgrees;
-      if (!*row.agrees) row.why = percent + ", more than the rig's errors allow";
+      Judge(std::hypot(inertia.difference_std_error, *fit_error, clock_error), row);
+      if (row.agrees == false) row.why = percent + ", more than the rig's errors allow";
     }
     rows.push_back(std::move(row));
   }
@@ -361,6 +364,7 @@ std::string DescribeOverlay(const TextbookOverlay& overlay, const LogDecrement& 
 std::string Summarize(const std::vector<ClosedFormRow>& rows, const std::string& wrong_law) {
   const auto judged = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees.has_value(); });
   const auto agree = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees == true; });
+  if (judged == 0) return "there are no errors to judge the closed forms by";
   return std::to_string(agree) + " of " + std::to_string(judged) + " closed forms agree with the fit within " +
          NumberText(kAgrees) + " standard deviations of the difference" + DescribePointMass(rows) +
          (wrong_law.empty() ? "" : "; wrong friction law: " + wrong_law);

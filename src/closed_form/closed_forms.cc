@@ -2,6 +2,7 @@
 #include "pendulum/closed_form/closed_forms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <boost/math/distributions/fisher_f.hpp>
@@ -19,13 +20,18 @@ std::string Describe(const EnvelopeLaw& law) {
 }
 
 /// Which law the amplitudes follow.
-std::string DescribeEnvelopes(const std::vector<EnvelopeLaw>& laws) {
+std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
+  constexpr double kUntold = 10;
+  const double richest = laws.richest_chi_square / laws.richest_freedom;
+  if (richest > kUntold) {
+    return "not told: with viscous, dry and quadratic friction together chi2/dof of the turning points is still " +
+           NumberText(richest, 3);
+  }
   std::string followed, rejected;
-  for (const EnvelopeLaw& law : laws) {
+  for (const EnvelopeLaw& law : laws.single) {
     std::string& list = law.probability >= kRejected ? followed : rejected;
     list += (list.empty() ? "" : ", ") + Describe(law);
   }
-  if (laws.empty()) return "too few turning points to tell the law";
   if (followed.empty()) return "no single term of friction: neither " + rejected;
   return "as " + followed + (rejected.empty() ? "; the turning points exclude none" : "; not as " + rejected);
 }
@@ -34,15 +40,25 @@ std::string DescribeEnvelopes(const std::vector<EnvelopeLaw>& laws) {
 /// turning points that scatter more than their errors.
 std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeComparison& laws) {
   constexpr double kSurely = 1e-4;
+  constexpr double kMost = 0.5;  // of what the law leaves, others must explain
   const int more = decrement.freedom - laws.richest_freedom;
   if (more < 1 || decrement.Probability() >= kRejected) return "";
   const double own = decrement.chi_square / decrement.freedom;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
+  if (richest > kMost * own) return "";
   const double f = std::max(0.0, decrement.chi_square - laws.richest_chi_square) / more / richest;
+  if (!std::isfinite(f)) return "";
   const boost::math::fisher_f_distribution<double> law(more, laws.richest_freedom);
   if (boost::math::cdf(boost::math::complement(law, f)) >= kSurely) return "";
   return "chi2/dof of the turning points is " + NumberText(own, 3) + " with " + std::string(decrement.model.friction) +
          " friction and " + NumberText(richest, 3) + " with viscous, dry and quadratic";
+}
+
+/// Turning points that scatter about every law scatter by more than their errors say.
+void Inflate(double scatter, PeakTable& table) {
+  const double factor = std::max(scatter, 1.0);
+  for (Peak& peak : table.peaks) peak.covariance *= factor;
+  table.zero.std_error *= std::sqrt(factor);
 }
 
 }  // namespace
@@ -63,13 +79,17 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     if (!table) return tl::unexpected(table.error());
     forms.table = *std::move(table);
   }
+  Result<EnvelopeComparison> laws = CompareEnvelopes(forms.table, model.gravity);
+  if (laws) {
+    if (forms.decrement) forms.wrong_law = DescribeWrongLaw(*forms.decrement, *laws);
+    Inflate(laws->richest_chi_square / laws->richest_freedom, forms.table);
+    forms.envelope = DescribeEnvelopes(*laws);
+    forms.envelopes = std::move(laws->single);
+  } else {
+    forms.envelope = "not told: " + laws.error().message;
+  }
   forms.decay = TabulateDecay(forms.table);
   forms.linear = ApplyLogDecrement(forms.table, model.gravity);
-  if (Result<EnvelopeComparison> laws = CompareEnvelopes(forms.table, model.gravity)) {
-    if (forms.decrement) forms.wrong_law = DescribeWrongLaw(*forms.decrement, *laws);
-    forms.envelopes = std::move(laws->single);
-  }
-  forms.envelope = DescribeEnvelopes(forms.envelopes);
   for (Peak& peak : forms.table.peaks) peak.time = origin + (peak.time - origin) / recording.clock_scale;
   return forms;
 }

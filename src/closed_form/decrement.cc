@@ -26,13 +26,14 @@ using Eigen::VectorXd;
 struct PeakRun {
   std::size_t first;
   std::size_t count;
+  Index row = 0;  // of its first residual
 };
 
 /// Runs of at least two; a lone turning point tells nothing but the zero.
 std::vector<PeakRun> Runs(const PeakTable& table) {
   std::vector<PeakRun> runs;
   for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    if (i == 0 || !table.peaks[i].continues) runs.push_back({i, 0});
+    if (i == 0 || !table.peaks[i].continues) runs.push_back({i, 0, 0});
     ++runs.back().count;
   }
   std::erase_if(runs, [](const PeakRun& run) { return run.count < 2; });
@@ -47,10 +48,13 @@ class DecrementProblem {
  public:
   DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included)
       : table_(table), model_(model), included_(std::move(included)), runs_(Runs(table)) {
-    for (const PeakRun& run : runs_) peaks_ += static_cast<Index>(run.count);
+    for (PeakRun& run : runs_) {
+      run.row = 2 * peaks_;
+      peaks_ += static_cast<Index>(run.count);
+    }
     for (const Peak& peak : table.peaks) {
       const Eigen::Matrix2d root = peak.covariance.llt().matrixL();
-      whitening_.push_back(root.inverse());
+      whitening_.emplace_back(root.inverse());
     }
   }
 
@@ -90,23 +94,21 @@ class DecrementProblem {
   /// What the table has beyond the model, in standard errors; nothing where the model does not swing so far.
   std::optional<VectorXd> Residuals(const VectorXd& x) const {
     VectorXd residuals(observations());
-    Index row = 0;
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      if (!AddRun(r, x, row, residuals)) return std::nullopt;
-    }
+    if (!SetAll(x, residuals)) return std::nullopt;
     return residuals;
   }
 
-  /// Derivatives of the residuals (rows) with respect to (time, value) of each peak in the table.
-  MatrixXd Whitening() const {
-    MatrixXd whitening = MatrixXd::Zero(observations(), 2 * static_cast<Index>(table_.peaks.size()));
-    Index row = 0;
+  /// Takes derivatives (F x observations) by the residuals to those by (time, value) of each peak in the table.
+  MatrixXd ByPeaks(const MatrixXd& by_residuals) const {
+    MatrixXd by_peaks = MatrixXd::Zero(by_residuals.rows(), 2 * static_cast<Index>(table_.peaks.size()));
     for (const PeakRun& run : runs_) {
-      for (std::size_t peak = run.first; peak < run.first + run.count; ++peak, row += 2) {
-        whitening.block<2, 2>(row, 2 * static_cast<Index>(peak)) = whitening_[peak];
+      for (std::size_t i = 0; i < run.count; ++i) {
+        const auto peak = static_cast<Index>(run.first + i);
+        by_peaks.middleCols<2>(2 * peak) =
+            by_residuals.middleCols<2>(run.row + 2 * static_cast<Index>(i)) * whitening_[run.first + i];
       }
     }
-    return whitening;
+    return by_peaks;
   }
 
   /// Forward differences: good to 1e-6 of themselves, which Gauss-Newton does not notice.
@@ -118,12 +120,14 @@ class DecrementProblem {
       const Index i = free[static_cast<std::size_t>(k)];
       const double step = kStep * Scale(i, x);
       moved[i] += step;
-      const std::optional<VectorXd> there = Residuals(moved);
-      if (there) {
-        jacobian.col(k) = (*there - residuals) / step;
-      } else {
-        jacobian.col(k).setZero();
+      VectorXd there = residuals;
+      const auto set = [&] { return i < 2 + friction() ? SetAll(moved, there) : SetRun(RunOf(i), moved, there); };
+      if (!set()) {  // the other way
+        moved[i] = x[i] - step;
+        there = residuals;
+        if (!set()) there = residuals;
       }
+      jacobian.col(k) = (there - residuals) / (moved[i] - x[i]);
     }
     return jacobian;
   }
@@ -150,7 +154,19 @@ class DecrementProblem {
     return torque;
   }
 
-  bool AddRun(std::size_t r, const VectorXd& x, Index& row, VectorXd& residuals) const {
+  /// The run that an unknown amplitude or time belongs to.
+  std::size_t RunOf(Index i) const { return static_cast<std::size_t>((i - 2 - friction()) / 2); }
+
+  bool SetAll(const VectorXd& x, VectorXd& residuals) const {
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      if (!SetRun(r, x, residuals)) return false;
+    }
+    return true;
+  }
+
+  /// The residuals of one run; false where the model does not swing so far.
+  bool SetRun(std::size_t r, const VectorXd& x, VectorXd& residuals) const {
+    Index row = runs_[r].row;
     const std::span<const double> friction_parameters(x.data() + 2, included_.size());
     double amplitude = x[2 + friction() + 2 * static_cast<Index>(r)];
     double time = x[2 + friction() + 2 * static_cast<Index>(r) + 1];
@@ -161,7 +177,7 @@ class DecrementProblem {
       if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
       if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
       if (!is_rate && i + 1 == runs_[r].count) break;
-      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1]);
+      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1], is_rate);
       if (!end) return false;
       if (is_rate) Add(peak, time + end->peak_delay, x[0] + table_.Side(peak) * end->peak_rate, row, residuals);
       amplitude = end->amplitude;
@@ -192,42 +208,41 @@ struct LeastSquares {
   double sum = 0;
 };
 
-/// Levenberg-Marquardt with Marquardt's scaling, until a step is a thousandth of the standard errors.
+/// Levenberg-Marquardt with Marquardt's scaling, until the Newton step that is left is a thousandth of the standard
+/// errors.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMostSteps = 100;
   constexpr double kSmallStep = 1e-6;  // squared, in standard errors
+  constexpr double kMostDamping = 1e12;
   std::optional<VectorXd> residuals = problem.Residuals(x);
   if (!residuals) return std::nullopt;
   double damping = 1e-3;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
     const MatrixXd jacobian = problem.Jacobian(x, *residuals, free);
     const MatrixXd normal = jacobian.transpose() * jacobian;
     const VectorXd gradient = jacobian.transpose() * *residuals;
+    const MatrixXd inverse = normal.ldlt().solve(MatrixXd::Identity(normal.rows(), normal.cols()));
+    const double left = gradient.dot(inverse * gradient);
+    if (std::abs(left) < kSmallStep) return LeastSquares{x, inverse, jacobian, residuals->squaredNorm()};
     bool better = false;
-    while (!better && damping < 1e12) {
+    while (!better && damping < kMostDamping) {
       MatrixXd damped = normal;
       damped.diagonal() *= 1 + damping;
-      const VectorXd change = -damped.ldlt().solve(gradient);
       VectorXd trial = x;
-      trial(free) += change;
-      const std::optional<VectorXd> there = problem.Residuals(trial);
+      trial(free) -= damped.ldlt().solve(gradient);
+      std::optional<VectorXd> there = problem.Residuals(trial);
       better = there && there->squaredNorm() <= residuals->squaredNorm();
       damping = better ? 0.1 * damping : 10 * damping;
       if (!better) continue;
-      x = trial;
-      residuals = there;
-      if (change.dot(normal * change) > kSmallStep) break;
-      const MatrixXd last = problem.Jacobian(x, *residuals, free);
-      const Index size = last.cols();
-      const MatrixXd inverse = (last.transpose() * last).ldlt().solve(MatrixXd::Identity(size, size));
-      return LeastSquares{x, inverse, last, residuals->squaredNorm()};
+      x = std::move(trial);
+      residuals = std::move(there);
     }
-    if (!better) break;
   }
   return std::nullopt;
 }
 
 double ProbabilityBeyond(double chi_square, int freedom) {
+  if (!std::isfinite(chi_square)) return 0;
   const boost::math::chi_squared_distribution<double> law(freedom);
   return boost::math::cdf(boost::math::complement(law, chi_square));
 }
@@ -248,7 +263,7 @@ void Report(const DecrementProblem& problem, const LeastSquares& solution, const
       if (a < size && b < size) decrement.covariance(a, b) = scale * solution.inverse(i, j) * factor[a] * factor[b];
     }
   }
-  const MatrixXd follow = -solution.inverse * solution.jacobian.transpose() * problem.Whitening();
+  const MatrixXd follow = problem.ByPeaks(-solution.inverse * solution.jacobian.transpose());
   decrement.gradient = MatrixXd::Zero(size, follow.cols());
   for (Index i = 0; i < static_cast<Index>(free.size()); ++i) {
     const Index a = free[static_cast<std::size_t>(i)];
@@ -261,7 +276,7 @@ void Report(const DecrementProblem& problem, const LeastSquares& solution, const
 }
 
 /// The torque at rest of the friction that was found.
-double StickingAngle(const Decrement& decrement) {
+double RestTorque(const Decrement& decrement) {
   double torque = 0;
   FrictionModels::Visit(decrement.model.friction, [&]<typename F>() {
     std::array<double, kFrictionParameters<F>> friction{};
@@ -318,7 +333,7 @@ Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& mo
   Result<Decrement> decrement = FitFrom(*table, model, all, start);
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds && decrement; ++round) {
-    const Kink kink{StickingAngle(*decrement), 1 / std::sqrt(decrement->inertia.value)};
+    const Kink kink{RestTorque(*decrement), 1 / std::sqrt(decrement->inertia.value)};
     if (kink.sticking_angle == 0) break;
     table = LocatePeaks(recording, kink);
     if (!table) return tl::unexpected(table.error());
@@ -331,14 +346,17 @@ Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity grav
   const MotionModel richest = {"drag", "drag", gravity};
   const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
   const std::size_t terms = infos.size() - 1;
-  const Result<Decrement> all = FitDecrement(table, richest, std::vector<bool>(terms, true));
+  std::optional<VectorXd> start;
+  const Result<Decrement> all = FitFrom(table, richest, std::vector<bool>(terms, true), start);
   if (!all) return tl::unexpected(all.error());
+  start->segment(2, static_cast<Index>(terms)).setZero();
   const double scale = std::max(1.0, all->chi_square / all->freedom);
   EnvelopeComparison laws{{}, all->chi_square, all->freedom};
   for (std::size_t k = 0; k < terms; ++k) {
     std::vector<bool> alone(terms, false);
     alone[k] = true;
-    const Result<Decrement> one = FitDecrement(table, richest, alone);
+    std::optional<VectorXd> from = start;
+    const Result<Decrement> one = FitFrom(table, richest, alone, from);
     if (!one) continue;
     const std::string_view name = infos[k + 1].name;
     laws.single.push_back({std::string(name), std::string(EnvelopeShape(name)), one->chi_square, one->freedom,

@@ -77,7 +77,7 @@ class HalfSwingWay {
       : gravity_(gravity), friction_(friction), before_(before), natural_frequency_(natural_frequency) {}
 
   /// dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard's iteration on the energies at the nodes; `after` follows from the last.
-  std::optional<HalfSwingEnd> Solve() {
+  std::optional<HalfSwingEnd> Solve(bool wants_peak) {
     constexpr int kMostRounds = 200;
     constexpr double kSame = 4e-15;
     const double energy_before = PotentialAt(gravity_, before_);
@@ -89,7 +89,10 @@ class HalfSwingWay {
       const double energy_after = energy_before - (Rule().weight * loss).sum();
       if (!(energy_after > 0) || (gravity_ == Gravity::kSine && !(energy_after < 2))) return std::nullopt;
       const double last = std::exchange(after, AngleWith(gravity_, energy_after));
-      if (std::abs(last - after) <= kSame * before_) return End(loss, after);
+      if (std::abs(last - after) > kSame * before_) continue;
+      HalfSwingEnd end{after, (Rule().weight * slope_ / rate_).sum(), 0, 0};
+      if (wants_peak) FindPeak(loss, after, end);
+      return end;
     }
     return std::nullopt;
   }
@@ -120,7 +123,7 @@ class HalfSwingWay {
   }
 
   /// The rate is largest where g(θ) = -T(ω): a few rounds, for T hardly changes there.
-  HalfSwingEnd End(const Nodes& loss, double after) const {
+  void FindPeak(const Nodes& loss, double after, HalfSwingEnd& end) const {
     constexpr int kMostRounds = 50;
     constexpr double kSame = 1e-13;
     const double middle = 0.5 * (after - before_);
@@ -135,8 +138,8 @@ class HalfSwingWay {
       const double last = std::exchange(angle, gravity_ == Gravity::kSine ? -std::asin(torque) : -torque);
       if (std::abs(last - angle) <= kSame * half) break;
     }
-    const Nodes pace = slope_ / rate_;  // dt/dx
-    return {after, (Rule().weight * pace).sum(), rate, Rule().WeightsTo(x).dot(pace.matrix())};
+    end.peak_rate = rate;
+    end.peak_delay = Rule().WeightsTo(x).dot((slope_ / rate_).matrix());  // dt/dx
   }
 
   Gravity gravity_;
@@ -148,10 +151,10 @@ class HalfSwingWay {
 }  // namespace
 
 std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
-                                         double natural_frequency) {
+                                         double natural_frequency, bool wants_peak) {
   std::optional<HalfSwingEnd> end;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency).Solve();
+    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency).Solve(wants_peak);
   });
   return end;
 }

@@ -2,6 +2,7 @@
 #include "pendulum/closed_form/log_decrement.h"
 
 #include <cmath>
+#include <utility>
 
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/period.h"
@@ -108,18 +109,23 @@ bool Reaches(const PeakTable& table, std::size_t first, int periods) {
   return table.Side(first) == table.Side(last);
 }
 
-/// ζ of two turning points n periods apart, and its error without the rest of the formulas.
-std::optional<Estimate> DampingRatio(const PeakTable& table, std::size_t first, int periods) {
+/// ζ of two turning points n periods apart, and its error without the rest of the formulas. zero_weights: the table's.
+std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zero_weights, std::size_t first,
+                                     int periods) {
   if (!Reaches(table, first, periods)) return std::nullopt;
   const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
   const double before = table.Amplitude(first);
   const double after = table.Amplitude(last);
   const double decrement = std::log(before / after) / periods;
   const double square = 4 * kPi * kPi + decrement * decrement;
-  // The zero moves both amplitudes alike.
-  const double variance = table.peaks[first].covariance(1, 1) / (before * before) +
-                          table.peaks[last].covariance(1, 1) / (after * after) +
-                          std::pow(table.zero.std_error * (1 / before - 1 / after), 2);
+  // The zero, of which the amplitudes are counted, is made of all values, these two among them.
+  const double by_zero = table.Side(first) * (1 / after - 1 / before);
+  double variance = std::pow(by_zero * table.zero.std_error, 2);
+  for (const auto& [peak, slope] : {std::pair(first, 1 / before), std::pair(last, -1 / after)}) {
+    const double own = table.Side(first) * slope;
+    const double through_zero = by_zero * zero_weights[static_cast<Index>(peak)];
+    variance += own * (own + 2 * through_zero) * table.peaks[peak].covariance(1, 1);
+  }
   const double slope = 4 * kPi * kPi / (square * std::sqrt(square));
   return Estimate{decrement / std::sqrt(square), slope * std::sqrt(variance) / periods};
 }
@@ -151,22 +157,24 @@ std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gr
   for (std::size_t r = 1; r + 1 < starts.size(); ++r) {
     if (starts[r + 1] - starts[r] > starts[longest + 1] - starts[longest]) longest = r;
   }
+  const VectorXd weights = table.ZeroWeights();
   int best = 0;
   double smallest = 0;
   for (int n = 1; Reaches(table, starts[longest], n); ++n) {
-    const double error = DampingRatio(table, starts[longest], n)->std_error;
+    const double error = DampingRatio(table, weights, starts[longest], n)->std_error;
     if (best == 0 || error < smallest) best = n, smallest = error;
   }
   return ApplyLogDecrement(table, gravity, starts[longest], best);
 }
 
 std::vector<DecayRow> TabulateDecay(const PeakTable& table) {
+  const VectorXd weights = table.ZeroWeights();
   std::vector<DecayRow> rows;
   std::size_t start = 0;
   for (std::size_t i = 0; i < table.peaks.size(); ++i) {
     if (!table.peaks[i].continues) start = i;
-    DecayRow row{i, DampingRatio(table, i, 1), std::nullopt, static_cast<int>((i - start) / 2)};
-    row.so_far = DampingRatio(table, start + (i - start) % 2, row.periods);
+    DecayRow row{i, DampingRatio(table, weights, i, 1), std::nullopt, static_cast<int>((i - start) / 2)};
+    row.so_far = DampingRatio(table, weights, start + (i - start) % 2, row.periods);
     rows.push_back(row);
   }
   return rows;

@@ -14,10 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-/// A rig's inertia from masses and lengths is good to some ten percent, its frequency to half of that and finite
-/// amplitude.
-constexpr double kExpectedWithin = 0.15;
-
 /// Fewer samples a period leave a turning point, a parabola through three of them, off by more than 1 % of the
 /// amplitude.
 constexpr double kFewestPerPeriod = 8;
@@ -72,12 +68,15 @@ std::string Advice(double frequency) { return "sample at least at " + Hz(kGoodPe
 Warning AliasedWarning(const Sampling& sampling, double expected) {
   const double apparent = ApparentFrequency(expected, sampling.rate_hz);
   const double cycles = std::round(expected / sampling.rate_hz);
-  const std::string whole = NumberText(cycles) + (cycles == 1 ? " whole swing" : " whole swings");
+  constexpr double kStill = 0.01;  // of the rate: less than one swing in a hundred samples
+  const bool still = apparent < kStill * sampling.rate_hz;
   std::string why = "the pendulum is expected to swing at " + Hz(expected) + " and was sampled at " +
-                    Hz(sampling.rate_hz) + ", less than twice a swing: between two samples it makes nearly " + whole +
-                    ", which leave no trace, and so the readings seem to swing at |" + NumberText(expected, 3) + " - " +
-                    NumberText(cycles * sampling.rate_hz, 3) + "| = " + Hz(apparent) + ", a period of " +
-                    NumberText(1 / apparent, 3) + " s";
+                    Hz(sampling.rate_hz) + ", less than twice a swing: between two samples it makes " +
+                    NumberText(expected / sampling.rate_hz, 3) +
+                    " swings, of which the nearest whole number leaves no trace, and so the readings seem to ";
+  why += still ? "stand still"
+               : "swing at |" + NumberText(expected, 3) + " - " + NumberText(cycles * sampling.rate_hz, 3) +
+                     "| = " + Hz(apparent) + ", a period of " + NumberText(1 / apparent, 3) + " s";
   if (sampling.seen_frequency_hz) why += " (" + NumberText(1 / *sampling.seen_frequency_hz, 3) + " s is seen)";
   return {"aliased", why +
                          "; periods and decrements of turning points are apparent ones, only a fit of the motion "

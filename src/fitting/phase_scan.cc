@@ -115,7 +115,8 @@ class Scan {
 };
 
 std::vector<double> Grid(const FrequencyRange& range, double duration) {
-  const double step = kPhaseStep / duration;
+  constexpr double kMostFrequencies = 20'000;  // beyond, the grid is coarser: such recordings tell no frequency
+  const double step = std::max(kPhaseStep / duration, (range.high - range.low) / kMostFrequencies);
   const auto count = static_cast<std::size_t>(std::ceil(std::max(range.high - range.low, 0.0) / step));
   std::vector<double> grid;
   for (std::size_t i = 0; i <= count; ++i) {

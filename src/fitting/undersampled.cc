@@ -18,9 +18,6 @@ namespace {
 
 using Eigen::Index;
 
-/// How far the frequency may be from that of the rig's geometry.
-constexpr double kGeometryWithin = 0.15;
-
 /// No pendulum whose motion is recorded is shorter than 3 cm.
 constexpr double kFastestHz = 3;
 
@@ -57,7 +54,7 @@ double RateOf(const Recording& recording) {
 Allowed AllowedFrequencies(const Recording& used, const FitOptions& options) {
   Allowed allowed{{kTurn / DurationOf(used), kTurn * kFastestHz}, false};
   if (const auto expected = ExpectedFrequency(options.rig)) {
-    allowed = {{(1 - kGeometryWithin) * kTurn * *expected, (1 + kGeometryWithin) * kTurn * *expected}, true};
+    allowed = {{(1 - kExpectedWithin) * kTurn * *expected, (1 + kExpectedWithin) * kTurn * *expected}, true};
   }
   for (const auto* values : {&options.initial, &options.fixed}) {
     const auto inertia = values->find(kInertia.name);
@@ -157,7 +154,7 @@ std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double
 
 /// What does not describe the readings may seem noise, for nothing follows from one sample to the next.
 std::optional<std::string> WhyNotDescribed(const Recording& used, const FitReport& fit) {
-  constexpr double kMostUnexplained = 0.12;  // as where the residuals follow each other
+  constexpr double kMostUnexplained = 0.02;
   constexpr Index kFewestPerParameter = 2;
   const double variance = (used.value.array() - used.value.mean()).square().sum();
   const double left = fit.residual.squaredNorm() / variance;
@@ -225,15 +222,30 @@ std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed
          " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";
 }
 
+/// Whether the readings fit far better at a frequency that the rig does not let expect.
+std::optional<std::string> WhyBeyondTheRig(const Recording& used, const FitReport& fit, const FitOptions& options) {
+  const auto expected = ExpectedFrequency(options.rig);
+  if (!expected || options.bounds.contains(kInertia.name) || options.fixed.contains(kInertia.name)) return std::nullopt;
+  const Allowed wide{{0.5 * kTurn * *expected, 2 * kTurn * *expected}, false};
+  const Result<std::vector<Alias>> aliases = FitAliases(used, wide, options);
+  if (!aliases || aliases->empty()) return std::nullopt;
+  const Alias& best = aliases->front();
+  if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kFar) return std::nullopt;
+  return "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " + Hz(*expected) +
+         " that the rig lets expect; check the rig, or give --bounds of inertia";
+}
+
 /// Why a fit does not stand, whatever its own errors.
 struct Refusal {
   Termination termination;
   std::string why;
 };
 
-std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed) {
+std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
+                                 const FitOptions& options) {
   if (const auto why = WhyNotDescribed(used, aliases.front().fit)) return Refusal{Termination::kNotConverged, *why};
-  const auto why = WhyAmbiguous(used, aliases, allowed);
+  auto why = WhyAmbiguous(used, aliases, allowed);
+  if (!why) why = WhyBeyondTheRig(used, aliases.front().fit, options);
   return why ? std::optional(Refusal{Termination::kNotIdentifiable, *why}) : std::nullopt;
 }
 
@@ -256,6 +268,7 @@ void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Al
 /// What is expected of the rig, or else found beyond doubt, beside the sampling.
 void WarnOfSampling(const Recording& used, double frequency, const FitOptions& options, FitReport& fit) {
   auto expected = ExpectedFrequency(options.rig);
+  if (expected && fit.termination == Termination::kConverged) expected = frequency;
   if (expected) *expected *= used.clock_scale;
   std::optional<double> half_period;
   if (!expected && fit.termination == Termination::kConverged) half_period = 0.5 / (frequency * used.clock_scale);
@@ -276,8 +289,14 @@ bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
   // 31 and with 5.9 most, from 0.1 to 1.2 rad.
   constexpr double kFewestPerPeriod = 7;
   const auto expected = ExpectedFrequency(rig);
-  const double needed = expected ? kFewestPerPeriod * (1 + kGeometryWithin) * *expected : 2 * kFastestHz;
-  return RateOf(recording) < needed;
+  const double rate = RateOf(recording);
+  if (expected) return rate < kFewestPerPeriod * (1 + kExpectedWithin) * *expected;
+  if (rate >= 2 * kFastestHz) return false;
+  const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
+  return !swings || std::ranges::any_of(*swings, [&](const FreeSwing& swing) {
+    const double seen = 0.5 / (swing.half_period * recording.clock_scale);
+    return rate < kFewestPerPeriod * seen || rate - seen <= kFastestHz;
+  });
 }
 
 FreeSwing WholeRecording(const Recording& recording) {
@@ -314,7 +333,7 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
                                                       Hz(allowed.range.high / kTurn) +
                                                       " swings as the readings do; look at --rig, or sample faster");
   }
-  const std::optional<Refusal> refusal = RefusalOf(*used, *aliases, allowed);
+  const std::optional<Refusal> refusal = RefusalOf(*used, *aliases, allowed, moving);
   FitReport fit = aliases->front().fit;
   if (!refusal) {
     moving = options;

@@ -107,6 +107,17 @@ std::optional<RoundingTest> TestRounding(double resolution, double rss, Index fr
   return RoundingTest{std_dev, cdf(complement(boost::math::chi_squared(static_cast<double>(freedom)), chi_squared))};
 }
 
+double RmsSlope(const CalibrationTable& table, const Calibration& calibration) {
+  const auto slope = [&](double reading) { return calibration.Slope(reading) / calibration.RadFromUnit(); };
+  return std::sqrt(table.reading.unaryExpr(slope).squaredNorm() / static_cast<double>(table.size()));
+}
+
+/// The angle of a count, rms over the points; 0 for volts.
+double Resolution(const CalibrationTable& table, const Calibration& calibration) {
+  return table.input == "counts" ? RmsSlope(table, calibration) : 0;
+}
+
+/// Points may lie on the line by chance: counts were rounded all the same.
 void SetCurve(const CalibrationTable& table, const LeastSquares& least_squares, const Scale& scale,
               Calibration& calibration) {
   calibration.input = table.input;
@@ -117,15 +128,12 @@ void SetCurve(const CalibrationTable& table, const LeastSquares& least_squares, 
   calibration.coefficients.assign(raw.begin(), raw.end());
   if (table.size() == count) return;
   const double variance = least_squares.Rss() / static_cast<double>(table.size() - count);
-  const Eigen::MatrixXd factor = std::sqrt(variance) * (raw_from_scaled * least_squares.factor);
+  const double rounding = Resolution(table, calibration) / std::sqrt(12.0);
+  const double std_dev = std::max(std::sqrt(variance), rounding);
+  const Eigen::MatrixXd factor = std_dev * (raw_from_scaled * least_squares.factor);
   calibration.covariance.noalias() = factor * factor.transpose();
   calibration.covariance = calibration.covariance.selfadjointView<Eigen::Lower>().toDenseMatrix();
   calibration.residual_std_dev = std::sqrt(variance);
-}
-
-double RmsSlope(const CalibrationTable& table, const Calibration& calibration) {
-  const auto slope = [&](double reading) { return calibration.Slope(reading) / calibration.RadFromUnit(); };
-  return std::sqrt(table.reading.unaryExpr(slope).squaredNorm() / static_cast<double>(table.size()));
 }
 
 /// The curve and its residuals, without tests.
@@ -137,7 +145,7 @@ CalibrationFit FitOf(const CalibrationTable& table, const LeastSquares& least_sq
   fit.residual = least_squares.residual;
   fit.residual.cwiseAbs().maxCoeff(&fit.largest);
   if (table.size() > count) fit.left_out = fit.residual.array() / (1 - least_squares.leverage.array());
-  if (table.input == "counts") fit.resolution = RmsSlope(table, fit.calibration);
+  fit.resolution = Resolution(table, fit.calibration);
   return fit;
 }
 

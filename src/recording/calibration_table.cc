@@ -146,7 +146,7 @@ Check TableReader::ReadRow() {
     const std::string_view field = fields.Next();
     if (index == reading_.index || index == angle_.index) {
       const bool is_reading = index == reading_.index;
-      const Check read = ReadField(field, is_reading ? reading_ : angle_, is_reading ? reading : angle);
+      Check read = ReadField(field, is_reading ? reading_ : angle_, is_reading ? reading : angle);
       if (!read) return read;
     } else if (index >= width_ && !Trim(field).empty()) {
       return line_.Fault(Trim(field).data(), "field " + std::to_string(index + 1) + " holds " + Quoted(Trim(field)) +
@@ -201,10 +201,10 @@ Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index
     const auto [later, earlier] = LaterFirst(order[i - 1], order[i]);
     if (table.reading[later] != table.reading[earlier]) continue;
     const bool same = table.angle[later] == table.angle[earlier];
-    return FaultAt(
-        table, later,
-        "the reading " + ReadingAt(table, earlier) + " stands here again with " +
-            (same ? "the same angle; delete one of the rows" : "another angle; correct or delete one of the rows"));
+    return FaultAt(table, later,
+                   "the reading " + ReadingAt(table, earlier) + " stands here again with " +
+                       (same ? "the same angle; give their mean, or delete one of the rows"
+                             : "another angle; give their mean, or correct or delete one of the rows"));
   }
   return {};
 }

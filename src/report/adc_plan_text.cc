@@ -6,29 +6,29 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/report/layout.h"
+#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
 
-constexpr int kIndent = 4;
-constexpr int kWidth = 100;  // columns, of prose
-constexpr int kDigits = 4;   // significant
-
-std::string Number(double value) { return NumberText(value, kDigits); }
+std::string FourDigits(double value) { return NumberText(value, 4); }
 
 /// The swing about the middle of the travel that counts tell.
 std::string AboutTheMiddle(const AdcSensor& sensor) {
   const SensorRange usable = sensor.UsableAnglesDeg();
   const double swing = std::min(-usable.low, usable.high);
-  return swing > 0 ? "± " + Number(swing) : "none";
+  return swing > 0 ? "± " + FourDigits(swing) : "none";
 }
 
 std::vector<std::string> SensorRow(const AdcSensor& sensor) {
   const SensorRange usable = sensor.UsableAnglesDeg();
   const SensorRange counts = sensor.ReadingRange();
-  return {Number(sensor.reference_voltage), Number(sensor.DegPerCount()),
-          Number(sensor.CountsPerDeg()),    Number(usable.low) + " to " + Number(usable.high),
-          AboutTheMiddle(sensor),           NumberText(counts.low) + " to " + NumberText(counts.high)};
+  return {FourDigits(sensor.reference_voltage),
+          FourDigits(sensor.DegPerCount()),
+          FourDigits(sensor.CountsPerDeg()),
+          FourDigits(usable.low) + " to " + FourDigits(usable.high),
+          AboutTheMiddle(sensor),
+          NumberText(counts.low) + " to " + NumberText(counts.high)};
 }
 
 /// Where the converter's range ends before the potentiometer's travel does.
@@ -38,12 +38,11 @@ std::string SaturationText(const AdcSensor& sensor) {
   AdcSensor divided = sensor;
   divided.divider = sensor.reference_voltage / sensor.supply_voltage;
   const double highest = sensor.divider * sensor.supply_voltage;
-  return Paragraph("With a reference of " + Number(sensor.reference_voltage) + " V, below the " + Number(highest) +
-                       " V that the potentiometer gives, all angles above " + Number(*angle) + " deg read " +
-                       NumberText(sensor.FullScale()) + (*angle <= 0 ? ", the middle of the travel among them" : "") +
-                       ". --divider " + Number(divided.divider) + " would bring the whole travel within it, at " +
-                       Number(divided.DegPerCount()) + " deg per count.",
-                   std::string(kIndent, ' '), kWidth);
+  return Prose("With a reference of " + FourDigits(sensor.reference_voltage) + " V, below the " + FourDigits(highest) +
+               " V that the potentiometer gives, all angles above " + FourDigits(*angle) + " deg read " +
+               NumberText(sensor.FullScale()) + (*angle <= 0 ? ", the middle of the travel among them" : "") +
+               ". --divider " + FourDigits(divided.divider) + " would bring the whole travel within it, at " +
+               FourDigits(divided.DegPerCount()) + " deg per count.");
 }
 
 }  // namespace
@@ -58,17 +57,16 @@ std::string AdcPlanText(std::span<const AdcSensor> sensors) {
     remarks += SaturationText(sensor);
   }
   return "[[Sensor]]\n" +
-         Paragraph("Potentiometer of " + Number(first.travel_deg) + " deg across " + Number(first.supply_voltage) +
-                       " V" + (first.divider == 1 ? "" : ", divided by " + Number(1 / first.divider)) + ", read by " +
-                       std::to_string(first.bits) + " bits; angles in deg from the middle of the travel.",
-                   std::string(kIndent, ' '), kWidth) +
+         Prose("Potentiometer of " + FourDigits(first.travel_deg) + " deg across " + FourDigits(first.supply_voltage) +
+               " V" + (first.divider == 1 ? "" : ", divided by " + FourDigits(1 / first.divider)) + ", read by " +
+               std::to_string(first.bits) + " bits; angles in deg from the middle of the travel.") +
          AlignedTable({{"reference [V]", true},
                        {"deg per count", true},
                        {"counts per deg", true},
                        {"usable [deg]", true},
                        {"about the middle [deg]", true},
                        {"counts", true}},
-                      rows, kIndent) +
+                      rows, kTextIndent) +
          remarks;
 }
 

@@ -11,6 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
@@ -18,24 +19,14 @@ namespace {
 using Eigen::Index;
 using Row = std::vector<std::string>;
 
-constexpr int kIndent = 4;
-constexpr int kWidth = 100;                   // columns, of prose
-constexpr int kDigits = 6;                    // significant, of a number without an error
-constexpr int kFewDigits = 3;                 // significant, of a number to be compared
-constexpr double kSignificance = 0.05;        // of the tests
-constexpr std::string_view kMargin = "    ";  // kIndent blanks
-
-std::string Prose(std::string_view text) { return Paragraph(text, kMargin, kWidth); }
+constexpr int kFewDigits = 3;           // significant, of a number to be compared
+constexpr double kSignificance = 0.05;  // of the tests
 
 std::string Short(double value) { return NumberText(value, kFewDigits); }
 
-std::string ProbabilityText(double p) {
-  constexpr double kLeast = 1e-4;
-  return p < kLeast ? "p < 0.0001" : "p " + NumberText(p, 2);
-}
-
 std::string Span(double one, double other, const std::string& unit) {
-  return NumberText(std::min(one, other), kDigits) + " to " + NumberText(std::max(one, other), kDigits) + " " + unit;
+  return NumberText(std::min(one, other), kTextDigits) + " to " + NumberText(std::max(one, other), kTextDigits) + " " +
+         unit;
 }
 
 std::string Power(int exponent, const std::string& base) {
@@ -48,7 +39,7 @@ std::string Polynomial(const std::vector<double>& coefficients) {
   for (std::size_t k = 0; k < coefficients.size(); ++k) {
     const double value = coefficients[k];
     text += k == 0 ? (value < 0 ? "-" : "") : value < 0 ? " - " : " + ";
-    text += NumberText(std::abs(value), kDigits) + (k == 0 ? "" : " " + Power(static_cast<int>(k), "x"));
+    text += NumberText(std::abs(value), kTextDigits) + (k == 0 ? "" : " " + Power(static_cast<int>(k), "x"));
   }
   return text;
 }
@@ -64,7 +55,7 @@ std::string DataText(const CalibrationTable& table, const CalibrationFit& fit) {
   if (calibration.input_range) {
     rows.push_back({"sensor's range", Span(calibration.input_range->low, calibration.input_range->high, table.input)});
   }
-  return "[[Calibration]]\n" + AlignedTable({{""}, {""}}, rows, kIndent);
+  return Heading("Calibration") + AlignedTable({{""}, {""}}, rows, kTextIndent);
 }
 
 std::string CoefficientsText(const CalibrationTable& table, const CalibrationFit& fit) {
@@ -74,13 +65,13 @@ std::string CoefficientsText(const CalibrationTable& table, const CalibrationFit
   std::vector<Row> rows;
   for (int k = 0; k <= fit.order; ++k) {
     const double value = calibration.coefficients[k];
-    ValueAndError text{NumberText(value, kDigits), ""};
+    ValueAndError text{NumberText(value, kTextDigits), ""};
     if (has_errors && calibration.covariance(k, k) > 0) text = PdgText(value, std::sqrt(calibration.covariance(k, k)));
     const std::string unit = table.angle_unit + (k == 0 ? "" : "/" + Power(k, reading_unit));
     rows.push_back({"c" + std::to_string(k), text.value, text.error.empty() ? "" : "± " + text.error, unit});
   }
   return "[[Coefficients]]\n" +
-         AlignedTable({{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kIndent);
+         AlignedTable({{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kTextIndent);
 }
 
 std::string CorrelationText(const CalibrationFit& fit) {
@@ -135,7 +126,7 @@ std::string PointsText(const CalibrationTable& table, const CalibrationFit& fit)
                        {"residual" + unit, true},
                        {has_left_out ? "left out" + unit : "", true},
                        {""}},
-                      rows, kIndent);
+                      rows, kTextIndent);
 }
 
 // --- in words -------------------------------------------------------------------------------------------------------
@@ -175,7 +166,7 @@ std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& f
   if (!fit.rounding) return Prose(count + ".");
   const std::string rounding =
       "Rounding to counts would leave a standard deviation of " + Short(fit.rounding->std_dev) + " " + unit;
-  const std::string test = " (χ², " + ProbabilityText(fit.rounding->p) + ")";
+  const std::string test = " (χ², p " + ProbabilityText(fit.rounding->p) + ")";
   if (fit.rounding->p >= kSignificance) {
     return Prose(count + ". " + rounding + "; the residuals are no larger than that" + test +
                  ": nothing shows a lack of fit.");
@@ -193,7 +184,7 @@ std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& f
 
 std::string FText(const OrderTest& test) {
   const std::string f = std::isfinite(test.f) ? NumberText(test.f, kFewDigits) : "infinite";
-  return " (F(1, " + std::to_string(test.freedom) + ") " + f + ", " + ProbabilityText(test.p) + ")";
+  return " (F(1, " + std::to_string(test.freedom) + ") " + f + ", p " + ProbabilityText(test.p) + ")";
 }
 
 std::string OrdersText(const CalibrationFit& fit) {

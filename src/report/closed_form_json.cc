@@ -25,8 +25,8 @@ Json EstimatesJson(const std::vector<ReportedEstimate>& estimates) {
   return json;
 }
 
-Json LinearJson(const LogDecrement& linear, const std::optional<Rig>& rig) {
-  Json json = EstimatesJson(LinearEstimates(linear, rig));
+Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional<Rig>& rig) {
+  Json json = EstimatesJson(LinearEstimates(linear, gravity, rig));
   json["periods"] = linear.periods;
   return json;
 }
@@ -62,6 +62,7 @@ Json RowJson(const ClosedFormRow& row) {
       .Set("closed_form", row.closed_form)
       .Set("std_error", row.std_error, missing)
       .Set("fit", row.fit)
+      .Set("fit_std_error", row.fit_std_error, missing)
       .Set("unit", Json(row.unit))
       .Set("z", row.z, missing)
       .Set("agrees", row.agrees ? Json(*row.agrees) : Json(nullptr))
@@ -106,7 +107,7 @@ nlohmann::ordered_json ClosedFormsJson(const RunReport& report) {
   const ClosedForms& forms = *report.closed_forms;
   NumberObject json;
   json.Set("model", Json(report.closed_forms_model));
-  json.Set("linear", forms.linear ? LinearJson(*forms.linear, report.rig) : Json(nullptr));
+  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, report.rig) : Json(nullptr));
   if (!forms.linear) json.Because("linear: no two turning points a whole period apart follow each other");
   json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, report) : Json(nullptr));
   if (!forms.decrement) json.Because("decrement: " + forms.no_decrement);

@@ -20,16 +20,18 @@ ReportedEstimate Reported(const ParameterInfo& info, const Estimate& estimate, c
 
 }  // namespace
 
-std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, const std::optional<Rig>& rig) {
-  ReportedEstimate corrected = Reported(kInertia, linear.corrected_inertia, rig);
-  corrected.name = "corrected_inertia";
-  return {{"damped_frequency", "ω_d", linear.damped_frequency, "rad/s"},
-          {"log_decrement", "δ", linear.log_decrement, "1"},
-          {"damping_ratio", "ζ", linear.damping_ratio, "1"},
-          {"natural_frequency", "ω_n", linear.natural_frequency, "rad/s"},
-          Reported(kInertia, linear.inertia, rig),
-          Reported(kViscous, linear.viscous, rig),
-          corrected};
+std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravity gravity,
+                                              const std::optional<Rig>& rig) {
+  std::vector<ReportedEstimate> estimates = {{"damped_frequency", "ω_d", linear.damped_frequency, "rad/s"},
+                                             {"log_decrement", "δ", linear.log_decrement, "1"},
+                                             {"damping_ratio", "ζ", linear.damping_ratio, "1"},
+                                             {"natural_frequency", "ω_n", linear.natural_frequency, "rad/s"},
+                                             Reported(kInertia, linear.inertia, rig),
+                                             Reported(kViscous, linear.viscous, rig)};
+  if (gravity == Gravity::kLinear) return estimates;
+  estimates.push_back(Reported(kInertia, linear.corrected_inertia, rig));
+  estimates.back().name = "corrected_inertia";
+  return estimates;
 }
 
 std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,

@@ -74,11 +74,26 @@ std::string EstimateTable(const std::vector<ReportedEstimate>& estimates, bool i
 std::string LinearText(const ClosedForms& forms, const std::optional<Rig>& rig) {
   if (!forms.linear) return Prose("No two turning points a whole period apart follow each other: no log decrement.");
   const int periods = forms.linear->periods;
+  const bool is_sine = forms.gravity == Gravity::kSine;
   return Prose("Formulas of the linear pendulum, over " + std::to_string(periods) +
                (periods == 1 ? " period" : " periods") + " from turning point " +
-               std::to_string(forms.linear->first + 1) +
-               " on; corrected_inertia: each period divided by the elliptic integral's ratio.") +
-         EstimateTable(LinearEstimates(*forms.linear, rig), false);
+               std::to_string(forms.linear->first + 1) + " on" +
+               (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : ".")) +
+         EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false);
+}
+
+/// Friction that gives energy is none.
+std::string NegativeText(const Decrement& decrement) {
+  constexpr double kSurely = 3;
+  const std::vector<ParameterInfo> infos = PhysicalParameters(decrement.model);
+  std::string text;
+  for (std::size_t k = 0; k < decrement.friction.size(); ++k) {
+    const auto [value, error] = decrement.friction[k];
+    if (value >= -kSurely * error) continue;
+    text += Prose(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
+                  " standard errors, which no friction is: the turning points follow another law.");
+  }
+  return text;
 }
 
 std::string DecrementText(const RunReport& report) {
@@ -87,11 +102,12 @@ std::string DecrementText(const RunReport& report) {
   const Decrement& decrement = *forms.decrement;
   std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
-  return Prose("Fitted to all " + std::to_string(forms.table.peaks.size()) +
-               " turning points, exact at any amplitude, with the friction of model " + report.closed_forms_model +
-               ": chi-square " + NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
+  return Prose("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
+               (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
+               ", with the friction of model " + report.closed_forms_model + ": chi-square " +
+               NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
                " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".") +
-         EstimateTable(estimates, true);
+         EstimateTable(estimates, true) + NegativeText(decrement);
 }
 
 // --- the check -------------------------------------------------------------------------------------------------------
@@ -103,7 +119,16 @@ Cells CheckCells(const ClosedFormRow& row) {
   const QuantityNumbers numbers(row.closed_form, row.std_error);
   const std::string value = numbers.Error().empty() ? numbers.Number(row.closed_form) : numbers.Value();
   const std::string agrees = !row.agrees ? "-" : *row.agrees ? "yes" : "NO";
-  return {row.quantity, value, numbers.Error(), numbers.Number(row.fit), row.unit, ZText(row.z), agrees};
+  const QuantityNumbers fit(row.fit, row.fit_std_error);
+  const bool has_error = row.fit_std_error.value_or(0) > 0;
+  return {row.quantity,
+          value,
+          numbers.Error(),
+          has_error ? fit.Value() : numbers.Number(row.fit),
+          has_error ? fit.Error() : "",
+          row.unit,
+          ZText(row.z),
+          agrees};
 }
 
 std::string CheckText(const ClosedFormCheck& check, const std::string& of) {
@@ -113,8 +138,14 @@ std::string CheckText(const ClosedFormCheck& check, const std::string& of) {
     rows.push_back(CheckCells(row));
     if (!row.why.empty()) reasons += Prose(row.quantity + ": " + row.why + ".");
   }
-  const std::vector<Column> columns = {
-      {"quantity"}, {"closed form", true}, {"± std error", false, 1}, {"fit", true}, {"unit"}, {"z", true}, {"agrees"}};
+  const std::vector<Column> columns = {{"quantity"},
+                                       {"closed form", true},
+                                       {"± std error", false, 1},
+                                       {"fit", true},
+                                       {"± std error", false, 1},
+                                       {"unit"},
+                                       {"z", true},
+                                       {"agrees"}};
   std::string text = Heading("Closed forms against the fit" + of) + AlignedTable(columns, rows, kTextIndent) + reasons;
   for (const std::string& summary : {check.overlay.summary, check.summary}) {
     if (!summary.empty()) text += Prose(summary + ".");

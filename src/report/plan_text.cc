@@ -10,16 +10,14 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
 
 using Cells = std::vector<std::string>;
 
-constexpr int kWidth = 120;
-constexpr int kIndent = 4;
-constexpr std::string_view kMargin = "    ";
-constexpr int kDigits = 4;
+constexpr int kPlanDigits = 4;
 constexpr int kDegreeDigits = 3;
 constexpr int kErrorDigits = 2;
 
@@ -60,7 +58,7 @@ std::string ErrorCell(const Plan& plan, const Units& units, const PlanRow& row, 
 
 /// A value, angles and rates in degrees too.
 std::string ValueText(double value, std::string_view unit) {
-  std::string text = NumberText(value, kDigits) + " " + std::string(unit);
+  std::string text = NumberText(value, kPlanDigits) + " " + std::string(unit);
   if (unit.substr(0, 3) != "rad") return text;
   return text + " (" + NumberText(value / kRadFromDeg, kDegreeDigits) + " deg" + std::string(unit.substr(3)) + ")";
 }
@@ -70,7 +68,7 @@ std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base) 
   std::vector<Cells> rows;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
     const double value = units.Factor(i) * plan.truth[i];
-    Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kDigits), "± -", units.Name(i), ""};
+    Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kPlanDigits), "± -", units.Name(i), ""};
     if (base.std_errors[i]) {
       const ValueAndError text = PdgText(value, units.Factor(i) * *base.std_errors[i]);
       cells[1] = text.value;
@@ -81,7 +79,7 @@ std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base) 
   }
   return std::string("[[Predicted standard errors]] ") +
          (plan.noise_of_levels ? "(of least squares)\n" : "(Cramér-Rao: no unbiased fit has smaller ones)\n") +
-         AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kIndent);
+         AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kTextIndent);
 }
 
 std::vector<Column> FactorColumns(const Plan& plan) {
@@ -109,7 +107,7 @@ std::string FactorTable(const Plan& plan, const Units& units) {
     cells.push_back(BiasCell(row.linear_bias));
     rows.push_back(cells);
   }
-  return "\n[[One thing changed at a time]] (* the recording as it is)\n" + AlignedTable(columns, rows, kIndent);
+  return "\n[[One thing changed at a time]] (* the recording as it is)\n" + AlignedTable(columns, rows, kTextIndent);
 }
 
 bool LacksSomething(const PlanRow& row) {
@@ -122,14 +120,14 @@ std::string MissingText(const Plan& plan) {
   bool others = false;
   for (const PlanRow& row : plan.rows) {
     const std::string name = std::string(row.factor) + " " + ValueText(row.value, row.unit);
-    if (!row.reason.empty()) text += Paragraph(name + ": " + row.reason + ".", "    - ", kWidth);
+    if (!row.reason.empty()) text += Paragraph(name + ": " + row.reason + ".", "    - ", kTextWidth);
     others = others || (row.reason.empty() && LacksSomething(row));
   }
   if (!others) return text;
   return text + Paragraph(
                     "no bound is known for this noise and sensor, or the readings do not tell the parameter; "
                     "for the linear formulas: less than one whole period.",
-                    "    - ", kWidth);
+                    "    - ", kTextWidth);
 }
 
 std::string BiasText(const Plan& plan, bool has_bound) {
@@ -148,13 +146,28 @@ std::string BiasText(const Plan& plan, bool has_bound) {
          " deg): beyond it, fit the full equation.";
 }
 
-std::string ReadingText(const Plan& plan, const std::optional<Rig>& rig) {
+/// What the bound takes for known: which of its aliases the frequency is.
+std::string SlowText(const Plan& plan) {
+  constexpr double kPerSwing = 7;  // as IsUndersampled
+  const double frequency = 1 / (2 * kPi * std::sqrt(plan.truth.front()));
+  const bool slow = std::ranges::any_of(
+      plan.rows, [&](const PlanRow& row) { return row.factor == "rate" && row.value < kPerSwing * frequency; });
+  if (!slow) return "";
+  const auto hz = [](double value) { return NumberText(value, kDegreeDigits) + " Hz"; };
+  return "Below " + hz(kPerSwing * frequency) + ", seven samples a swing, a fit needs a rig whose inertia bounds the " +
+         "frequency, and near " + hz(frequency) + " or " + hz(2 * frequency) +
+         ", once or twice a swing, it stays ambiguous even then. ";
+}
+
+std::string HowToRead(const Plan& plan, const std::optional<Rig>& rig) {
   std::string text =
-      "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how "
-      "much the linear formulas miss it without any noise. ";
+      std::string(
+          "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how "
+          "much the linear formulas miss it without any noise. ") +
+      SlowText(plan);
   if (plan.noise_of_levels) {
     text += "Levels without noise have no Cramér-Rao bound: they are taken for white noise of " +
-            NumberText(*plan.noise_of_levels, kDigits) + " " + std::string(plan.parameters.back().unit) +
+            NumberText(*plan.noise_of_levels, kPlanDigits) + " " + std::string(plan.parameters.back().unit) +
             " (their spacing over √12), as least squares sees them; a fit that knows the levels does better. ";
   }
   if (!rig) return text + "Torques and inertia are in units of the gravity torque G; with a rig, G's own error adds.";
@@ -171,8 +184,8 @@ std::string PlanText(const Plan& plan, const std::optional<Rig>& rig) {
   const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
   const std::string missing = MissingText(plan);
   return BaseText(plan, units, *base) + FactorTable(plan, units) + (missing.empty() ? "" : "\n" + missing) +
-         "\n[[How to read it]]\n" + Paragraph(BiasText(plan, base->std_errors.front().has_value()), kMargin, kWidth) +
-         Paragraph(ReadingText(plan, rig), kMargin, kWidth);
+         "\n[[How to read it]]\n" + Prose(BiasText(plan, base->std_errors.front().has_value())) +
+         Prose(HowToRead(plan, rig));
 }
 
 }  // namespace pendulum

@@ -113,7 +113,7 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
 }
 
 /// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
-void RenderFiles(const FitPendulumOptions& options, const Run& run, int index, int count,
+void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index, int count,
                  std::vector<Output>& outputs) {
   const RunReport& report = run.report;
   if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(report)});
@@ -130,14 +130,14 @@ void RenderFiles(const FitPendulumOptions& options, const Run& run, int index, i
 
 /// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
 /// not be fitted is said.
-std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Result<Run>>& runs) {
+std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Result<FitRun>>& runs) {
   const bool data_on_stdout =
       std::ranges::any_of(options.Outputs(), [](const NamedFile& output) { return IsStandardOutput(output.path); });
   const auto count = static_cast<int>(runs.size());
   std::vector<Output> outputs;
   std::string text;
   for (int i = 0; i < count; ++i) {
-    const Result<Run>& run = runs[static_cast<std::size_t>(i)];
+    const Result<FitRun>& run = runs[static_cast<std::size_t>(i)];
     if (!run) {
       Say(kName, run.error().message);
       continue;
@@ -157,7 +157,7 @@ std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<
 }
 
 /// The exit code of a run: that of its fit; closed forms are there, or the run is an error.
-int ExitCodeOf(const Result<Run>& run) {
+int ExitCodeOf(const Result<FitRun>& run) {
   if (!run) return ExitCode(run.error().code);
   return run->report.fits.empty() ? 0 : ExitCode(run->report.fits.front().termination);
 }
@@ -180,7 +180,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!runs) return tl::unexpected(runs.error());
   if (const auto written = WriteOutputs(Render(*options, *runs)); !written) return tl::unexpected(written.error());
   int worst = 0;
-  for (const Result<Run>& run : *runs) worst = std::max(worst, ExitCodeOf(run));
+  for (const Result<FitRun>& run : *runs) worst = std::max(worst, ExitCodeOf(run));
   return worst;
 }
 

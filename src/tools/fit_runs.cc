@@ -81,7 +81,7 @@ MotionModel ClosedFormModel(const FitPendulumOptions& options, const Recording& 
 }
 
 /// Puts the closed forms beside the fits of a run.
-void AddClosedForms(const MotionModel& model, bool undersampled, Run& run) {
+void AddClosedForms(const MotionModel& model, bool undersampled, FitRun& run) {
   RunReport& report = run.report;
   if (undersampled) {
     report.no_closed_forms =
@@ -105,7 +105,7 @@ void AddClosedForms(const MotionModel& model, bool undersampled, Run& run) {
 
 /// How the swing was sampled, beside what turning points and rig tell of its period. An undersampled one shows none,
 /// and its fit has warned.
-void AddSampling(const FreeSwing& swing, Run& run) {
+void AddSampling(const FreeSwing& swing, FitRun& run) {
   RunReport& report = run.report;
   const double clock_scale = run.used.clock_scale;
   double half_period = swing.half_period;
@@ -114,14 +114,16 @@ void AddSampling(const FreeSwing& swing, Run& run) {
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
   std::optional<double> expected = ExpectedFrequency(report.rig);
   if (expected) *expected *= clock_scale;
+  const bool told = swing.undersampled && !report.fits.empty() && ExitCode(report.fits.front().termination) == 0;
+  if (expected && told) expected = 0.5 / swing.half_period;
   report.sampling = DescribeSampling(run.used, seen, expected);
   if (swing.undersampled) return;
   std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
 }
 
 /// What is reported of one swing. kFailedPrecondition: there are neither fits nor closed forms.
-Result<Run> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, SwingFit swing) {
-  Run run{one.common, {}};
+Result<FitRun> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, SwingFit swing) {
+  FitRun run{one.common, {}};
   run.report.data = SummarizeData(swing, one.swings, release, one.samples);
   run.used = std::move(swing.used);
   MotionModel model = swing.fit.model;
@@ -140,7 +142,7 @@ Result<Run> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, in
 
 /// Fits the chosen swings of one recording one by one and appends their runs.
 void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwings one, bool among_others,
-            std::vector<Result<Run>>& runs) {
+            std::vector<Result<FitRun>>& runs) {
   FitOptions fit_options = options.fit;
   fit_options.rig = one.common.rig;
   const bool several = one.swings.chosen.size() > 1;
@@ -151,7 +153,7 @@ void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwin
     const FreeSwing& found = one.swings.found[static_cast<std::size_t>(release - 1)];
     auto swing = options.closed_form_only ? TakeSwing(std::move(recording), found)
                                           : FitSwing(std::move(recording), found, fit_options);
-    Result<Run> run = swing ? MakeRun(options, one, release, *std::move(swing)) : tl::unexpected(swing.error());
+    Result<FitRun> run = swing ? MakeRun(options, one, release, *std::move(swing)) : tl::unexpected(swing.error());
     if (!run && (among_others || several)) run = ErrorAmong(run.error(), path, several ? release : 0);
     runs.push_back(std::move(run));
   }
@@ -195,8 +197,8 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
   return CheckOutputs(outputs, setup.inputs);
 }
 
-Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
-  std::vector<Result<Run>> runs;
+Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
+  std::vector<Result<FitRun>> runs;
   const std::size_t files = setup.paths.size();
   std::size_t count = files;  // of places: at least one for each recording
   for (const std::string& path : setup.paths) {

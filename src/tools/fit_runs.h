@@ -16,7 +16,7 @@
 namespace pendulum {
 
 /// One free swing of one recording, fitted, or with its closed forms only.
-struct Run {
+struct FitRun {
   RunReport report;
   Recording used;  ///< The samples of the swing.
 };
@@ -37,6 +37,6 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
 
 /// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on.
 /// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
-Result<std::vector<Result<Run>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
+Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
 
 }  // namespace pendulum

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/gnuplot.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -53,6 +54,7 @@ struct ChildFiles {
 /// Runs gnuplot and waits; gives its exit status, 0 when all is well, or what posix_spawnp says.
 std::error_code Spawn(std::vector<std::string> arguments, const ChildFiles& child, int& status) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -74,7 +76,7 @@ std::string FirstWords(std::string_view text) {
   return Quoted(text.substr(begin, text.find('\n', begin) - begin));
 }
 
-Result<std::string> Run(const std::vector<std::string>& arguments, const std::string& input) {
+Result<std::string> RunChild(const std::vector<std::string>& arguments, const std::string& input) {
   ChildFiles child;
   if (!child.IsOpen() || !child.Put(input)) {
     return Error(StatusCode::kCannotWrite, "plot: no temporary file can be written; make room in /tmp");
@@ -90,9 +92,9 @@ Result<std::string> Run(const std::vector<std::string>& arguments, const std::st
 }  // namespace
 
 Result<void> CheckGnuplot() {
-  return Run({"gnuplot", "--version"}, "").map([](const std::string&) {});
+  return RunChild({"gnuplot", "--version"}, "").map([](const std::string&) {});
 }
 
-Result<std::string> RunGnuplot(const std::string& script) { return Run({"gnuplot", "-d", "-"}, script); }
+Result<std::string> RunGnuplot(const std::string& script) { return RunChild({"gnuplot", "-d", "-"}, script); }
 
 }  // namespace pendulum

@@ -20,6 +20,11 @@ constexpr MotionModel kLinearDrag = {"drag", "drag", Gravity::kLinear};
 
 using Friction = std::array<double, 3>;
 
+std::optional<HalfSwingEnd> Swing(const MotionModel& model, const Friction& friction, double amplitude,
+                                  double natural_frequency) {
+  return SwingThrough(model, friction, amplitude, natural_frequency, true);
+}
+
 /// Rate and angle of the drag law by classical Runge-Kutta steps in the angle-rate plane, an independent way through.
 HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
   const double square = kFrequency * kFrequency;
@@ -49,7 +54,7 @@ HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
 
 TEST(HalfSwingMap, WithoutFrictionTakesHalfThePeriodOfTheEllipticIntegral) {
   for (const double amplitude : {1e-4, 0.1, 0.42, 1.0, 1.5, 2.0}) {
-    const auto end = SwingThrough(kDragModel, Friction{}, amplitude, kFrequency);
+    const auto end = Swing(kDragModel, Friction{}, amplitude, kFrequency);
     ASSERT_TRUE(end);
     const double expected = 2 / kFrequency * boost::math::ellint_1(std::sin(amplitude / 2));
     EXPECT_NEAR(end->amplitude / amplitude, 1, 1e-13) << amplitude;
@@ -60,7 +65,7 @@ TEST(HalfSwingMap, WithoutFrictionTakesHalfThePeriodOfTheEllipticIntegral) {
 }
 
 TEST(HalfSwingMap, LinearPendulumLosesTwiceTheStickingAngleToDryFriction) {
-  const auto end = SwingThrough(kLinearDrag, Friction{0, 0.01, 0}, 0.3, kFrequency);
+  const auto end = Swing(kLinearDrag, Friction{0, 0.01, 0}, 0.3, kFrequency);
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->amplitude, 0.28, 1e-14);
   EXPECT_NEAR(end->duration, kPi / kFrequency, 1e-13);
@@ -70,7 +75,7 @@ TEST(HalfSwingMap, LinearPendulumLosesTwiceTheStickingAngleToDryFriction) {
 TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
   const double damping_ratio = 0.05;
   const double root = std::sqrt(1 - damping_ratio * damping_ratio);
-  const auto end = SwingThrough(kLinearDrag, Friction{2 * damping_ratio / kFrequency, 0, 0}, 0.3, kFrequency);
+  const auto end = Swing(kLinearDrag, Friction{2 * damping_ratio / kFrequency, 0, 0}, 0.3, kFrequency);
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->amplitude, 0.3 * std::exp(-kPi * damping_ratio / root), 1e-14);
   EXPECT_NEAR(end->duration, kPi / (kFrequency * root), 1e-12);
@@ -83,7 +88,7 @@ TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
 TEST(HalfSwingMap, AgreesWithRungeKuttaForAllThreeTermsAtOnce) {
   const Friction friction = {0.004, 0.003, 0.002};
   for (const double amplitude : {0.05, 0.42, 1.2, 2.1}) {
-    const auto end = SwingThrough(kDragModel, friction, amplitude, kFrequency);
+    const auto end = Swing(kDragModel, friction, amplitude, kFrequency);
     const HalfSwingEnd expected = ByRungeKutta(friction, amplitude);
     ASSERT_TRUE(end);
     EXPECT_NEAR(end->amplitude, expected.amplitude, 1e-10) << amplitude;
@@ -94,14 +99,14 @@ TEST(HalfSwingMap, AgreesWithRungeKuttaForAllThreeTermsAtOnce) {
 }
 
 TEST(HalfSwingMap, FrictionMayHaveEitherSign) {
-  const auto gain = SwingThrough(kLinearDrag, Friction{0, -0.01, 0}, 0.3, kFrequency);
+  const auto gain = Swing(kLinearDrag, Friction{0, -0.01, 0}, 0.3, kFrequency);
   ASSERT_TRUE(gain);
   EXPECT_NEAR(gain->amplitude, 0.32, 1e-14);
 }
 
 TEST(HalfSwingMap, IsNothingWhereFrictionStopsTheSwingShort) {
-  EXPECT_FALSE(SwingThrough(kDragModel, Friction{0, 0.2, 0}, 0.3, kFrequency));
-  EXPECT_FALSE(SwingThrough(kDragModel, Friction{0, 0.5, 0}, 0.3, kFrequency));
+  EXPECT_FALSE(Swing(kDragModel, Friction{0, 0.2, 0}, 0.3, kFrequency));
+  EXPECT_FALSE(Swing(kDragModel, Friction{0, 0.5, 0}, 0.3, kFrequency));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ std::vector<std::string> Lines(const std::vector<ReportedEstimate>& estimates) {
 const std::optional<Rig> kRig = Rig{{2, 0.01}, std::nullopt, {}};  // G = 2 N m
 
 TEST(LinearEstimates, AreInUnitsOfGravityWithoutARig) {
-  EXPECT_THAT(Lines(LinearEstimates(*ExampleClosedForms().linear, std::nullopt)),
+  EXPECT_THAT(Lines(LinearEstimates(*ExampleClosedForms().linear, Gravity::kSine, std::nullopt)),
               ElementsAre("damped_frequency ω_d [rad/s] 4.75 0.0025", "log_decrement δ [1] 0.0265 0.0025",
                           "damping_ratio ζ [1] 0.00425 0.0004", "natural_frequency ω_n [rad/s] 4.7501 0.0025",
                           "inertia I_O [s^2] 0.0445 0.000125", "viscous b [s] 0.00175 0.00025",
@@ -35,7 +35,7 @@ TEST(LinearEstimates, AreInUnitsOfGravityWithoutARig) {
 }
 
 TEST(LinearEstimates, AreInSiWithARig) {
-  const std::vector<std::string> lines = Lines(LinearEstimates(*ExampleClosedForms().linear, kRig));
+  const std::vector<std::string> lines = Lines(LinearEstimates(*ExampleClosedForms().linear, Gravity::kSine, kRig));
   EXPECT_EQ(lines[0], "damped_frequency ω_d [rad/s] 4.75 0.0025");
   EXPECT_EQ(lines[4], "inertia I_O [kg m^2] 0.089 0.00025");
   EXPECT_EQ(lines[5], "viscous b [N m s/rad] 0.0035 0.0005");

@@ -18,7 +18,7 @@ FitPendulumOptions TextbookOptions() {
   return *MakeFitPendulumOptions(flags);
 }
 
-Result<Run> OnlyRun(FitPendulumOptions options) {
+Result<FitRun> OnlyRun(FitPendulumOptions options) {
   const auto setup = ReadSetup(options);
   if (!setup) return tl::unexpected(setup.error());
   auto runs = FitAll(options, *setup);

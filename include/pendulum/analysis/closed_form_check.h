@@ -22,6 +22,7 @@ struct ClosedFormRow {
   double closed_form = 0;
   std::optional<double> std_error;  ///< Of closed_form; absent where a rig gives none.
   double fit = 0;
+  std::optional<double> fit_std_error;  ///< 0 for what was held.
   /// Difference over its standard deviation. Both come from the same readings, so that is sqrt(se² - se_fit²) (J. A.
   /// Hausman, Econometrica 46:1251, 1978); where residuals have memory, or that difference is small, what both
   /// estimates make of noise with that memory (MODEL.md eq. (37)). Absent where there is no error.

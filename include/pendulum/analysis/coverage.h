@@ -26,9 +26,8 @@ struct CoverageRow {
   std::string unit;
   bool at_bound = false;                  ///< The truth is at the parameter's bound.
   int covered = 0, without_interval = 0;  ///< Recordings whose 95 % interval contains the truth; that have none.
-  double coverage = 0;                    ///< covered / recordings
-  double coverage_lower = 0, coverage_upper = 1;  ///< Its BinomialInterval95.
-  std::optional<double> rms_error;                ///< Of the estimates of converged fits, in `unit`.
+  double coverage = 0, coverage_lower = 0, coverage_upper = 1;  ///< covered / recordings and its BinomialInterval95.
+  std::optional<double> rms_error;                              ///< Of the estimates of converged fits, in `unit`.
   /// Root mean square of error / Cramér-Rao bound of its recording, of converged fits; absent where there is no bound.
   std::optional<double> error_over_bound;
   /// Mean standard error / rms error, of the fits that give a standard error.

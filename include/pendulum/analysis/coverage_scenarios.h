@@ -13,8 +13,8 @@ namespace pendulum {
 
 /// What a parameter's row of a coverage study must show to pass.
 struct CoverageRule {
-  double lowest = 0.93;        ///< The 95 % interval of the coverage, binomial, must meet [lowest, highest].
-  double highest = 0.97;       ///< 1 where intervals may be too wide.
+  /// The binomial 95 % interval of the coverage must meet [lowest, highest]; highest = 1: it may be too wide.
+  double lowest = 0.93, highest = 0.97;
   double largest_error = 1.1;  ///< Of the rms error over the Cramér-Rao bound.
 };
 

@@ -16,8 +16,7 @@ namespace pendulum {
 /// K formulas applied to a recording: their values, in their own units. Nothing where one cannot be.
 using FormulaValues = std::function<std::optional<Eigen::VectorXd>(const Recording&, Gravity gravity)>;
 
-/// What K formulas make of a fitted motion when one thing after the other stands between it and them (MODEL.md eq.
-/// (38)); each K.
+/// K values: what K formulas make of a fitted motion as one thing after the other comes between (MODEL.md eq. (38)).
 struct FormulaStages {
   Eigen::VectorXd small_angles;  ///< Linear gravity, no drift of the zero, 200 samples a period, no noise.
   Eigen::VectorXd drifting;      ///< The same with the fitted drift.
@@ -53,8 +52,7 @@ struct CauseNames {
   std::string misfit;  ///< Where the recording's part exceeds 3 standard deviations of noise.
 };
 
-/// The parts that make at least a fifth of the difference, the largest first, as a sentence. std_dev: of the difference
-/// by noise alone, in the unit.
+/// The parts that make a fifth of the difference or more, the largest first. std_dev: of it by noise alone, in `unit`.
 std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const std::string& unit,
                            const CauseNames& names);
 

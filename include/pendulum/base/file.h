@@ -18,8 +18,8 @@ tl::unexpected<Status> Fault(const std::string& name, const std::string& sentenc
 /// A file that is open for reading, which may be a pipe.
 class InputFile {
  public:
-  /// `kind` says what it should be: "a <kind> file". kNotFound: there is no such file. kDataLoss: it is a directory or
-  /// cannot be opened.
+  /// `kind`: what it should be, "a <kind> file". kNotFound: no such file. kDataLoss: a directory, or it cannot be
+  /// opened.
   static Result<InputFile> Open(const std::filesystem::path& path, std::string_view kind);
 
   /// Standard input, "standard input" in messages.
@@ -31,11 +31,9 @@ class InputFile {
   InputFile& operator=(InputFile&&) = delete;
   ~InputFile();
 
-  /// Fills `room` with the next bytes, waiting for them; gives how many there were, fewer only at the end of the file.
-  /// kDataLoss: it cannot be read.
+  /// Waits for the next bytes to fill `room`; gives how many, fewer only at the file's end. kDataLoss: unreadable.
   Result<std::size_t> Read(std::span<char> room);
 
-  /// The path as it was given.
   const std::string& name() const { return name_; }
 
  private:

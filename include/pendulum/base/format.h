@@ -18,8 +18,7 @@ std::string ProbabilityText(double p);
 /// A lower-case hexadecimal digit; `digit` below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
 
-/// A piece of a file in double quotes as a message may show it: 40 bytes at most, and what does not print, or what a
-/// terminal might obey, as \xNN.
+/// A piece of a file, 40 bytes at most, in double quotes for a message; what does not print or may be obeyed as \xNN.
 std::string Quoted(std::string_view text);
 
 /// The names of items for a sentence: "inertia, viscous, zero_angle". Items are names, or have a member `name`.

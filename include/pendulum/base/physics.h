@@ -7,7 +7,6 @@ namespace pendulum {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// Radians per degree.
 inline constexpr double kRadFromDeg = kPi / 180.0;
 
 }  // namespace pendulum

@@ -23,21 +23,20 @@ struct Decrement {
   std::vector<Estimate> friction;  ///< K; may come out negative
   Eigen::MatrixXd covariance;      ///< 2 + K square, of (zero, inertia, friction); rows of parameters left out are 0
   Eigen::MatrixXd gradient;        ///< 2 + K x 2 M: how they follow the M turning points, as for CovarianceOf.
-  double chi_square = 0;           ///< Of the times and values of all turning points.
-  int freedom = 0;                 ///< Degrees of freedom of chi_square.
+  double chi_square = 0;           ///< Of the times and values of all turning points, with `freedom` degrees.
+  int freedom = 0;
 
   /// Probability of a chi_square as large where the law is right and the errors of the turning points are.
   double Probability() const;
 };
 
-/// Fits the turning points of a model, exact at any amplitude, to those of a recording: weighted least squares of their
-/// times and values over the amplitude and the time of the first, the zero, the natural frequency and the friction law
-/// (MODEL.md eq. (32), (34)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W. Liang, J.
-/// Sound Vib. 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), each without their small
-/// angles, and without them it is the period corrected by the elliptic integral. Errors are those of the turning
-/// points, times sqrt(chi_square / freedom) where that is above 1. Turning points are located again once the kinks are
-/// known. kFailedPrecondition: as LocatePeaks, or too few turning points for so many unknowns, or no such motion. Cost:
-/// some milliseconds for 30 turning points.
+/// Fits a model's turning points, exact at any amplitude, to a recording's: weighted least squares of their times and
+/// values over the amplitude and the time of the first, the zero, the natural frequency and the friction law (MODEL.md
+/// eq. (32), (34)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W. Liang, J. Sound Vib.
+/// 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), each without their small angles, and
+/// frictionless the period corrected by the elliptic integral. Errors are those of the turning points, times
+/// sqrt(chi_square / freedom) where that is above 1. Turning points are located again once the kinks are known.
+/// kFailedPrecondition: as LocatePeaks, or too few for so many unknowns, or no such motion. Cost: some milliseconds.
 Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model);
 
 /// The same from turning points as they were located; friction parameters that are not `included` (K) are 0.
@@ -59,9 +58,8 @@ struct EnvelopeComparison {
   int richest_freedom = 0;
 };
 
-/// Which law the envelope follows: dry friction alone makes it a straight line, viscous an exponential, drag a
-/// hyperbola. Each is fitted alone; errors are enlarged until the law with all terms fits. `gravity` as the model's.
-/// Errors as FitDecrement.
+/// Which law the envelope follows: dry friction alone a straight line, viscous an exponential, drag a hyperbola. Each
+/// is fitted alone; errors are enlarged until all terms together fit. `gravity` as the model's. Errors as FitDecrement.
 Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity);
 
 }  // namespace pendulum

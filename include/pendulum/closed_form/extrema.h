@@ -9,9 +9,8 @@ namespace pendulum {
 
 /// A turning point of the reading.
 struct Extremum {
-  double time = 0;          ///< s
-  double value = 0;         ///< rad or rad/s, as the recording
-  Eigen::Index sample = 0;  ///< The sample it was found at.
+  double time = 0, value = 0;  ///< s; rad or rad/s, as the recording
+  Eigen::Index sample = 0;
 };
 
 /// Standard deviation of the noise [unit of the recording], from each sample's distance to the line through its

@@ -14,8 +14,7 @@ inline constexpr std::string_view kInMotion = "the recording begins in motion";
 
 /// A stretch of a recording in which nothing but gravity and friction moves the pendulum.
 struct FreeSwing {
-  double from = 0;               ///< s, on the file's clock: where its hold begins, or its first sample in motion.
-  double to = 0;                 ///< s, on the file's clock
+  double from = 0, to = 0;       ///< s, file's clock; `from`: where its hold begins, or its first sample in motion
   double half_period = 0;        ///< s, typical
   double amplitude = 0;          ///< rad or rad/s: the largest distance of a turning point from its zero
   double amplitude_outside = 0;  ///< rad or rad/s: the same of what belongs to no free swing of the recording

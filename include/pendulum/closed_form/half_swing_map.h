@@ -12,7 +12,7 @@ namespace pendulum {
 struct HalfSwingEnd {
   double amplitude = 0;   ///< rad from the zero, on the other side
   double duration = 0;    ///< s
-  double peak_rate = 0;   ///< rad/s, the largest on the way
+  double peak_rate = 0;   ///< rad/s, the largest on the way; 0 unless it is wanted. Likewise:
   double peak_delay = 0;  ///< s, from the start to the peak
 };
 
@@ -20,6 +20,6 @@ struct HalfSwingEnd {
 /// G, of either sign) and small-angle natural frequency [rad/s]: exact to 1e-9 of itself up to 120 deg (MODEL.md eq.
 /// (32)). Nothing where friction holds it or stops it short of the other side. Cost: some microseconds.
 std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
-                                         double natural_frequency);
+                                         double natural_frequency, bool wants_peak = false);
 
 }  // namespace pendulum

@@ -45,7 +45,6 @@ struct DecayRow {
   int periods = 0;                 ///< Between those two.
 };
 
-/// One row for each turning point.
 std::vector<DecayRow> TabulateDecay(const PeakTable& table);
 
 }  // namespace pendulum

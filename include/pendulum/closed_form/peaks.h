@@ -13,19 +13,17 @@ namespace pendulum {
 
 /// A turning point of the reading, located with its errors.
 struct Peak {
-  double time = 0;             ///< s
-  double value = 0;            ///< rad or rad/s, as the recording
+  double time = 0, value = 0;  ///< s; rad or rad/s, as the recording
   Eigen::Matrix2d covariance;  ///< 2 x 2, of (time, value)
   bool continues = false;      ///< The turning point before it in the table is the one before it in the motion.
   Eigen::Index first = 0;      ///< The first of the C samples it was found on.
   Eigen::Matrix2Xd influence;  ///< 2 x C: derivatives of (time, value) with respect to their readings.
 };
 
-/// What dry friction does to the reading about a turning point: it is displaced by the sticking angle towards where it
-/// came from, which makes a kink there.
+/// The kink of dry friction at a turning point: the reading is displaced by the sticking angle to where it came from.
 struct Kink {
-  double sticking_angle = 0;     ///< rad (counts, volts of an uncalibrated angle): τ_c / G
-  double natural_frequency = 0;  ///< rad/s
+  /// τ_c / G [rad; counts or volts of an uncalibrated angle], and rad/s.
+  double sticking_angle = 0, natural_frequency = 0;
 };
 
 /// The turning points of a recording, maxima and minima in turn. For M of them.
@@ -45,8 +43,8 @@ struct PeakTable {
   Eigen::VectorXd ZeroWeights() const;
 };
 
-/// Covariance (K x K) of K numbers made from the turning points, to first order; gradient K x 2 M, with respect to
-/// (time_0, value_0, time_1, ...).
+/// Covariance of K numbers from turning points (K x K, first order); gradient K x 2 M by (time_0, value_0, time_1,
+/// ...).
 Eigen::MatrixXd CovarianceOf(const PeakTable& table, const Eigen::MatrixXd& gradient);
 
 /// Derivatives (N x K) of such numbers with respect to the N readings of the recording.

@@ -8,20 +8,22 @@
 
 namespace pendulum {
 
+/// A rig's inertia from masses and lengths is good to some ten percent: its frequency to this share.
+inline constexpr double kExpectedWithin = 0.15;
+
 /// How a recording was sampled, beside how fast the pendulum swings. Times and frequencies are those of its clock.
 struct Sampling {
-  double rate_hz = 0;                           ///< One over the median interval.
-  double jitter = 0;                            ///< s, scatter of the intervals: 1.4826 times their median deviation.
-  int gaps = 0;                                 ///< Intervals in which readings are missing.
-  double longest_gap = 0;                       ///< s
-  double frequency_hz = 0;                      ///< Of the swing: expected where that aliases, else seen; 0: unknown.
-  double samples_per_period = 0;                ///< 0: unknown frequency; likewise:
-  double nyquist_margin = 0;                    ///< (rate / 2) / frequency; below 1 the swing aliases.
-  double start_counts = 0;                      ///< Largest swing, peak to peak in resolutions; 0 without a resolution.
-  double end_counts = 0;                        ///< The same of the last period (8 samples at least).
-  Eigen::Index saturated = 0;                   ///< Readings at an end of the sensor's range.
-  std::optional<double> seen_frequency_hz;      ///< Of the turning points.
-  std::optional<double> expected_frequency_hz;  ///< Of the rig.
+  double rate_hz = 0;       ///< One over the median interval.
+  double jitter = 0;        ///< s, scatter of the intervals: 1.4826 times their median deviation.
+  int gaps = 0;             ///< Intervals in which readings are missing.
+  double longest_gap = 0;   ///< s
+  double frequency_hz = 0;  ///< Of the swing: expected where that aliases, else seen; 0: unknown.
+  /// 0: unknown frequency. nyquist_margin is (rate / 2) / frequency; below 1 the swing aliases.
+  double samples_per_period = 0, nyquist_margin = 0;
+  /// Peak to peak in resolutions, 0 without one: the largest swing; the last period (8 samples at least).
+  double start_counts = 0, end_counts = 0;
+  Eigen::Index saturated = 0;                                      ///< Readings at an end of the sensor's range.
+  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< Of the turning points; of the rig.
 };
 
 /// The frequency [Hz] at which samples of one frequency seem to swing: |f - k rate| for the nearest k, at most rate / 2

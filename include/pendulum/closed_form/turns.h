@@ -12,8 +12,7 @@ namespace pendulum {
 /// All turning points of a recording, disturbed or not; half swing i goes from turn i to turn i + 1. For M turns.
 struct TurnTable {
   const Recording& recording;        ///< Must outlive the table.
-  double noise = 0;                  ///< rad or rad/s, between neighbouring samples
-  double threshold = 0;              ///< rad or rad/s: what a turn stands out by
+  double noise = 0, threshold = 0;   ///< rad or rad/s: between neighbouring samples; what a turn stands out by
   std::vector<Extremum> turns = {};  ///< M
   /// M, rad or rad/s: near each turn, for it may drift, and distance from it; empty when M < 3
   std::vector<double> zero = {}, amplitude = {};

@@ -11,7 +11,7 @@ namespace pendulum {
 /// The memory of residuals: a stationary process z of mean 0 and variance 1.
 struct Autocorrelation {
   enum class Kind {
-    kWhite,           ///< None: each residual is independent of the others.
+    kWhite,
     kAutoregressive,  ///< AR(p): z_t = Σ φ_j z_{t-j} + e_t, one sample an interval.
     kMixed,           ///< ARMA(1,1): z_t = φ z_{t-1} + e_t + θ e_{t-1}; among them AR(1) under white noise.
     kContinuous,      ///< ρ(Δt) = (1 - s) exp(-Δt / τ) for Δt > 0, at any stamps.
@@ -27,10 +27,8 @@ struct Autocorrelation {
   /// "white", "AR(3)", "ARMA(1,1)", "continuous AR(1)", "continuous AR(1) + white".
   std::string Name() const;
 
-  /// 1 + 2 Σ ρ_k: the variance of the mean of many samples, over that of as many independent ones.
+  /// 1 + 2 Σ ρ_k and 1 + 2 Σ ρ_k²: variance of many samples' mean, and variance, over that of independent ones.
   double VarianceInflation() const;
-
-  /// 1 + 2 Σ ρ_k²: the same of the variance of many samples.
   double SquaredInflation() const;
 };
 

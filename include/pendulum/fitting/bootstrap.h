@@ -11,7 +11,7 @@ namespace pendulum {
 /// Estimates from recordings that the fit itself could have given.
 struct Bootstrap {
   Eigen::MatrixXd estimates;  ///< B x P, the problem's units; rows of those that could be solved.
-  int failed = 0;             ///< How many could not.
+  int failed = 0;
 
   /// The quantile of parameter k's estimates, by linear interpolation between order statistics.
   double Quantile(int k, double probability) const;

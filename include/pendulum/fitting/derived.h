@@ -26,11 +26,10 @@ struct IntervalEnds {
 };
 
 /// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is 0), and gravity,
-/// viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)): none depends on the rig.
-///
-/// infos: the model's parameters, inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero
-/// rows for what is held; nullptr: no standard errors. at_bound: indices of parameters at a bound; what depends on one,
-/// or on held parameters alone, has no standard error.
+/// viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)): none depends on the rig. infos: the model's parameters,
+/// inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero rows for what is held; nullptr:
+/// no standard errors. at_bound: indices of parameters at a bound; what depends on one, or on held parameters alone,
+/// has no standard error.
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);

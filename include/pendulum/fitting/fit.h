@@ -33,8 +33,7 @@ enum class Loss { kNone, kHuber, kStudent };
 /// standard errors of one, and the posterior where counts hardly scatter.
 enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap };
 
-/// What FitRecording is asked to do. Values by name are SI with a rig (N m, kg m^2); torques and inertia in units of G
-/// without.
+/// What FitRecording is to do. Values by name: SI with a rig (N m, kg m^2); torques and inertia in units of G without.
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Instead of the model's own.
@@ -83,16 +82,16 @@ struct ParameterEstimate {
   std::string reason;
 };
 
-/// The noise of the samples about the trajectory.
+/// The noise of the samples about the trajectory, and why this family.
 struct NoiseEstimate {
   NoiseFamily family = NoiseFamily::kGaussian;
   double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), else the likeliest σ or scale.
   std::optional<double> sigma_std_error;  ///< Same unit.
   double resolution = 0;                  ///< Of the readings, same unit; 0: none.
   Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
-  std::string why;                        ///< Why this family, in words.
-  double lag1_correlation = 0;            ///< Of the quantile residuals.
-  Autocorrelation memory;                 ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
+  std::string why;
+  double lag1_correlation = 0;  ///< Of the quantile residuals.
+  Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
 };
 
 /// What the solver did, over all its runs.
@@ -114,10 +113,10 @@ struct FitReport {
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
   Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
-  std::string std_error_method, interval_method;  ///< In words.
-  std::vector<std::string> systematic_names;      ///< Parameters with a systematic error.
-  Eigen::MatrixXd systematic_covariance;          ///< K x K, K = systematic_names.size(), as covariance.
-  std::vector<Identifiability> identifiability;   ///< Of the parameters that are not fixed; empty when not converged.
+  std::string std_error_method, interval_method;
+  std::vector<std::string> systematic_names;
+  Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
+  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
@@ -139,7 +138,6 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
 
 /// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
 /// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
-///
 /// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
 /// bounds, quantized noise without a resolution or with a robust loss. kDataLoss: counts or volts without a
 /// calibration. kFailedPrecondition: no swing, or too little of one. Cost: about a millisecond for 2000 samples, three

@@ -22,9 +22,9 @@ struct FitProblem {
   SolveOptions solve;
   bool restricted = false;  ///< The user fixed or bounded parameters, or gave priors.
   std::vector<PriorTerm> priors;
-  NoiseModel noise;           ///< With which a search begins: σ is data.scale; saturated readings are censored.
-  Eigen::Index censored = 0;  ///< How many they are.
-  double resolution = 0;      ///< Of the readings; 0: none.
+  NoiseModel noise;  ///< With which a search begins: σ is data.scale; `censored` saturated readings.
+  Eigen::Index censored = 0;
+  double resolution = 0;  ///< Of the readings; 0: none.
 
   /// Parameter i as the report has it, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }

@@ -15,9 +15,10 @@ struct SwingChoice {
   static constexpr int kLongest = 0;
   static constexpr int kAll = -1;
 
-  double from = std::numeric_limits<double>::quiet_NaN();  ///< The window's first time; NaN: as the data say.
-  double to = std::numeric_limits<double>::quiet_NaN();    ///< Its last time; NaN: as the data say.
-  int release = kLongest;                                  ///< The k-th free swing (from 1), kLongest or kAll.
+  /// The window's first and last time; NaN: as the data say.
+  double from = std::numeric_limits<double>::quiet_NaN();
+  double to = std::numeric_limits<double>::quiet_NaN();
+  int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
 };
 
 /// The free swings of a recording, and those of them that were asked for.

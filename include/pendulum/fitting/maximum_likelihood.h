@@ -13,8 +13,7 @@ struct ChosenNoise {
   std::string why;
 };
 
-/// Quantized if the options ask for it, or leave it open and the residuals are below a resolution (rad, rad/s; 0:
-/// none).
+/// Quantized if the options say so, or leave it open and the residuals are below a resolution (rad, rad/s; 0: none).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev);
 
 /// From the least squares of a search on to the largest likelihood of its noise family, over parameters and σ. `cost`

@@ -19,13 +19,12 @@ struct IntervalProbability {
   double upper = 0;
 };
 
-/// Without cancellation in both tails: error of log below 1e-13, absolute or relative, of the densities 1e-11,
-/// relative. a < b, each may be infinite.
+/// Error of log below 1e-13, absolute or relative, of the densities 1e-11, relative. a < b, each may be infinite.
 IntervalProbability GaussianInterval(double a, double b);
 
 /// How samples scatter about the trajectory.
 enum class NoiseFamily {
-  kGaussian,   ///< Normal.
+  kGaussian,
   kQuantized,  ///< Normal, then rounded to levels: a reading is an interval of one resolution about it.
   kHuber,      ///< Normal within 1.345 σ, two-sided exponential beyond (P. J. Huber, Ann. Math. Stat. 35:73, 1964).
   kStudent,    ///< Student's t with 4 degrees of freedom (Lange, Little & Taylor, JASA 84:881, 1989).
@@ -56,10 +55,9 @@ struct NoiseModel {
   static constexpr double kStudentFreedom = 4;
 
   NoiseFamily family = NoiseFamily::kGaussian;
-  double sigma = 1;         ///< rad or rad/s: standard deviation, or the scale of the robust families.
-  double resolution = 0;    ///< q, same unit; used when quantized.
-  double low = -kInfinity;  ///< Readings at or below are censored.
-  double high = kInfinity;  ///< Readings at or above are censored.
+  double sigma = 1;       ///< rad or rad/s: standard deviation, or the scale of the robust families.
+  double resolution = 0;  ///< q, same unit; used when quantized.
+  double low = -kInfinity, high = kInfinity;  ///< Same unit; readings at them or beyond are censored.
 
   bool IsCensored(double reading) const { return reading <= low || reading >= high; }
   /// Whether least squares say everything: normal, and no reading at an end of the range.

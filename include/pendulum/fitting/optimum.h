@@ -25,8 +25,7 @@ struct Optimum {
 /// Nothing when the trajectory cannot be traced.
 std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution);
 
-/// Derivatives of the readings with respect to the free parameters, N x F; no rows when the trajectory cannot be
-/// traced.
+/// Derivatives of the readings by the free parameters, N x F; no rows when the trajectory cannot be traced.
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
 
 /// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
@@ -38,7 +37,7 @@ struct Errors {
   std::optional<double> sigma;   ///< Standard error of σ, rad or rad/s.
   Eigen::VectorXd t95;           ///< F, Student's t of N_k - F degrees of freedom, N_k / N as naive / true variance.
   double effective_samples = 0;  ///< N over the variance inflation 1 + 2 Σ ρ_k, at most N.
-  std::string method;            ///< In words.
+  std::string method;
 };
 
 /// The covariance of the free parameters: the inverse of the observed information of parameters and log σ, and for a

@@ -32,11 +32,10 @@ struct Posterior {
 /// Draws from the posterior of δ and σ given rounded readings (MODEL.md eq. (26)), for readings so quiet that it is no
 /// normal distribution. Prior: flat in δ within the bounds, times the normal ones; flat in σ on (0, 2q]. Slice sampling
 /// (R. M. Neal, Ann. Stat. 31:705, 2003) until 500 effective draws make means good to 5 % of a standard deviation, or
-/// 1e9 samples have been looked at (5 s): see effective_draws.
-///
-/// kInvalidArgument: sizes that disagree, numbers that are not finite, noise that is not quantized or has no
-/// resolution, δ = 0 out of bounds. kFailedPrecondition: a combination of the parameters leaves no trace in the
-/// readings or the priors. The same seed gives the same numbers. 2000 samples, 7 parameters: 0.2 s.
+/// 1e9 samples have been looked at (5 s): see effective_draws. kInvalidArgument: sizes that disagree, numbers that are
+/// not finite, noise that is not quantized or has no resolution, δ = 0 out of bounds. kFailedPrecondition: a
+/// combination of the parameters leaves no trace in the readings or the priors. The same seed gives the same numbers.
+/// 2000 samples, 7 parameters: 0.2 s.
 Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed);
 
 }  // namespace pendulum

@@ -8,11 +8,11 @@
 
 namespace pendulum {
 
-/// An interval in the problem's units; an end that is missing says why.
+/// An interval in the problem's units; `open` says why an end is missing, and is empty when none is.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
-  std::string open;  ///< Why an end is missing; empty when none is.
+  std::string open;
 };
 
 /// The 95 % profile-likelihood interval of parameter k, free or at its bound (D. J. Venzon and S. H. Moolgavkar,

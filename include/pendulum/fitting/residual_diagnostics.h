@@ -9,14 +9,14 @@ namespace pendulum {
 
 /// Measures of the fit. N samples, k = free parameters + 1 for sigma. Those of independence are of quantile residuals.
 struct FitStatistics {
-  double rms_residual = 0;             ///< sqrt(RSS / N), rad or rad/s
-  double log_likelihood = 0;           ///< See Solution; compared only within a noise family.
-  double aic = 0;                      ///< 2 k - 2 log L
-  double aicc = 0;                     ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
-  double bic = 0;                      ///< k ln N - 2 log L
-  double durbin_watson = 0;            ///< Σ (z_i - z_{i-1})² / Σ z_i² (Durbin & Watson, Biometrika 37:409, 1950)
-  double ljung_box_p = 1, runs_p = 1;  ///< Of LjungBoxP and RunsP.
-  double effective_samples = 0;        ///< N / (1 + 2 Σ ρ_k), at most N.
+  double rms_residual = 0;    ///< sqrt(RSS / N), rad or rad/s
+  double log_likelihood = 0;  ///< See Solution; compared only within a noise family.
+  double aic = 0;             ///< 2 k - 2 log L
+  double aicc = 0;            ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
+  double bic = 0;             ///< k ln N - 2 log L
+  double durbin_watson = 0;   ///< Σ (z_i - z_{i-1})² / Σ z_i² (Durbin & Watson, Biometrika 37:409, 1950)
+  double ljung_box_p = 1, runs_p = 1;
+  double effective_samples = 0;  ///< N / (1 + 2 Σ ρ_k), at most N.
 };
 
 /// Randomized quantile residuals (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996): standard normal and independent

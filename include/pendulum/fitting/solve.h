@@ -21,9 +21,10 @@ struct SolveOptions {
   int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
 };
 
+/// |r|² at P parameters where a search ended, as in Solution.
 struct Minimum {
-  std::vector<double> parameters;  ///< P
-  double sum = 0;                  ///< |r|²
+  std::vector<double> parameters;
+  double sum = 0;
 };
 
 /// A least-squares solution and what the solver did to reach it.
@@ -33,8 +34,8 @@ struct Solution {
   bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
   std::string message;
-  NoiseModel noise;                   ///< Set by MaximizeLikelihood, as are the next two.
-  std::string noise_reason;           ///< Why this family, in words.
+  NoiseModel noise;  ///< Set by MaximizeLikelihood, as are the next two.
+  std::string noise_reason;
   double log_likelihood = 0;          ///< Probability per sample; a density is multiplied with the resolution (or 1).
   Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
   double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.

@@ -10,7 +10,6 @@
 
 namespace pendulum {
 
-/// How to choose between the two kinds of start.
 enum class StartChoice { kAuto, kRelease, kMoving };
 
 /// Where a fit begins, found from the data alone.

@@ -19,12 +19,11 @@ namespace pendulum {
 /// What a trajectory is compared with. Times are from the first sample: a clock of large numbers costs no digits.
 struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
-  std::vector<double> time;      ///< N, s, increasing, time[0] = 0.
-  std::vector<double> value;     ///< N, rad or rad/s.
-  double natural_frequency = 0;  ///< rad/s, roughly; a trial of a very different time scale is refused.
-  double latest_release = 0;     ///< s; a trial released outside [0, latest_release] is refused.
-  bool drifts = false;           ///< The zero moves: one parameter more.
-  double scale = 1;              ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
+  std::vector<double> time, value;  ///< N: s, increasing, time[0] = 0; rad or rad/s.
+  double natural_frequency = 0;     ///< rad/s, roughly; a trial of a very different time scale is refused.
+  double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
+  bool drifts = false;              ///< The zero moves: one parameter more.
+  double scale = 1;                 ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
 
   Eigen::Map<const Eigen::VectorXd> times() const { return {time.data(), static_cast<Eigen::Index>(time.size())}; }
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
@@ -33,20 +32,18 @@ struct TrajectoryData {
 /// What is known of a parameter beside the recording, as a residual (p - mean) · weight beside those of the samples.
 struct PriorTerm {
   int parameter = 0;
-  double mean = 0;    ///< In the cost's units.
-  double weight = 0;  ///< One over the standard deviation.
+  double mean = 0, weight = 0;  ///< In the cost's units; one over the standard deviation.
 };
 
 /// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
-///
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
 /// the reading per s] where the data ask for it. The squared residual of a sample is its deviance under the noise,
-/// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale).
-/// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of
-/// J'J (the observed information of the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost
-/// and gradient are exactly those of the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial
-/// that never moves, that cannot be traced or is released outside the data makes every function return false.
+/// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale). As a ceres::CostFunction it has
+/// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
+/// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
+/// the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be
+/// traced or is released outside the data makes every function return false.
 class TrajectoryCost : public ceres::CostFunction {
  public:
   /// |r|², the deviance of samples and priors, or false.

@@ -14,7 +14,6 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// Values by parameter name.
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
-/// An interval that a parameter may lie in.
 struct ParameterRange {
   double lower = -kUnbounded;
   double upper = kUnbounded;
@@ -30,7 +29,6 @@ using ParameterRanges = std::map<std::string, ParameterRange, std::less<>>;
 using ParameterPriors = std::map<std::string, ParameterPrior, std::less<>>;
 
 /// Everything that is said of a parameter, said once: flags, bounds, tables, JSON and the documentation follow from it.
-///
 /// Torques are in units of the gravity torque G below the report (G = 1), so a parameter that is a torque, or an
 /// inertia, has two units: `unit` once a rig gives G, `relative_unit` (that of parameter / G) without one.
 struct ParameterInfo {
@@ -39,7 +37,7 @@ struct ParameterInfo {
   std::string_view unit;           ///< SI.
   std::string_view relative_unit;  ///< SI, of the value divided by G; equal to `unit` where G does not enter.
   double lower, upper;             ///< The smallest and the largest admissible value.
-  std::string_view description;    ///< One phrase.
+  std::string_view description;
 
   /// True when the value in SI is G times the value in units of G.
   constexpr bool scales_with_gravity() const { return unit != relative_unit; }

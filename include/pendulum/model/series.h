@@ -20,7 +20,6 @@ concept DualNumber = requires(T x) {
   x.v;
 };
 
-/// The value of a double or a dual number.
 template <typename T>
 double Value(const T& x) {
   if constexpr (DualNumber<T>) {
@@ -46,11 +45,9 @@ T SquareCoefficient(const Series<T>& x, int n) {
   return 2.0 * sum;
 }
 
-/// Coefficients of sin θ along a trajectory, one after the other.
-///
-/// Values by the coupled recurrence n sin_n = Σ ω_j cos_{n-1-j}, n cos_n = -Σ ω_j sin_{n-1-j} with ω = θ' (MODEL.md eq.
-/// (14)); partial derivatives of a dual number from d sin θ = cos θ dθ (MODEL.md eq. (15)), which costs one product of
-/// series per parameter instead of four.
+/// Coefficients of sin θ along a trajectory, one after the other. Values by the coupled recurrence n sin_n = Σ ω_j
+/// cos_{n-1-j}, n cos_n = -Σ ω_j sin_{n-1-j} with ω = θ' (MODEL.md eq. (14)); partial derivatives of a dual number from
+/// d sin θ = cos θ dθ (MODEL.md eq. (15)), which costs one product of series per parameter instead of four.
 template <typename T>
 class SineSeries {
  public:

@@ -8,7 +8,6 @@
 namespace pendulum {
 
 /// A potentiometer across a supply, its wiper read by an analog-to-digital converter (ADC) through a voltage divider.
-///
 /// Angles are in deg from the middle of the travel, along which the wiper's voltage rises evenly from 0 to the supply:
 ///   volts = divider supply (1/2 + angle / travel),   counts = ⌊volts 2ᵇⁱᵗˢ / reference⌋, from 0 to 2ᵇⁱᵗˢ - 1
 /// (MODEL.md eq. (43)). Sources: Microchip, ATmega328P data sheet (DS40002061), "ADC Conversion Result": ADC = V_IN
@@ -16,10 +15,9 @@ namespace pendulum {
 /// from the wiper. Preconditions: 1 <= bits <= 32, voltages and travel positive, 0 < divider <= 1.
 struct AdcSensor {
   int bits = 10;
-  double reference_voltage = 5;  ///< V that is just beyond full scale.
-  double supply_voltage = 5;     ///< V, across the potentiometer.
-  double travel_deg = 270;       ///< Deg, electrical travel of the potentiometer.
-  double divider = 1;            ///< V at the converter for 1 V at the wiper: R2 / (R1 + R2), 1 without a divider.
+  double reference_voltage = 5, supply_voltage = 5;  ///< V: just beyond full scale; across the potentiometer.
+  double travel_deg = 270;                           ///< Deg, electrical travel of the potentiometer.
+  double divider = 1;  ///< V at the converter for 1 V at the wiper: R2 / (R1 + R2), 1 without a divider.
 
   /// The highest count, 2ᵇⁱᵗˢ - 1.
   double FullScale() const;
@@ -33,10 +31,9 @@ struct AdcSensor {
   /// The angle [deg] in the middle of those that the converter shows as this count.
   double AngleDeg(double counts) const;
 
-  /// q = travel reference / (2ᵇⁱᵗˢ divider supply).
+  /// q = travel reference / (2ᵇⁱᵗˢ divider supply), and 1 / q.
   double DegPerCount() const;
 
-  /// 1 / q.
   double CountsPerDeg() const;
 
   /// Counts at both ends of the travel.

@@ -19,12 +19,10 @@ inline constexpr Eigen::Index kMostCalibrationPoints = 10'000;
 /// What a sensor read at known angles. Invariant (MakeCalibrationTable): N >= 2, finite, no reading twice; sorted by
 /// reading, the angles rise throughout or fall throughout (neighbours may have the same angle), and not all are equal.
 struct CalibrationTable {
-  std::string path;               ///< Where it came from, as the user named it.
-  std::string input;              ///< Unit of the readings: counts or volts.
-  std::string angle_unit;         ///< Unit of the angles: deg or rad.
-  Eigen::VectorXd reading;        ///< N x 1, in the unit `input`, in the order of the file.
-  Eigen::VectorXd angle;          ///< N x 1, in angle_unit.
-  std::vector<std::size_t> line;  ///< N, where each stands, 1-based.
+  std::string path;                ///< Where it came from, as the user named it.
+  std::string input, angle_unit;   ///< Units: counts or volts of the readings, deg or rad of the angles.
+  Eigen::VectorXd reading, angle;  ///< N x 1, in the units `input` and angle_unit, in the order of the file.
+  std::vector<std::size_t> line;   ///< N, where each stands, 1-based.
 
   Eigen::Index size() const { return reading.size(); }
 
@@ -35,18 +33,15 @@ struct CalibrationTable {
   std::vector<Eigen::Index> ByReading() const;
 };
 
-/// Checks the invariant of CalibrationTable. kDataLoss: it does not hold; the message begins with the place of the
-/// point at fault and names the other one too.
+/// Checks the invariant. kDataLoss: it does not hold; the message has the places of both points.
 Result<CalibrationTable> MakeCalibrationTable(CalibrationTable table);
 
-/// Reads a table from a CSV file; "-" is standard input.
-///
-/// The first line names the columns in any order, one with the suffix `_counts` or `_volts` and one with `_deg` or
-/// `_rad`; as in a recording `adc_counts`, `Pot (volts)` and `counts` say the same. Columns whose names tell no unit
-/// are not read. Separators, decimal commas, quotes, # comments, byte order mark and line ends are those of
-/// ReadRecording. kNotFound: no such file. kDataLoss: not readable as above, no header, a column missing or there
-/// twice, one of another unit, more than kMostCalibrationPoints rows, or not a CalibrationTable; messages begin
-/// "path:line:".
+/// Reads a table from a CSV file; "-" is standard input. The first line names the columns in any order, one with the
+/// suffix `_counts` or `_volts` and one with `_deg` or `_rad`; as in a recording `adc_counts`, `Pot (volts)` and
+/// `counts` say the same. Columns whose names tell no unit are not read. Separators, decimal commas, quotes, #
+/// comments, byte order mark and line ends are those of ReadRecording. kNotFound: no such file. kDataLoss: not readable
+/// as above, no header, a column missing or there twice, one of another unit, more than kMostCalibrationPoints rows, or
+/// not a CalibrationTable; messages begin "path:line:".
 Result<CalibrationTable> ReadCalibrationTable(const std::filesystem::path& path);
 
 /// The same from text in memory; `name` stands for the path. Not kNotFound.

@@ -14,9 +14,8 @@ struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
 
 namespace pendulum {
 
-/// The lines of a text and the SHA-256 of its bytes, with no more than a block of a file in memory at a time.
-///
-/// A byte order mark before the first line is skipped. What could not be CSV text is refused before it is read further:
+/// The lines of a text and the SHA-256 of its bytes, with no more than a block of a file in memory at a time. A byte
+/// order mark before the first line is skipped. What could not be CSV text is refused before it is read further:
 /// kDataLoss for a NUL byte (path:line:column) and for a line longer than kLongestLine.
 class LineReader {
  public:
@@ -43,7 +42,7 @@ class LineReader {
   std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), until Next.
   std::size_t number() const { return number_; }         ///< Of the line, 1-based; 0 before the first.
   bool is_terminated() const { return is_terminated_; }  ///< False for a last line that has no line end.
-  bool is_empty() const { return is_empty_; }            ///< True when the text has no byte.
+  bool is_empty() const { return is_empty_; }
   const std::string& name() const { return name_; }
 
   /// SHA-256 of all bytes, once Next has given false; lower-case hexadecimal. kInternal: OpenSSL cannot compute it.

@@ -23,19 +23,18 @@ struct ReadOptions {
   std::optional<SensorRange> range;        ///< What the sensor can show, in the file's unit; absent: the file's own.
 };
 
-/// Reads a recording from a CSV file; "-" is standard input. Cost: one pass, 16 bytes a row and one block.
-///
-/// The first line names the columns: time `time_s`, `time_ms` or `time_us`, the quantity by its suffix `_rad`, `_deg`,
-/// `_rad_s`, `_deg_s`, `_counts` or `_volts`; `Time (ms)` says the same. What is not told, or told twice, is for
-/// ReadOptions to say. Separators: comma, semicolon, tab, blanks, or that of `sep=;`; decimal commas where the
-/// separator is none. A byte order mark, CRLF, quotes and the stamps of a serial monitor are accepted.
-/// `# key: value` is metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows
-/// without time), `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines
-/// with # are comments. A resolution that nobody tells is looked for in the values (FindResolution), and counts that
-/// end at 0 or the full scale of 10, 12, 14 or 16 bits have that range. Warnings: those of RepairClock; incomplete_row,
-/// host_time, time_unit_assumed, lost_samples; metadata_not_applied, a calibration in a file of angles. kNotFound: no
-/// such file. kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options
-/// contradict the file. kFailedPrecondition: fewer than kMinimumSamples rows. Messages begin "path:line:".
+/// Reads a recording from a CSV file; "-" is standard input. Cost: one pass, 16 bytes a row and one block. The first
+/// line names the columns: time `time_s`, `time_ms` or `time_us`, the quantity by its suffix `_rad`, `_deg`, `_rad_s`,
+/// `_deg_s`, `_counts` or `_volts`; `Time (ms)` says the same. What is not told, or told twice, is for ReadOptions to
+/// say. Separators: comma, semicolon, tab, blanks, or that of `sep=;`; decimal commas where the separator is none. A
+/// byte order mark, CRLF, quotes and the stamps of a serial monitor are accepted. `# key: value` is metadata, each key
+/// once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows without time), `clock_scale`,
+/// `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines with # are comments. A resolution
+/// that nobody tells is looked for in the values (FindResolution), and counts that end at 0 or the full scale of 10,
+/// 12, 14 or 16 bits have that range. Warnings: those of RepairClock; incomplete_row, host_time, time_unit_assumed,
+/// lost_samples; metadata_not_applied, a calibration in a file of angles. kNotFound: no such file. kDataLoss: not
+/// readable as above, or a calibration of another unit. kInvalidArgument: the options contradict the file.
+/// kFailedPrecondition: fewer than kMinimumSamples rows. Messages begin "path:line:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from text in memory; `name` stands for the path in messages and in Recording::path. Not kNotFound.

@@ -17,11 +17,10 @@ enum class Quantity { kAngle, kRate };
 
 inline constexpr int kMinimumSamples = 8;
 
-/// One recording as the sensor saw it. Invariant (MakeRecording): N >= kMinimumSamples, finite, time strictly
-/// increasing.
+/// A recording as the sensor saw it. Invariant (MakeRecording): N >= kMinimumSamples, finite, time strictly increasing.
 struct Recording {
-  std::string path;    ///< Where it came from, as the user named it; may be empty.
-  std::string sha256;  ///< Of the bytes it was read from, lower-case hexadecimal; empty when it was not read.
+  /// Where it came from, as the user named it; SHA-256 of the bytes read, lower-case hexadecimal; either may be empty.
+  std::string path, sha256;
   Quantity quantity = Quantity::kAngle;
   std::string unit = "rad";  ///< Of the file's value column: rad, deg, rad/s, deg/s, counts or volts.
   Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
@@ -31,8 +30,8 @@ struct Recording {
   std::optional<SensorRange> range;  ///< What the sensor can show, in the unit of value; none when unlimited.
   double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds in one of the file's clock; not applied to `time`.
   std::optional<Calibration> calibration;           ///< What turned counts or volts into `value`.
-  std::string rig_json;           ///< The rig that the file itself describes, as JSON; empty for none.
-  std::vector<Warning> warnings;  ///< What was repaired or noticed while reading.
+  std::string rig_json;  ///< The rig that the file itself describes, as JSON; empty for none.
+  std::vector<Warning> warnings;
 
   /// False when `value` is in counts or volts for want of a calibration: an angle in an unknown unit.
   bool is_calibrated() const { return calibration.has_value() || (unit != "counts" && unit != "volts"); }
@@ -43,10 +42,8 @@ struct Recording {
   Eigen::Index size() const { return time.size(); }
 };
 
-/// Checks the invariant of Recording.
-/// kFailedPrecondition: fewer than kMinimumSamples samples. kDataLoss: lengths differ, a number is not finite, time
-/// does not increase, or the resolution is negative; the message begins with the path, if any, and names the sample
-/// (0-based).
+/// Checks the invariant. kFailedPrecondition: too few samples. kDataLoss: lengths differ, a number is not finite, time
+/// does not increase, or the resolution is negative; the message names path and sample (0-based).
 Result<Recording> MakeRecording(Recording recording);
 
 }  // namespace pendulum

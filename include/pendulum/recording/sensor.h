@@ -22,18 +22,16 @@ struct SensorRange {
 
 /// How a sensor's reading becomes an angle: the sum of coefficients[k] inputᵏ.
 struct Calibration {
-  std::string input;                       ///< Unit of the reading: counts or volts.
-  std::string angle_unit;                  ///< Unit of the sum: deg or rad.
+  std::string input, angle_unit;           ///< Units: counts or volts of the reading, deg or rad of the sum.
   std::vector<double> coefficients;        ///< K >= 2, lowest order first, angle_unit per inputᵏ.
   Eigen::MatrixXd covariance;              ///< K x K, of the coefficients; 0 x 0 when not given.
   std::optional<double> residual_std_dev;  ///< Of the calibration's points about the curve, angle_unit.
   std::optional<SensorRange> input_range;  ///< What the sensor can show, in the unit of the reading.
   nlohmann::ordered_json source;           ///< The calibration as it was read, for the report.
 
-  /// The angle of a reading, rad.
+  /// The angle of a reading [rad], and its derivative there [rad per unit of the reading].
   double Angle(double reading) const;
 
-  /// Its derivative at a reading, rad per unit of the reading.
   double Slope(double reading) const;
 
   /// The reading that shows an angle [rad]: of a curve with several, one near the reading `near`.
@@ -45,10 +43,9 @@ struct Calibration {
 
 /// Reads a calibration from JSON text, {"input": "counts"|"volts", "angle_unit": "deg"|"rad", "coefficients": [c0, c1,
 /// ...]} with optional "schema_version": 1, "covariance": [[...]], "residual_std_dev" and "input_range": [low, high];
-/// an optional one may be null.
-/// kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or repeated key, a value of another
-/// type, another schema_version, a curve without slope, a covariance that is not symmetric and K x K; the message
-/// begins with `name` and names the key.
+/// an optional one may be null. kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or
+/// repeated key, a value of another type, another schema_version, a curve without slope, a covariance that is not
+/// symmetric and K x K; the message begins with `name` and names the key.
 Result<Calibration> ParseCalibration(std::string_view text, const std::string& name);
 
 /// The same from a file. kNotFound: no such file. kDataLoss as well: it is a directory or cannot be read.

@@ -6,8 +6,7 @@
 namespace pendulum {
 
 /// The part of a recording with from <= time <= to [s, on the file's clock]; NaN leaves that end open.
-/// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples samples are left; the message gives
-/// the window and the span of the recording.
+/// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples left; the message gives both spans.
 Result<Recording> SelectWindow(Recording recording, double from, double to);
 
 /// At most `most` samples from the first (or the last) on, as dense as `per_second` [Hz] asks where the recording is.

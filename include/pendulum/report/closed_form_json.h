@@ -17,8 +17,7 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling);
 /// "closed_form" of a fit: a row for each quantity, none where `check` is null.
 nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
 
-/// "closed_forms" of the result, without the turning points, which are in the series; null when there are none. SI with
-/// a rig, units of G without.
+/// "closed_forms" of the result but for the turning points (SeriesJson); null if none. SI with a rig, else units of G.
 nlohmann::ordered_json ClosedFormsJson(const RunReport& report);
 
 }  // namespace pendulum

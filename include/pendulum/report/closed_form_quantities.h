@@ -20,15 +20,15 @@ struct ReportedEstimate {
   std::string unit;    ///< Of inertia and torques: SI with a rig, units of G without.
 };
 
-/// What the linear pendulum's formulas give, in the order of LogDecrement.
-std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, const std::optional<Rig>& rig);
+/// What the linear pendulum's formulas give, in the order of LogDecrement; with linear gravity nothing is corrected.
+std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravity gravity,
+                                              const std::optional<Rig>& rig);
 
 /// Zero, inertia and friction of a decrement, by the names of the fit's parameters; `unit` is that of the readings.
 std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,
                                                  const std::optional<Rig>& rig);
 
-/// The largest angle at which dry friction holds the pendulum, asin(τ_c / G) [rad]; nothing without dry friction, or
-/// where it is not between 0 and G.
+/// The largest angle at which dry friction holds the pendulum, asin(τ_c / G) [rad]; nothing unless 0 < τ_c < G.
 std::optional<ReportedEstimate> StickingAngle(const Decrement& decrement);
 
 }  // namespace pendulum

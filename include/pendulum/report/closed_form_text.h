@@ -11,8 +11,7 @@ namespace pendulum {
 std::string SamplingText(const RunReport& report);
 
 /// The closed forms, the check of each fit against them, and the table of turning points, as sections of ToText: all
-/// turning points of closed forms only (60 at most), beside a fit the first ten and the last two. Empty when no closed
-/// forms were asked for.
+/// turning points of closed forms only (60 at most), beside a fit the first ten and the last two. Empty without these.
 std::string ClosedFormText(const RunReport& report);
 
 }  // namespace pendulum

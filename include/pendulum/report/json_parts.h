@@ -33,7 +33,6 @@ class NumberObject {
 /// null for a number that is absent or not finite.
 nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
 
-/// null for an empty text.
 nlohmann::ordered_json TextOrNull(const std::string& text);
 
 /// A key with its unit: sigma_rad_s.

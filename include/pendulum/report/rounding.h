@@ -22,7 +22,6 @@ struct ValueAndError {
 /// one, 950 to 999 is rounded up to 1000 and has two; the value has the same decimal. Any unit; error > 0, both finite.
 Rounding PdgRounding(double value, double error);
 
-/// Significant digits of a number without an error.
 inline constexpr int kDigitsWithoutError = 4;
 
 /// The rounding that shows x != 0 to so many significant digits, trailing zeros included.

@@ -23,11 +23,9 @@ namespace pendulum {
 
 /// What is said of a recording beside its samples.
 struct DataSummary {
-  std::string path;               ///< As the user named it; empty when it did not come from a file.
-  std::string sha256;             ///< Of the file's bytes; empty when it did not come from a file.
-  std::string unit = "rad";       ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
-  Eigen::Index samples = 0;       ///< In the file.
-  Eigen::Index used_samples = 0;  ///< In the window that was fitted; at least kMinimumSamples.
+  std::string path, sha256;  ///< As the user named it; of the file's bytes. Empty when it did not come from a file.
+  std::string unit = "rad";  ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
+  Eigen::Index samples = 0, used_samples = 0;  ///< In the file; in the fitted window, at least kMinimumSamples.
   double from = 0, to = 0;        ///< Times of the first and the last used sample [s, on the file's clock].
   double resolution = 0;          ///< Spacing of the values; 0 for none.
   std::string resolution_source;  ///< "given", "file" or "found"; empty for none.

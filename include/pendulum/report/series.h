@@ -19,10 +19,9 @@ namespace pendulum {
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
 /// The samples and what was made of them, beside the result: {"time_s", "measured", "unit" (of all readings),
-/// "extrema":
-/// [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error", "angle_rad" (or
-/// rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta", "zeta_std_error",
-/// "periods"}], "profiles": null, "models": {name: {"fitted", "residual", "linear_closed_form",
+/// "extrema": [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error",
+/// "angle_rad" (or rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta",
+/// "zeta_std_error", "periods"}], "profiles": null, "models": {name: {"fitted", "residual", "linear_closed_form",
 /// "nonlinear_closed_form"}}}. used: the N samples of the report. What there is not is null: an array, a number in one,
 /// the damping ratio (zeta) of a turning point that none on its side follows.
 nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report);

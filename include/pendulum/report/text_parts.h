@@ -35,8 +35,7 @@ std::optional<Conversion> Degrees(std::string_view unit);
 /// A number of residuals or noise with its unit, with degrees beside radians: "0.00436 rad (0.25 deg)".
 std::string ReadingText(double value, const std::string& unit);
 
-/// Shows the numbers that belong to one quantity alike: to the decimal of its standard error, if it has one. All of
-/// them are multiplied by `factor`.
+/// Shows all numbers of one quantity, times `factor`, to the decimal of its standard error, if it has one.
 class QuantityNumbers {
  public:
   QuantityNumbers(double value, const std::optional<double>& std_error, double factor = 1);

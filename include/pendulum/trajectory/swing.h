@@ -27,17 +27,14 @@ struct Pendulum {
 /// this instant, and the partials of `time` say how the instant itself moves (it does once a reversal has been passed).
 template <typename T>
 struct State {
-  T time;   ///< s
-  T angle;  ///< rad
-  T rate;   ///< rad/s
+  T time, angle, rate;  ///< s, rad, rad/s
 };
 
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
 /// With a dual T the partial derivatives of θ are those at a fixed absolute time t.
 template <typename T>
 struct Segment {
-  double start = 0;  ///< s
-  double end = 0;    ///< s
+  double start = 0, end = 0;  ///< s
   int order = 0;
   Series<T> angle;
 };
@@ -50,10 +47,9 @@ T EvaluateSeries(const Series<T>& c, int order, double tau) {
   return sum;
 }
 
-/// Order of the expansion for a local tolerance: 1 - 0.6 ln(tolerance), within the room of Series.
-///
-/// The asymptotic optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); reversals cut
-/// steps short and each step has a cost of its own, so a little more is faster: measured at tolerances 1e-9 to 1e-12.
+/// Order of the expansion for a local tolerance: 1 - 0.6 ln(tolerance), within the room of Series. The asymptotic
+/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); reversals cut steps short and
+/// each step has a cost of its own, so a little more is faster: measured at tolerances 1e-9 to 1e-12.
 inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.6 * std::log(tolerance))), 8, kMaxOrder);
 }
@@ -102,8 +98,7 @@ void ExpandSwing(const Pendulum<F, T>& pendulum, double direction, int order, co
 }
 
 /// Longest step whose truncation error stays near `tolerance` [rad]: the least of (tol / |c_k|)^(1/k) over the last
-/// four coefficients (from rest the series is even, at 90 deg every fourth coefficient vanishes), at most `longest`
-/// [s]. 0 when a coefficient is not finite.
+/// four coefficients (some vanish: from rest, at 90 deg), at most `longest` [s]. 0 when a coefficient is not finite.
 template <typename T>
 double StepLength(const Series<T>& angle, int order, double tolerance, double longest) {
   double log_step = std::numeric_limits<double>::infinity();
@@ -115,10 +110,9 @@ double StepLength(const Series<T>& angle, int order, double tolerance, double lo
   return std::min(std::exp2(log_step), longest);
 }
 
-/// First root of the rate in (0, step], or a negative number when the direction of motion holds throughout.
-///
-/// The step is at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end
-/// decides. From rest the rate's root at 0 is divided out. Newton's method kept inside a bisection's bracket.
+/// First root of the rate in (0, step], or a negative number when the direction of motion holds throughout. The step is
+/// at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end decides. From rest
+/// the rate's root at 0 is divided out. Newton's method kept inside a bisection's bracket.
 template <typename T>
 double FirstReversal(const Series<T>& rate, int order, double direction, double step) {
   const int first = Value(rate[0]) == 0 ? 1 : 0;

@@ -19,14 +19,13 @@ struct SyntheticOptions {
   std::vector<double> parameters;
 
   StartKind start = StartKind::kRelease;
-  double release_angle = 0;                    ///< θ before the release [rad]; kRelease.
-  double release_time = 0;                     ///< s, on the recording's clock, before its last sample; kRelease.
+  /// Of kRelease: θ before the release [rad]; when, on the recording's clock before its last sample [s].
+  double release_angle = 0, release_time = 0;
   double initial_angle = 0, initial_rate = 0;  ///< θ [rad] and θ' [rad/s] at the first sample; kMoving.
 
-  double start_time = 0;     ///< Clock at the first sample [s].
-  double duration = 20;      ///< s; the recording has round(duration * sample_rate) samples.
-  double sample_rate = 100;  ///< Hz
-  double jitter = 0;         ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
+  double start_time = 0;                    ///< Clock at the first sample [s].
+  double duration = 20, sample_rate = 100;  ///< s, Hz; the recording has round(duration * sample_rate) samples.
+  double jitter = 0;  ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
 
   Quantity quantity = Quantity::kAngle;
   double zero = 0;               ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
@@ -39,8 +38,7 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
 
-/// The parameters with which the recording is made, in the order a fit has them: of the model (units of G), of the
-/// start, and the zero.
+/// Parameters the recording is made with, in the order of a fit: of the model (units of G), of the start, and the zero.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
 /// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the

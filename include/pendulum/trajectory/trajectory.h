@@ -21,14 +21,12 @@ template <typename T>
 struct Start {
   StartKind kind = StartKind::kMoving;
   double time = 0;  ///< s. The derivative with respect to a release time is -θ' and needs no dual number.
-  T angle;          ///< rad
-  T rate;           ///< rad/s, 0 for a release
+  T angle, rate;    ///< rad; rad/s, 0 for a release
 };
 
 /// How far and how accurately to trace.
 struct TraceOptions {
-  double begin = 0;           ///< s; a hold is reported from here to the release.
-  double end = 0;             ///< s
+  double begin = 0, end = 0;  ///< s; a hold is reported from `begin` to the release.
   double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
   int max_steps = 2'000'000;  ///< Beyond this the trial is refused: its time scale is absurd.
 };
@@ -36,7 +34,7 @@ struct TraceOptions {
 /// What happened on the way.
 struct TraceSummary {
   enum class Outcome {
-    kComplete,      ///< Traced to the end.
+    kComplete,
     kNeverMoved,    ///< Friction holds the pendulum at its start.
     kNotTraceable,  ///< A number became infinite, or max_steps was exceeded.
   };
@@ -73,9 +71,8 @@ class Trajectory {
   TraceSummary summary_;
 };
 
-/// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of G.
-/// kInvalidArgument: wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never
-/// moves, or cannot be traced.
+/// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of G. kInvalidArgument:
+/// wrong number of parameters, or inertia not positive. kFailedPrecondition: it never moves, or cannot be traced.
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
                                   const Start<double>& start, const TraceOptions& options);
 

@@ -14,12 +14,10 @@ namespace pendulum {
 /// A friction law: a type without objects. It names itself and its parameters, gives the torque T(ω) that opposes
 /// motion in direction s = ±1, and coefficient n of that torque's Taylor series along a swing, from the rate's
 /// coefficients 0..n. kFormula is T as text for the report's equation of motion: th' is the rate, {name} the value of a
-/// parameter.
-///
-/// Torque and parameters are in units of the gravity torque G. Torque(0, 1, p) is the static torque: the pendulum stays
-/// at rest while |sin θ| does not exceed it. The law is odd, T(-ω, -s) = -T(ω, s), and never adds energy, T(ω) ω >= 0,
-/// for parameters within their bounds; all parameters 0 is no friction. A law that is not linear in its parameters
-/// needs a start value of its own: see EstimateStartValues in start_values.h.
+/// parameter. Torque and parameters are in units of the gravity torque G. Torque(0, 1, p) is the static torque: the
+/// pendulum stays at rest while |sin θ| does not exceed it. The law is odd, T(-ω, -s) = -T(ω, s), and never adds
+/// energy, T(ω) ω >= 0, for parameters within their bounds; all parameters 0 is no friction. A law that is not linear
+/// in its parameters needs a start value of its own: see EstimateStartValues in start_values.h.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
