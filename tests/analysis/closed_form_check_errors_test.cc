@@ -284,9 +284,7 @@ TEST(ClosedFormRow, HasNoZWhereTheFitDidNotConverge) {
         << row.quantity;
   }
   EXPECT_THAT(check.rows[1].why, HasSubstr("the fit has no standard error: the fit is not_converged"));
-  EXPECT_THAT(
-      check.summary,
-      testing::StartsWith("0 of 0 closed forms agree with the fit within 3 standard deviations of the difference"));
+  EXPECT_THAT(check.summary, testing::StartsWith("there are no errors to judge the closed forms by"));
 }
 
 TEST(ClosedFormRow, IsNotThereForAFitThatFailed) {

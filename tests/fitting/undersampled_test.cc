@@ -202,7 +202,13 @@ TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
   const SwingFit result = FitSimulated(Swing(4, 0.423, 1, kSlowInertia), std::nullopt, "viscous");
   ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
   EXPECT_NEAR(InertiaOf(result), kSlowInertia / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
-  EXPECT_THAT(result.fit.warnings, HasWarning("ambiguous_frequency"));
+  EXPECT_FALSE(result.swing.undersampled);
+}
+
+TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {
+  const SwingFit result = FitSimulated(Swing(1.3, 0.423, 1, 0.13), TextbookRig(), "viscous");
+  EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << result.fit.reason;
+  EXPECT_THAT(result.fit.reason, HasSubstr("check the rig"));
 }
 
 TEST(FitUndersampled, TakesBoundsForARig) {
@@ -222,13 +228,14 @@ TEST(IsUndersampled, BelowSevenSamplesInAPeriodFifteenPercentShorter) {
   EXPECT_FALSE(IsUndersampled(at(1.01 * limit), TextbookRig()));
 }
 
-TEST(IsUndersampled, BelowSixHertzWithoutARigsInertia) {
+TEST(IsUndersampled, WhereAFasterPendulumWouldLookTheSameWithoutARigsInertia) {
   Rig torque_alone = TextbookRig();
   torque_alone.inertia.reset();
   const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
   for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional<Rig>(torque_alone)}) {
-    EXPECT_TRUE(IsUndersampled(at(5.9), rig));
-    EXPECT_FALSE(IsUndersampled(at(6.1), rig));
+    EXPECT_TRUE(IsUndersampled(at(3.7), rig));   // 2.94 Hz would look the same
+    EXPECT_TRUE(IsUndersampled(at(5.1), rig));   // 6.7 samples a period
+    EXPECT_FALSE(IsUndersampled(at(5.9), rig));  // 7.8 of them, and no pendulum swings at 5.1 Hz
   }
 }
 

@@ -132,10 +132,12 @@ TEST(ParseCalibrationTable, RefusesARecordingInItsPlace) {
 
 TEST(ParseCalibrationTable, RefusesAReadingThatStandsTwice) {
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,30\n"),
-            "table.csv:5: the reading 3 counts (line 3) stands here again with another angle; correct or delete one of "
+            "table.csv:5: the reading 3 counts (line 3) stands here again with another angle; give their mean, or "
+            "correct or delete one of "
             "the rows");
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,20\n"),
-            "table.csv:5: the reading 3 counts (line 3) stands here again with the same angle; delete one of the rows");
+            "table.csv:5: the reading 3 counts (line 3) stands here again with the same angle; give their mean, or "
+            "delete one of the rows");
 }
 
 TEST(ParseCalibrationTable, RefusesAnglesThatGoBack) {

@@ -60,7 +60,7 @@ TEST(CalibrationText, ShowsTheReferenceTableAsPublished) {
     deg rms: how far the curve misses a point that did not take part ("left out" above).
     The resolution is 0.1985 deg, one count; the residuals, up to 2.21 deg at 261 counts (line 5),
     are an order of magnitude above it (11 counts). Rounding to counts would leave a standard
-    deviation of 0.0573 deg, and they have 1.19 deg (χ², p < 0.0001): lack of fit. The sensor is not
+    deviation of 0.0573 deg, and they have 1.19 deg (χ², p < 1e-99): lack of fit. The sensor is not
     as even as the curve, or the angles were not set as well as the sensor resolves them.
     A curve of order 2 is not significantly better (F(1, 4) 2.44, p 0.19).
     Outside 19 to 475 counts the curve is extrapolated.
@@ -84,7 +84,7 @@ TEST(CalibrationText, RecommendsTheOrderThatFitsBetter) {
   const CalibrationTable table = TableOf("volts", "rad", volts, angles);
   const std::string line = Unwrapped(TextOf(table, 1));
   EXPECT_THAT(line, AllOf(HasSubstr("A curve of order 2 is significantly better (F(1, 9) "),
-                          HasSubstr("p < 0.0001): see --order 2."), HasSubstr("rad/V"),
+                          HasSubstr("e-16): see --order 2."), HasSubstr("rad/V"),
                           Not(HasSubstr("resolution"))));  // volts have none
   EXPECT_THAT(
       Unwrapped(TextOf(table, 2)),

@@ -65,7 +65,7 @@ TEST(CheckJson, HasARowForEachQuantity) {
   ASSERT_EQ(rows.size(), 3);
   EXPECT_EQ(rows[1].dump(),
             R"({"quantity":"viscous_log_decrement","method":"2 ζ / ω_n","closed_form":0.00306,"std_error":0.0005,)"
-            R"("fit":0.003,"unit":"N m s/rad","z":-0.04,"agrees":true,"why":null})");
+            R"("fit":0.003,"fit_std_error":4e-05,"unit":"N m s/rad","z":-0.04,"agrees":true,"why":null})");
   EXPECT_EQ(rows[0]["agrees"], false);
   EXPECT_FALSE(rows[0].contains("reason"));
 }

@@ -79,10 +79,10 @@ TEST(ClosedFormText, IsInUnitsOfGravityWithoutARig) {
 
 TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), HasSubstr(R"([[Closed forms against the fit]]
-    quantity               closed form ± std error      fit  unit         z  agrees
-    inertia_small_angle        0.08020 ± 0.00020    0.07900  kg m^2     6.2  NO
-    viscous_log_decrement       0.0031 ± 0.0005      0.0030  N m s/rad  0.0  yes
-    inertia_point_mass          0.0703                0.079  kg m^2       -  -
+    quantity               closed form ± std error      fit ± std error  unit         z  agrees
+    inertia_small_angle        0.08020 ± 0.00020    0.07900 ± 0.00010    kg m^2     6.2  NO
+    viscous_log_decrement       0.0031 ± 0.0005     0.00300 ± 0.00004    N m s/rad  0.0  yes
+    inertia_point_mass          0.0703              0.07900 ± 0.00010    kg m^2       -  -
     inertia_small_angle: finite amplitude: of the fitted model's own trajectory the formula makes
     0.0801.
     inertia_point_mass: the rig file gives no errors.
@@ -95,7 +95,7 @@ TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
 TEST(ClosedFormText, ShowsNoZThatIsNoNumber) {
   RunReport report = ExampleReport();
   report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(ClosedFormText(report), HasSubstr("0.07900  kg m^2       -  NO\n"));
+  EXPECT_THAT(ClosedFormText(report), HasSubstr("0.07900 ± 0.00010    kg m^2       -  NO\n"));
 }
 
 TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {

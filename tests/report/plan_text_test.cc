@@ -63,26 +63,24 @@ TEST(PlanText, GivesTheBaseInSiWithARigAndTheRowsInPercent) {
       " 0\n"
       "\n"
       "[[How to read it]]\n"
-      "    The linear formulas (inertia from damped period and logarithmic decrement, sin θ = θ; all whole periods, "
-      "turning\n"
-      "    points without error) are off by more than the standard error of inertia above an amplitude of 0.0113 rad "
-      "(0.65\n"
-      "    deg): beyond it, fit the full equation.\n"
-      "    To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how much "
-      "the linear\n"
-      "    formulas miss it without any noise. The error of the rig's gravity torque G adds to those of inertia and "
-      "torques.\n");
+      "    The linear formulas (inertia from damped period and logarithmic decrement, sin θ = θ; all whole\n"
+      "    periods, turning points without error) are off by more than the standard error of inertia above\n"
+      "    an amplitude of 0.0113 rad (0.65 deg): beyond it, fit the full equation.\n"
+      "    To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by\n"
+      "    how much the linear formulas miss it without any noise. The error of the rig's gravity torque G\n"
+      "    adds to those of inertia and torques.\n");
 }
 
 TEST(PlanText, StaysInUnitsOfTheGravityTorqueWithoutARig) {
   const std::string text = PlanText(ExamplePlan(), {});
   EXPECT_THAT(text, HasSubstr("\n    inertia        0.0400000  ± 0.0000005 s^2  0.0013 %\n"));
   EXPECT_THAT(text, HasSubstr("\n    viscous        0.001500   ± 0.000015  s    1 %\n"));
-  EXPECT_THAT(text, HasSubstr("Torques and inertia are in units of the gravity torque G"));
+  EXPECT_THAT(text, ContainsRegex("Torques and inertia are in units of the[ \n]+gravity torque G"));
 }
 
 TEST(PlanText, RemindsOfTheRigsOwnError) {
-  EXPECT_THAT(PlanText(ExamplePlan(), ExampleRig(0.005)), HasSubstr("rig's gravity torque G, 0.25 %, adds to"));
+  EXPECT_THAT(PlanText(ExamplePlan(), ExampleRig(0.005)),
+              ContainsRegex("rig's gravity torque G,[ \n]+0.25 %, adds to"));
 }
 
 TEST(PlanText, GivesTheErrorOfAParameterThatIs0InItsUnit) {
@@ -116,7 +114,7 @@ TEST(PlanText, SaysWhatADashStandsFor) {
   EXPECT_THAT(PlanText(ExamplePlan(), {}), Not(HasSubstr("no bound is known")));
   plan = ExamplePlan();
   plan.rows[0].linear_bias.reset();
-  EXPECT_THAT(PlanText(plan, {}), HasSubstr("less than one whole period"));
+  EXPECT_THAT(PlanText(plan, {}), ContainsRegex("less than one[ \n]+whole[ \n]+period"));
 }
 
 TEST(PlanText, ComparesNothingWithAnErrorThatIsNotKnown) {
@@ -125,13 +123,14 @@ TEST(PlanText, ComparesNothingWithAnErrorThatIsNotKnown) {
   plan.amplitude_of_equal_bias.reset();
   const std::string text = PlanText(plan, ExampleRig());
   EXPECT_THAT(text, HasSubstr("\n    inertia        0.08    ± - kg m^2\n"));
-  EXPECT_THAT(text, HasSubstr("cannot be compared with a standard error that is not known"));
+  EXPECT_THAT(text, ContainsRegex("cannot be compared with a standard error that[ \n]+is[ \n]+not[ \n]+known"));
 }
 
 TEST(PlanText, SaysThatTheLinearFormulasNeverFail) {
   Plan plan = ExamplePlan();
   plan.amplitude_of_equal_bias.reset();
-  EXPECT_THAT(PlanText(plan, {}), HasSubstr("have no amplitude up to 2.5 rad from which on they are off"));
+  EXPECT_THAT(PlanText(plan, {}),
+              ContainsRegex("have no amplitude up to 2.5 rad from which on[ \n]+they[ \n]+are[ \n]+off"));
 }
 
 TEST(PlanText, SaysWhatLevelsWithoutNoiseAreTakenFor) {
@@ -139,9 +138,9 @@ TEST(PlanText, SaysWhatLevelsWithoutNoiseAreTakenFor) {
   plan.noise_of_levels = 0.001;
   const std::string text = PlanText(plan, {});
   EXPECT_THAT(text, testing::StartsWith("[[Predicted standard errors]] (of least squares)\n"));
-  EXPECT_THAT(text, HasSubstr("    0.001 rad (their spacing"));
+  EXPECT_THAT(text, HasSubstr("0.001 rad (their spacing"));
   plan.parameters.back() = kRateBias;
-  EXPECT_THAT(PlanText(plan, {}), HasSubstr("    0.001 rad/s (their spacing"));
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("0.001 rad/s (their spacing"));
 }
 
 TEST(PlanText, ShowsTheLevelsOfARateInDegreesPerSecond) {
