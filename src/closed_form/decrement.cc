@@ -208,11 +208,11 @@ struct LeastSquares {
   double sum = 0;
 };
 
-/// Levenberg-Marquardt with Marquardt's scaling, until the Newton step that is left is a thousandth of the standard
-/// errors.
+/// Levenberg-Marquardt with Marquardt's scaling, until the Newton step that is left is a hundredth of the standard
+/// errors, as the residuals' own size makes them.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMostSteps = 100;
-  constexpr double kSmallStep = 1e-6;  // squared, in standard errors
+  constexpr double kSmallStep = 1e-4;  // squared, in standard errors
   constexpr double kMostDamping = 1e12;
   std::optional<VectorXd> residuals = problem.Residuals(x);
   if (!residuals) return std::nullopt;
@@ -223,7 +223,9 @@ std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, c
     const VectorXd gradient = jacobian.transpose() * *residuals;
     const MatrixXd inverse = normal.ldlt().solve(MatrixXd::Identity(normal.rows(), normal.cols()));
     const double left = gradient.dot(inverse * gradient);
-    if (std::abs(left) < kSmallStep) return LeastSquares{x, inverse, jacobian, residuals->squaredNorm()};
+    const double sum = residuals->squaredNorm();
+    const double scatter = sum / std::max(static_cast<double>(jacobian.rows() - jacobian.cols()), 1.0);
+    if (std::abs(left) < kSmallStep * std::max(scatter, 1.0)) return LeastSquares{x, inverse, jacobian, sum};
     bool better = false;
     while (!better && damping < kMostDamping) {
       MatrixXd damped = normal;
