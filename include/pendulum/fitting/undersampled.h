@@ -11,7 +11,7 @@ namespace pendulum {
 std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig);
 
 /// Whether turning points cannot be relied upon: fewer than 7 samples in a period 15 % shorter than the rig lets
-/// expect; without that, a rate at which a pendulum of up to 3 Hz (3 cm long) would alias.
+/// expect; without that, below 6 Hz, 7 in the seen period, or where one of up to 3 Hz (3 cm long) would look the same.
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig);
 
 /// All of an undersampled recording, or its window, as one swing. `begins` and `ends` say so.
@@ -22,8 +22,8 @@ FreeSwing WholeRecording(const Recording& recording);
 /// that is surely none of a hold. The trajectory needs no Nyquist rate, but other frequencies may explain the samples
 /// too: those within 9 of -2 log L are listed (warning `ambiguous_frequency`), and the fit ends kNotIdentifiable
 /// without errors. So it does where nothing bounds the frequency, unless the slowest is sampled well and no other
-/// nearly explains the readings. kFailedPrecondition: a release asked for, a constant reading. Others as FitRecording.
-/// Cost: a dozen fits.
+/// nearly explains the readings, and where a frequency beyond the rig's 15 % fits far better. kFailedPrecondition: a
+/// release asked for, a constant reading. Others as FitRecording. Cost: two dozen fits.
 Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum
