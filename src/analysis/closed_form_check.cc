@@ -202,13 +202,9 @@ void Judge(double deviation, ClosedFormRow& row) {
 
 class Checker {
  public:
-  Checker(const Recording& used, const ClosedForms& forms, const FitReport& fit, const std::optional<Rig>& rig)
-      : used_(used),
-        forms_(forms),
-        fit_(fit),
-        gravity_torque_(rig ? rig->gravity_torque.value : 1.0),
-        motion_(used, fit, rig),
-        side_(fit, motion_) {}
+  Checker(const Recording& used, const ClosedForms& forms, const FitReport& fit, const FittedMotion& motion,
+          double gravity_torque)
+      : used_(used), forms_(forms), fit_(fit), gravity_torque_(gravity_torque), motion_(motion), side_(fit, motion) {}
 
   void Add(const FormulaGroup& group, std::vector<ClosedFormRow>& rows) {
     std::optional<FormulaStages> stages;
@@ -278,7 +274,7 @@ class Checker {
   const ClosedForms& forms_;
   const FitReport& fit_;
   double gravity_torque_;
-  FittedMotion motion_;
+  const FittedMotion& motion_;
   FitSide side_;
 };
 
@@ -376,12 +372,13 @@ ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms
                                  const std::optional<Rig>& rig) {
   ClosedFormCheck check;
   if (fit.termination == Termination::kFailed) return check;
-  Checker checker(used, forms, fit, rig);
+  const FittedMotion motion(used, fit, rig);
+  Checker checker(used, forms, fit, motion, rig ? rig->gravity_torque.value : 1.0);
   if (forms.linear) checker.Add(LinearFormulas(forms, used), check.rows);
   if (forms.decrement) checker.Add(DecrementFormulas(forms, fit.quantity), check.rows);
   if (rig) AddGeometry(used, *rig, fit, check.rows);
   if (forms.linear) {
-    check.overlay = MakeOverlay(used, *forms.linear, fit, FittedMotion(used, fit, rig));
+    check.overlay = MakeOverlay(used, *forms.linear, fit, motion);
     if (check.overlay.linear.size() > 0) {
       check.overlay.summary = DescribeOverlay(check.overlay, *forms.linear, fit.reading_unit);
     }

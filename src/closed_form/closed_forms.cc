@@ -8,6 +8,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/recording/window.h"
 
 namespace pendulum {
 namespace {
@@ -64,9 +65,8 @@ void Inflate(double scatter, PeakTable& table) {
 }  // namespace
 
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model) {
-  Recording timed = recording;
   const double origin = recording.time[0];
-  timed.time = origin + recording.clock_scale * (recording.time.array() - origin);
+  const Recording timed = InTrueTime(recording);
   ClosedForms forms;
   forms.gravity = model.gravity;
   Result<Decrement> decrement = FitDecrement(timed, model);

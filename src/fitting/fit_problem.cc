@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/model/friction/registry.h"
+#include "pendulum/recording/window.h"
 
 namespace pendulum {
 namespace {
@@ -148,13 +149,6 @@ void SetCensoring(const Recording& recording, FitProblem& problem) {
   if (problem.censored > 0) problem.noise = noise;
 }
 
-/// The recording with seconds that last a second.
-Recording TrueTime(Recording recording) {
-  const double first = recording.time[0];
-  recording.time = first + recording.clock_scale * (recording.time.array() - first);
-  return recording;
-}
-
 /// The recording with each value the median of five around it, so that lone outliers begin no motion.
 Recording WithoutOutliers(Recording recording) {
   const Eigen::VectorXd value = recording.value;
@@ -236,7 +230,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   model->gravity = options.gravity.value_or(model->gravity);
   if (!recording.is_calibrated() && model->gravity == Gravity::kSine) return NeedsCalibration(recording, *model);
   std::optional<Recording> scaled;
-  if (recording.clock_scale != 1) scaled = TrueTime(recording);
+  if (recording.clock_scale != 1) scaled = InTrueTime(recording);
   const Recording& timed = scaled ? *scaled : recording;
   const Result<StartValues> start =
       options.start_values

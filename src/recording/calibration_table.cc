@@ -47,14 +47,8 @@ class TableReader {
 };
 
 Result<CalibrationTable> TableReader::Read() {
-  line_.file = lines_.name();
-  while (true) {
-    const Result<bool> next = lines_.Next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) break;
-    line_.text = lines_.line();
-    line_.number = lines_.number();
-    if (Check read = ReadLine(); !read) return tl::unexpected(std::move(read).error());
+  if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
+    return tl::unexpected(std::move(read).error());
   }
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
   CalibrationTable table;

@@ -13,6 +13,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/status.h"
+#include "pendulum/recording/line_reader.h"
 
 /// The grammar of CSV text, without a copy of a field: blanks, quotes, numbers, separators.
 namespace pendulum::csv {
@@ -43,6 +44,20 @@ struct Line {
                            std::to_string(at - text.data() + 1) + ": " + sentence);
   }
 };
+
+/// Calls take() for each line of a file, as `line`, until one is refused.
+template <typename Take>
+Result<void> ForEachLine(LineReader& lines, Line& line, const Take& take) {
+  line.file = lines.name();
+  while (true) {
+    const Result<bool> next = lines.Next();
+    if (!next) return tl::unexpected(next.error());
+    if (!*next) return {};
+    line.text = lines.line();
+    line.number = lines.number();
+    if (Result<void> taken = take(); !taken) return taken;
+  }
+}
 
 /// std::from_chars, and a leading plus sign.
 inline std::from_chars_result FromChars(const char* begin, const char* end, double& number) {

@@ -85,14 +85,8 @@ class Reader {
 
 Result<Recording> Reader::Read() {
   samples_.name = lines_.name();
-  line_.file = lines_.name();
-  while (true) {
-    const Result<bool> next = lines_.Next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) break;
-    line_.text = lines_.line();
-    line_.number = lines_.number();
-    if (Check read = ReadLine(); !read) return tl::unexpected(std::move(read).error());
+  if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
+    return tl::unexpected(std::move(read).error());
   }
   if (!has_layout_ && !head_.empty()) {
     if (Check begun = BeginRows(); !begun) return tl::unexpected(std::move(begun).error());

@@ -79,6 +79,12 @@ Recording Thinned(const Recording& recording, Eigen::Index most) {
   return thinned;
 }
 
+Recording InTrueTime(Recording recording) {
+  const double first = recording.time[0];
+  recording.time = first + recording.clock_scale * (recording.time.array() - first);
+  return recording;
+}
+
 Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end) {
   const double longest = static_cast<double>(most) / per_second;
   const double first = recording.time[0];

@@ -68,7 +68,8 @@ Json PeaksJson(const RunReport& report, const std::string& unit) {
 }
 
 Json ModelJson(const FitReport& fit, const ClosedFormCheck* check, Eigen::Index samples) {
-  const TextbookOverlay overlay = check != nullptr ? check->overlay : TextbookOverlay();
+  const TextbookOverlay none;
+  const TextbookOverlay& overlay = check != nullptr ? check->overlay : none;
   Json json;
   json["fitted"] = SamplesJson(fit.fitted, samples);
   json["residual"] = SamplesJson(fit.residual, samples);
