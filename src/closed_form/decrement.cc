@@ -140,7 +140,10 @@ class DecrementProblem {
     if (i == 0) return table_.quantity == Quantity::kAngle ? amplitude : peak_rate;
     if (i == 1) return x[1];
     // A friction of 1 percent of gravity at the largest rate.
-    if (i < 2 + friction()) return 0.01 * amplitude / UnitTorque(i - 2, peak_rate);
+    if (i < 2 + friction()) {
+      const double unit = UnitTorque(i - 2, peak_rate);
+      return unit > 0 ? 0.01 * amplitude / unit : std::max(std::abs(x[i]), 0.01);
+    }
     return (i - friction()) % 2 == 0 ? amplitude : table_.half_period;
   }
 
@@ -177,7 +180,8 @@ class DecrementProblem {
       if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
       if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
       if (!is_rate && i + 1 == runs_[r].count) break;
-      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1], is_rate);
+      const double direction = is_rate ? table_.Side(peak) : -table_.Side(peak);
+      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1], direction, is_rate);
       if (!end) return false;
       if (is_rate) Add(peak, time + end->peak_delay, x[0] + table_.Side(peak) * end->peak_rate, row, residuals);
       amplitude = end->amplitude;
@@ -288,6 +292,13 @@ double RestTorque(const Decrement& decrement) {
   return torque;
 }
 
+/// Whether the law has no reference rate, of which the turning points give no start value.
+bool IsLinear(const MotionModel& model) {
+  bool linear = true;
+  FrictionModels::Visit(model.friction, [&]<typename F>() { linear = !HasRateScale<F>; });
+  return linear;
+}
+
 /// The shape a single term gives the envelope.
 std::string_view EnvelopeShape(std::string_view term) {
   if (term == kViscous.name) return "exponential";
@@ -328,6 +339,11 @@ Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model,
 }
 
 Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model) {
+  if (!IsLinear(model)) {
+    return Error(StatusCode::kFailedPrecondition, std::string(model.friction) +
+                                                      " friction is not linear in its parameters, which the least "
+                                                      "squares of the turning points takes for granted");
+  }
   Result<PeakTable> table = LocatePeaks(recording);
   if (!table) return tl::unexpected(table.error());
   const std::vector<bool> all(PhysicalParameters(model).size() - 1, true);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/closed_form/energy_balance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Cholesky>
 #include <boost/math/quadrature/gauss.hpp>
@@ -19,14 +21,16 @@ double Potential(Gravity gravity, double angle) {
   return gravity == Gravity::kSine ? 1 - std::cos(angle) : 0.5 * angle * angle;
 }
 
-/// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0; θ = A sin φ smooths its
-/// ends.
+/// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0, but a reference rate at
+/// its value; θ = A sin φ smooths its ends.
 template <FrictionModel F>
-Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency) {
+Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency,
+                                    double reference_rate) {
   Eigen::RowVectorXd loss(kFrictionParameters<F>);
   for (int k = 0; k < kFrictionParameters<F>; ++k) {
     std::array<double, kFrictionParameters<F>> unit{};
-    unit[k] = 1;
+    if constexpr (HasRateScale<F>) unit.back() = reference_rate;
+    if (unit[k] == 0) unit[k] = 1;
     const auto integrand = [&](double phi) {
       const double angle = amplitude * std::sin(phi);
       const double kinetic = std::max(2 * (Potential(gravity, amplitude) - Potential(gravity, angle)), 0.0);
@@ -78,28 +82,66 @@ class LossEquations {
 
 }  // namespace
 
+namespace {
+
+template <FrictionModel F>
+EnergyBalance BalanceAt(const HalfSwingTable& table, double natural_frequency, double reference_rate) {
+  LossEquations equations(kFrictionParameters<F>);
+  for (const HalfSwing& half : table.half_swings) {
+    const double before = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
+    const double after = AngleAmplitude(table.quantity, half.after, natural_frequency, table.gravity);
+    if (!half.continues) equations.StartRun(Potential(table.gravity, before));
+    equations.Add(LossPerParameter<F>(table.gravity, 0.5 * (before + after), natural_frequency, reference_rate),
+                  Potential(table.gravity, after));
+  }
+  equations.FinishRun();
+  return {equations.normal, equations.right, reference_rate};
+}
+
+/// How much of the losses the best friction explains.
+double Gain(const EnergyBalance& balance) {
+  const std::vector<double> friction = FrictionFrom(balance);
+  double gain = 0;  // of the reference rate nothing: its equation is not solved
+  for (std::size_t k = 0; k + 1 < friction.size(); ++k)
+    gain += friction[k] * balance.right[static_cast<Eigen::Index>(k)];
+  return gain;
+}
+
+double LargestRate(const HalfSwingTable& table, double natural_frequency) {
+  double largest = 0;
+  for (const HalfSwing& half : table.half_swings) {
+    const double amplitude = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
+    largest = std::max(largest, natural_frequency * std::sqrt(2 * Potential(table.gravity, amplitude)));
+  }
+  return largest;
+}
+
+}  // namespace
+
 /// At a turning point the energy is U = 1 - cos A; between two, friction takes ∫ T(ω(θ)) dθ with ω(θ) = ω0 sqrt(2 (cos
 /// θ - cos A)) and A the mean amplitude.
-EnergyBalance BalanceEnergy(const MotionModel& model, const HalfSwingTable& table, double natural_frequency) {
-  EnergyBalance balance;
+std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const HalfSwingTable& table,
+                                         double natural_frequency) {
+  std::vector<EnergyBalance> balances;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    LossEquations equations(kFrictionParameters<F>);
-    for (const HalfSwing& half : table.half_swings) {
-      const double before = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
-      const double after = AngleAmplitude(table.quantity, half.after, natural_frequency, table.gravity);
-      if (!half.continues) equations.StartRun(Potential(table.gravity, before));
-      equations.Add(LossPerParameter<F>(table.gravity, 0.5 * (before + after), natural_frequency),
-                    Potential(table.gravity, after));
+    if constexpr (HasRateScale<F>) {
+      const double largest = LargestRate(table, natural_frequency);
+      for (const double scale : F::kRateScales) {
+        balances.push_back(BalanceAt<F>(table, natural_frequency, scale * largest));
+      }
+      std::ranges::stable_sort(balances, std::ranges::greater(), Gain);
+    } else {
+      balances.push_back(BalanceAt<F>(table, natural_frequency, 0));
     }
-    equations.FinishRun();
-    balance = {equations.normal, equations.right};
   });
-  return balance;
+  return balances;
 }
 
 std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector<bool>& left_out) {
-  const auto size = static_cast<int>(balance.right.size());
-  Eigen::VectorXd best = Eigen::VectorXd::Zero(size);
+  const bool has_rate = balance.reference_rate > 0;
+  const auto size = static_cast<int>(balance.right.size()) - (has_rate ? 1 : 0);
+  Eigen::VectorXd best = Eigen::VectorXd::Zero(balance.right.size());
+  if (has_rate) best[size] = balance.reference_rate;
   double best_gain = 0;
   // Non-negative least squares by trying every set of positive components: exact, and K is at most a handful.
   for (unsigned set = 1; set < (1U << size); ++set) {
@@ -117,7 +159,7 @@ std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector
     const double gain = x.dot(right);  // how much of the losses is explained
     if (gain <= best_gain) continue;
     best_gain = gain;
-    best.setZero();
+    best.head(size).setZero();
     best(chosen) = x;
   }
   return {best.begin(), best.end()};

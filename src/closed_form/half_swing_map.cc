@@ -73,8 +73,12 @@ double AngleWith(Gravity gravity, double potential) {
 template <FrictionModel F>
 class HalfSwingWay {
  public:
-  HalfSwingWay(Gravity gravity, const double* friction, double before, double natural_frequency)
-      : gravity_(gravity), friction_(friction), before_(before), natural_frequency_(natural_frequency) {}
+  HalfSwingWay(Gravity gravity, const double* friction, double before, double natural_frequency, double direction)
+      : gravity_(gravity),
+        friction_(friction),
+        before_(before),
+        natural_frequency_(natural_frequency),
+        direction_(direction) {}
 
   /// dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard's iteration on the energies at the nodes; `after` follows from the last.
   std::optional<HalfSwingEnd> Solve(bool wants_peak) {
@@ -103,6 +107,9 @@ class HalfSwingWay {
     return rule;
   }
 
+  /// Against the motion, whatever its direction.
+  double Torque(double rate) const { return direction_ * F::Torque(direction_ * rate, direction_, friction_); }
+
   double RateAt(double energy, double angle) const {
     const double kinetic = energy - PotentialAt(gravity_, angle);
     return natural_frequency_ * std::sqrt(std::max(2 * kinetic, 1e-30));
@@ -117,7 +124,7 @@ class HalfSwingWay {
     Nodes loss;
     for (int i = 0; i < kNodes; ++i) {
       rate_[i] = RateAt(energy[i], 0.5 * (after - before_) + half * sine[i]);
-      loss[i] = F::Torque(rate_[i], 1.0, friction_) * slope_[i];
+      loss[i] = Torque(rate_[i]) * slope_[i];
     }
     return loss;
   }
@@ -134,7 +141,7 @@ class HalfSwingWay {
     for (int round = 0; round < kMostRounds; ++round) {
       x = 2 / kPi * std::asin(std::clamp((angle - middle) / half, -1.0, 1.0));
       rate = RateAt(PotentialAt(gravity_, before_) - Rule().WeightsTo(x).dot(loss.matrix()), angle);
-      const double torque = std::clamp(F::Torque(rate, 1.0, friction_), -1.0, 1.0);
+      const double torque = std::clamp(Torque(rate), -1.0, 1.0);
       const double last = std::exchange(angle, gravity_ == Gravity::kSine ? -std::asin(torque) : -torque);
       if (std::abs(last - angle) <= kSame * half) break;
     }
@@ -144,17 +151,17 @@ class HalfSwingWay {
 
   Gravity gravity_;
   const double* friction_;
-  double before_, natural_frequency_;
+  double before_, natural_frequency_, direction_;
   Nodes rate_, slope_;  // ω and dθ/dx at the nodes
 };
 
 }  // namespace
 
 std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
-                                         double natural_frequency, bool wants_peak) {
+                                         double natural_frequency, double direction, bool wants_peak) {
   std::optional<HalfSwingEnd> end;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency).Solve(wants_peak);
+    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency, direction).Solve(wants_peak);
   });
   return end;
 }

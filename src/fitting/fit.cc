@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/broken_order.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/maximum_likelihood.h"
@@ -94,6 +95,25 @@ bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
          (start.short_hold || !Explains(*attempt.problem, attempt.solution));
 }
 
+/// From the data's other reference rates, as long as none leads to parameters that are the law's own.
+void FallBack(const Recording& recording, const FitOptions& options, Result<Attempt>& attempt) {
+  constexpr int kMostTraces = 400;
+  const StartValues start = attempt->problem->start;
+  if (options.start_values) return;
+  for (const EnergyBalance& balance : start.other_balances) {
+    FitOptions other = options;
+    other.start_values = start;
+    other.start_values->energy_balance = balance;
+    std::ranges::copy(FrictionFrom(balance), other.start_values->parameters.begin() + 1);
+    other.max_traces = std::min(options.max_traces, kMostTraces);
+    Result<Attempt> trial = TryFit(recording, other);
+    if (!trial || !trial->solution.usable || !BrokenOrder(*trial->problem, trial->solution.parameters).empty())
+      continue;
+    attempt = std::move(trial);
+    return;
+  }
+}
+
 bool IsBetter(const Attempt& a, const Attempt& b) {
   return a.solution.usable && (!b.solution.usable || a.solution.log_likelihood > b.solution.log_likelihood);
 }
@@ -124,6 +144,7 @@ void WithdrawErrors(std::string_view why, FitReport& fit) {
     if (!parameter.fixed) parameter.reason = why;
   }
   for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
+  fit.profiles.clear();
   fit.covariance_names.clear();
   fit.covariance.resize(0, 0);
 }
@@ -137,6 +158,10 @@ Result<FitReport> FitRecording(const Recording& recording, const FitOptions& opt
     // Not possible where release_time is fixed.
     if (Result<Attempt> other = TryFit(recording, moving); other && IsBetter(*other, *attempt))
       attempt = std::move(other);
+  }
+  if (!BrokenOrder(*attempt->problem, attempt->solution.parameters).empty()) FallBack(recording, options, attempt);
+  if (const std::string broken = BrokenOrder(*attempt->problem, attempt->solution.parameters); !broken.empty()) {
+    return ReportSimplerLaw(recording, options, *attempt->problem, broken);
   }
   return Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
 }

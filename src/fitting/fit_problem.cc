@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/model/friction/registry.h"
+#include "pendulum/model/nesting.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -262,6 +263,9 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.fixed.assign(problem.infos.size(), false);
   problem.solve.holding_parameter = HoldingParameter(*model);
   problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
+  if (const OrderedPair order = OrderOf(*model); order.larger >= 0) {
+    problem.solve.late = {order.larger, problem.solve.last_friction};
+  }
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.restricted = !options.fixed.empty() || !options.bounds.empty() || !options.priors.empty();
   problem.solve.max_iterations = options.max_iterations;

@@ -138,17 +138,23 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr std::string_view kConsequence =
       "; the standard errors of the others take that as exact, the intervals by profile likelihood do not";
-  std::vector<ParameterInfo> friction, bounded;
+  std::vector<ParameterInfo> friction, bounded, extreme;
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
     if (parameter.info.name != kReleaseTime.name) {
-      (parameter.estimate == parameter.info.lower ? friction : bounded).push_back(parameter.info);
+      const bool none = parameter.estimate == 0;  // what is left is a simpler law
+      const bool own = parameter.estimate == parameter.info.lower || parameter.estimate == parameter.info.upper;
+      (none ? friction : own ? extreme : bounded).push_back(parameter.info);
       continue;
     }
     warnings.push_back({"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
                                         std::string(kConsequence) +
                                         "; choose a window with all of the hold, or --start moving with a window after "
                                         "the release"});
+  }
+  if (!extreme.empty()) {
+    warnings.push_back({"at_bound", "at the end of what it can be: " + NameList(extreme) + std::string(kConsequence) +
+                                        "; the recording hardly tells it"});
   }
   if (!bounded.empty()) {
     warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) + std::string(kConsequence) +

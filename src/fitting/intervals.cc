@@ -71,12 +71,28 @@ void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, Fit
   report.interval_method = "estimate ± " + (least == most ? least : least + " to " + most) + " standard errors";
 }
 
+/// The points of a profile as the report has them.
+ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const ProfileInterval& interval) {
+  const auto i = static_cast<std::size_t>(parameter);
+  ProfileCurve curve;
+  curve.name = problem.infos[i].name;
+  curve.threshold = interval.threshold;
+  for (const ProfilePoint& point : interval.points) {
+    curve.value.push_back(problem.Reported(i, point.value));
+    curve.statistic.push_back(point.statistic);
+  }
+  return curve;
+}
+
 void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
-  for (const int i : NotFixed(fitted.optimum)) {
+  std::vector<int> parameters = NotFixed(fitted.optimum);
+  std::ranges::sort(parameters);
+  for (const int i : parameters) {
     const ProfileInterval interval =
         ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i);
     SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
     report.parameters[static_cast<std::size_t>(i)].open_interval = interval.open;
+    if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(fitted.problem, i, interval));
   }
   report.interval_method = "profile likelihood";
 }

@@ -174,7 +174,7 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
   values.start = StartKind::kMoving;
   values.natural_frequency = candidate.frequency;
   values.amplitude = AngleAmplitude(recording.quantity, candidate.amplitude(), candidate.frequency, model.gravity);
-  values.energy_balance = BalanceEnergy(model, table, candidate.frequency);
+  values.energy_balance = BalanceEnergy(model, table, candidate.frequency).front();
   values.parameters = {1 / (candidate.frequency * candidate.frequency)};
   const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());

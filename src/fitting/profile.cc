@@ -28,6 +28,8 @@ class Profile {
     length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
     last_trace_ = cost.traces() + Budget(problem);
     threshold_ = length_ * length_ / naive;
+    t95_ = errors.t95[row];
+    points_.push_back({At(), 0});
     direction_ = optimum_.inverse.matrix.col(row) / naive;
   }
 
@@ -47,6 +49,27 @@ class Profile {
 
   /// Whether the profile came below the optimum: it belongs to another minimum.
   bool found_lower() const { return found_lower_; }
+
+  /// The points so far and those that make them even between the ends, which are so far below and above the estimate;
+  /// those that the search for the ends left far beyond them apart.
+  std::vector<ProfilePoint> SpreadPoints(double down, double up) {
+    constexpr double kFarBeyond = 4;  // thresholds
+    last_trace_ = cost_.traces() + Budget(problem_);
+    SpreadOver(-down);
+    SpreadOver(up);
+    std::erase_if(points_, [&](const ProfilePoint& p) { return p.statistic > kFarBeyond * threshold(); });
+    std::ranges::sort(points_, {}, &ProfilePoint::value);
+    return points_;
+  }
+
+  /// How far the search for the end on a side went.
+  double Sought(double side) const {
+    double farthest = 0;
+    for (const ProfilePoint& point : points_) farthest = std::max(farthest, side * (point.value - At()));
+    return farthest;
+  }
+
+  double threshold() const { return t95_ * t95_; }
 
   double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
 
@@ -75,7 +98,22 @@ class Profile {
     const Solution other = Solve(cost_, start, options);
     if (!other.usable) return kUnbounded;
     found_lower_ = found_lower_ || other.sum < solution_.sum - kNegligible * threshold_;
-    return std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
+    const double root = std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
+    points_.push_back({start[static_cast<std::size_t>(k_)], root * root * threshold()});
+    return root;
+  }
+
+  /// Points on one side up to a distance (signed) from the estimate, where none is near yet.
+  void SpreadOver(double farthest) {
+    constexpr int kParts = 4;
+    constexpr double kNear = 0.25;  // parts
+    if (farthest == 0) return;
+    const double part = farthest / kParts;
+    for (int i = 1; i <= kParts; ++i) {
+      const double value = At() + i * part;
+      const auto is_near = [&](const ProfilePoint& p) { return std::abs(p.value - value) < kNear * std::abs(part); };
+      if (std::ranges::none_of(points_, is_near)) RootAt(std::abs(i * part), farthest < 0 ? -1 : 1);
+    }
   }
 
   /// Where the root is 1, by regula falsi between points on both sides; nothing when it stays below.
@@ -119,8 +157,10 @@ class Profile {
   int k_;
   bool found_lower_ = false;
   int last_trace_ = 0;
-  double length_ = 0;          // of half the interval, were the likelihood a parabola
-  double threshold_ = 0;       // of the deviance's rise
+  double length_ = 0;     // of half the interval, were the likelihood a parabola
+  double threshold_ = 0;  // of the deviance's rise
+  double t95_ = 0;
+  std::vector<ProfilePoint> points_;
   Eigen::VectorXd direction_;  // how the free parameters follow
 };
 
@@ -145,11 +185,16 @@ ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem
     interval.open = "the likelihood does not fall far enough on that side, however far out";
   }
   if (profile.is_exhausted()) {
-    interval = {std::nullopt, std::nullopt, "its profile could not be followed; try --interval bootstrap"};
+    interval.lower = interval.upper = std::nullopt;
+    interval.open = "its profile could not be followed; try --interval bootstrap";
   }
   if (profile.found_lower()) {
-    interval = {std::nullopt, std::nullopt, "a better minimum lies within it: the fit is not at the best one"};
+    interval.lower = interval.upper = std::nullopt;
+    interval.open = "a better minimum lies within it: the fit is not at the best one";
   }
+  if (profile.is_exhausted() || profile.found_lower()) return interval;
+  interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));
+  interval.threshold = profile.threshold();
   return interval;
 }
 

@@ -25,8 +25,9 @@ std::size_t SamplesBefore(const TrajectoryData& data, double time) {
 }
 
 /// Solves over the samples before each of the times in turn, each from the last; leaves the cost with all samples.
-Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, const SolveOptions& options,
+Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
                       const std::vector<double>& times) {
+  for (const int k : options.late) options.fixed[k] = true;
   constexpr std::size_t kFewest = 16;
   for (const double time : times) {
     const std::size_t count = SamplesBefore(data, time);
@@ -178,7 +179,8 @@ SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
 std::vector<int> Removable(const SolveOptions& options) {
   std::vector<int> removable;
   for (int k = 1; k <= options.last_friction; ++k) {
-    if (!options.fixed[k] && std::isfinite(options.lower[k])) removable.push_back(k);
+    const bool is_late = std::ranges::find(options.late, k) != options.late.end();
+    if (!options.fixed[k] && options.lower[k] == 0 && !is_late) removable.push_back(k);
   }
   return removable.size() > 1 ? removable : std::vector<int>{};
 }

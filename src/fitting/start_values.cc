@@ -161,7 +161,9 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
   }
   values.amplitude = LargestAmplitude(*table, values.natural_frequency);
   values.parameters = {inertia};
-  values.energy_balance = BalanceEnergy(model, *table, values.natural_frequency);
+  values.other_balances = BalanceEnergy(model, *table, values.natural_frequency);
+  values.energy_balance = values.other_balances.front();
+  values.other_balances.erase(values.other_balances.begin());
   const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 

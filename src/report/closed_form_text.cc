@@ -20,11 +20,6 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// A fact too long for one line.
-std::string LongFact(const std::string& name, const std::string& text) {
-  return Paragraph(text, std::string(kTextIndent, ' ') + name + "  ", kTextWidth);
-}
-
 // --- sampling --------------------------------------------------------------------------------------------------------
 
 std::string JitterText(const Sampling& sampling) {
@@ -58,7 +53,7 @@ Cells EstimateCells(const ReportedEstimate& reported, const Conversion& conversi
 }
 
 /// `in_degrees`: what is in radians once more in degrees.
-std::string EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degrees) {
+Table EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degrees) {
   std::vector<Cells> rows;
   for (const ReportedEstimate& reported : estimates) {
     Cells row = EstimateCells(reported, {reported.unit});
@@ -68,46 +63,52 @@ std::string EstimateTable(const std::vector<ReportedEstimate>& estimates, bool i
     const auto degrees = Degrees(reported.unit);
     if (in_degrees && degrees) rows.push_back(EstimateCells(reported, *degrees));
   }
-  return AlignedTable({{"name"}, {"symbol"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kTextIndent);
+  return {{{"name"}, {"symbol"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, std::move(rows)};
 }
 
-std::string LinearText(const ClosedForms& forms, const std::optional<Rig>& rig) {
-  if (!forms.linear) return Prose("No two turning points a whole period apart follow each other: no log decrement.");
+void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section& section) {
+  if (!forms.linear) {
+    section.Say("No two turning points a whole period apart follow each other: no log decrement.");
+    return;
+  }
   const int periods = forms.linear->periods;
   const bool is_sine = forms.gravity == Gravity::kSine;
-  return Prose("Formulas of the linear pendulum, over " + std::to_string(periods) +
-               (periods == 1 ? " period" : " periods") + " from turning point " +
-               std::to_string(forms.linear->first + 1) + " on" +
-               (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : ".")) +
-         EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false);
+  section.Say("Formulas of the linear pendulum, over " + std::to_string(periods) +
+              (periods == 1 ? " period" : " periods") + " from turning point " +
+              std::to_string(forms.linear->first + 1) + " on" +
+              (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : "."));
+  section.Add(EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false));
 }
 
 /// Friction that gives energy is none.
-std::string NegativeText(const Decrement& decrement) {
+void SayNegative(const Decrement& decrement, Section& section) {
   constexpr double kSurely = 3;
   const std::vector<ParameterInfo> infos = PhysicalParameters(decrement.model);
-  std::string text;
   for (std::size_t k = 0; k < decrement.friction.size(); ++k) {
     const auto [value, error] = decrement.friction[k];
     if (value >= -kSurely * error) continue;
-    text += Prose(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
-                  " standard errors, which no friction is: the turning points follow another law.");
+    section.Say(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
+                    " standard errors, which no friction is: the turning points follow another law.",
+                Emphasis::kCaution);
   }
-  return text;
 }
 
-std::string DecrementText(const RunReport& report) {
+void AddDecrement(const RunReport& report, Section& section) {
   const ClosedForms& forms = *report.closed_forms;
-  if (!forms.decrement) return Prose("No law was fitted to the turning points: " + forms.no_decrement + ".");
+  if (!forms.decrement) {
+    section.Say("No law was fitted to the turning points: " + forms.no_decrement + ".");
+    return;
+  }
   const Decrement& decrement = *forms.decrement;
   std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
-  return Prose("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
-               (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
-               ", with the friction of model " + report.closed_forms_model + ": chi-square " +
-               NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
-               " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".") +
-         EstimateTable(estimates, true) + NegativeText(decrement);
+  section.Say("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
+              (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
+              ", with the friction of model " + report.closed_forms_model + ": chi-square " +
+              NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
+              " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");
+  section.Add(EstimateTable(estimates, true));
+  SayNegative(decrement, section);
 }
 
 // --- the check -------------------------------------------------------------------------------------------------------
@@ -115,42 +116,29 @@ std::string DecrementText(const RunReport& report) {
 /// 0.1 of a standard deviation is as fine as a z is read.
 std::string ZText(const std::optional<double>& z) { return z && std::isfinite(*z) ? RoundedText(*z, {1, 0}) : "-"; }
 
+constexpr const char* kDiffers = "NO";
+
+/// The fit as its own error rounds it; without one to the decimal of the closed form.
 Cells CheckCells(const ClosedFormRow& row) {
   const QuantityNumbers numbers(row.closed_form, row.std_error);
   const std::string value = numbers.Error().empty() ? numbers.Number(row.closed_form) : numbers.Value();
-  const std::string agrees = !row.agrees ? "-" : *row.agrees ? "yes" : "NO";
-  const QuantityNumbers fit(row.fit, row.fit_std_error);
   const bool has_error = row.fit_std_error.value_or(0) > 0;
-  return {row.quantity,
-          value,
-          numbers.Error(),
-          has_error ? fit.Value() : numbers.Number(row.fit),
-          has_error ? fit.Error() : "",
-          row.unit,
-          ZText(row.z),
-          agrees};
+  const std::string fit =
+      has_error ? QuantityNumbers(row.fit, row.fit_std_error).Number(row.fit) : numbers.Number(row.fit);
+  return {row.quantity, value, numbers.Error(), fit, ZText(row.z), !row.agrees ? "-" : *row.agrees ? "yes" : kDiffers};
 }
 
-std::string CheckText(const ClosedFormCheck& check, const std::string& of) {
-  std::vector<Cells> rows;
-  std::string reasons;
-  for (const ClosedFormRow& row : check.rows) {
-    rows.push_back(CheckCells(row));
-    if (!row.why.empty()) reasons += Prose(row.quantity + ": " + row.why + ".");
-  }
-  const std::vector<Column> columns = {{"quantity"},
-                                       {"closed form", true},
-                                       {"± std error", false, 1},
-                                       {"fit", true},
-                                       {"± std error", false, 1},
-                                       {"unit"},
-                                       {"z", true},
-                                       {"agrees"}};
-  std::string text = Heading("Closed forms against the fit" + of) + AlignedTable(columns, rows, kTextIndent) + reasons;
+Section CheckSection(const ClosedFormCheck& check, const std::string& of) {
+  Section section{"Closed forms against the fit" + of};
+  Table table{{{"quantity"}, {"formula", true}, {"± error", false, 1}, {"fit", true}, {"z", true}, {"agrees"}}};
+  table.caution = kDiffers;
+  for (const ClosedFormRow& row : check.rows) table.rows.push_back(CheckCells(row));
+  section.Add(std::move(table));
+  for (const ClosedFormRow& row : check.rows) section.Say(row.why.empty() ? "" : row.quantity + ": " + row.why + ".");
   for (const std::string& summary : {check.overlay.summary, check.summary}) {
-    if (!summary.empty()) text += Prose(summary + ".");
+    section.Say(summary.empty() ? "" : summary + ".");
   }
-  return text;
+  return section;
 }
 
 // --- turning points --------------------------------------------------------------------------------------------------
@@ -168,10 +156,10 @@ std::vector<Column> PeakColumns(const PeakTable& table, const std::string& unit)
   return {{"number", true},
           {"t [s]", true},
           {quantity + " [" + unit + "]", true},
-          {"ζ of the pair", true},
-          {"± std error", false, 1},
-          {"ζ over n periods", true},
-          {"± std error", false, 1},
+          {"ζ (pair)", true},
+          {"± error", false, 1},
+          {"ζ over n", true},
+          {"± error", false, 1},
           {"n", true}};
 }
 
@@ -195,57 +183,58 @@ Cells PeakCells(const ClosedForms& forms, std::size_t i, double factor) {
   return cells;
 }
 
-/// A line put behind so many lines of a text.
-std::string WithLineAfter(std::size_t lines, const std::string& line, std::string text) {
-  std::size_t at = 0;
-  for (; lines > 0; --lines) at = text.find('\n', at) + 1;
-  return text.insert(at, std::string(kTextIndent, ' ') + line + "\n");
-}
-
-std::string TurningPointText(const RunReport& report) {
+Section TurningPointSection(const RunReport& report) {
   const ClosedForms& forms = *report.closed_forms;
   const std::optional<Conversion> degrees = Degrees(report.data.unit);
   const Conversion shown = degrees.value_or(Conversion{report.data.unit});
   const Listed listed = report.fits.empty() ? kAlone : kBesideAFit;
   const std::size_t count = forms.table.peaks.size();
   const std::size_t left_out = count - std::min(count, listed.first + listed.last);
-  std::vector<Cells> rows;
+  Table table{PeakColumns(forms.table, std::string(shown.unit)), {}};
+  if (left_out > 0) {
+    table.rows_before = listed.first;
+    table.left_out = "... " + std::to_string(left_out) + " more: --series";
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (left_out > 0 && i == listed.first) i += left_out;
-    rows.push_back(PeakCells(forms, i, shown.factor));
+    table.rows.push_back(PeakCells(forms, i, shown.factor));
   }
-  const std::string table = AlignedTable(PeakColumns(forms.table, std::string(shown.unit)), rows, kTextIndent);
-  const std::string more = "... " + std::to_string(left_out) + " more: --series";
-  return Heading("Turning points") + (left_out > 0 ? WithLineAfter(1 + listed.first, more, table) : table);
+  const std::string remark = "ζ: damping ratio of a pair, and over n periods";
+  return {"Turning points", remark, {std::move(table)}};
 }
 
 }  // namespace
 
-std::string SamplingText(const RunReport& report) {
-  if (!report.sampling) return "";
+Sections SamplingSections(const RunReport& report) {
+  if (!report.sampling) return {};
   const Sampling& sampling = *report.sampling;
-  std::vector<Cells> rows = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
-                             {"gaps", GapsText(sampling)}};
-  if (sampling.frequency_hz > 0) rows.push_back({"swing", SwingText(sampling)});
-  if (sampling.start_counts > 0) rows.push_back({"levels", LevelsText(sampling)});
+  Facts facts = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
+                 {"gaps", GapsText(sampling)}};
+  if (sampling.frequency_hz > 0) facts.push_back({"swing", SwingText(sampling)});
+  if (sampling.start_counts > 0) facts.push_back({"levels", LevelsText(sampling)});
   if (sampling.saturated > 0) {
-    rows.push_back({"saturated", std::to_string(sampling.saturated) + " readings at an end of the sensor's range"});
+    facts.push_back({"saturated", std::to_string(sampling.saturated) + " readings at an end of the sensor's range"});
   }
-  return Heading("Sampling") + Facts(rows);
+  return {{"Sampling", "", {std::move(facts)}}};
 }
 
-std::string ClosedFormText(const RunReport& report) {
+Sections ClosedFormSections(const RunReport& report) {
+  Section forms{"Closed forms"};
   if (!report.closed_forms) {
-    if (report.no_closed_forms.empty()) return "";
-    return Heading("Closed forms") + Prose("There are none: " + report.no_closed_forms + ".");
+    if (report.no_closed_forms.empty()) return {};
+    return {forms.Say("There are none: " + report.no_closed_forms + ".")};
   }
-  std::string text = Heading("Closed forms") + LinearText(*report.closed_forms, report.rig) + DecrementText(report);
-  if (!report.closed_forms->envelope.empty()) text += LongFact("envelope", report.closed_forms->envelope);
+  AddLinear(*report.closed_forms, report.rig, forms);
+  AddDecrement(report, forms);
+  if (!report.closed_forms->envelope.empty()) forms.Add(Facts{{"envelope", report.closed_forms->envelope}});
+  Sections sections = {std::move(forms)};
   for (std::size_t i = 0; i < report.checks.size(); ++i) {
+    if (!report.IsShownInFull(i)) continue;
     const bool several = report.checks.size() > 1;
-    text += CheckText(report.checks[i], several ? " of " + std::string(report.fits[i].model.name) : "");
+    sections.push_back(CheckSection(report.checks[i], several ? " of " + std::string(report.fits[i].model.name) : ""));
   }
-  return text + TurningPointText(report);
+  sections.push_back(TurningPointSection(report));
+  return sections;
 }
 
 }  // namespace pendulum

@@ -7,6 +7,8 @@
 
 #include "pendulum/base/version.h"
 #include "pendulum/report/closed_form_json.h"
+#include "pendulum/report/comparison_json.h"
+#include "pendulum/report/equation.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -156,23 +158,27 @@ Json IdentifiabilityJson(const FitReport& fit) {
 }
 
 /// What a failed fit does not have is null; its `reason` says why.
-Json FitJson(const FitReport& fit, const DataSummary& data, const ClosedFormCheck* check) {
+Json FitJson(const RunReport& report, std::size_t index) {
+  const FitReport& fit = report.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
   json["model"] = fit.model.name;
   json["status"] = TerminationName(fit.termination);
   json["reason"] = fit.reason;
+  json["equation"] = failed ? Json(nullptr) : Json(FittedEquation(fit, report.rig));
   json["parameters"] = ParametersJson(fit);
   json["derived"] = DerivedJson(fit);
   json["covariance"] = CovarianceJson(fit);
   json["correlation"] = CorrelationJson(fit);
-  json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, data);
+  json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, report.data);
   json["systematic_covariance"] = SystematicJson(fit);
   json["std_error_method"] = TextOrNull(fit.std_error_method);
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit);
   json["statistics"] = failed ? Json(nullptr) : StatisticsJson(fit);
-  json["closed_form"] = CheckJson(check);
+  json["closed_form"] = CheckJson(report.CheckOf(index));
+  json["constancy"] = ConstancyJson(report.ConstancyOf(index));
+  if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, report.ConstancyOf(index));
   json["solver"] = {{"iterations", fit.solver.iterations},
                     {"evaluations", fit.solver.evaluations},
                     {"termination", fit.solver.termination}};
@@ -192,7 +198,7 @@ Json WarningsJson(const RunReport& report) {
 nlohmann::ordered_json ToJson(const RunReport& report) {
   Json fits = Json::array();
   for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    fits.push_back(FitJson(report.fits[i], report.data, report.CheckOf(i)));
+    fits.push_back(FitJson(report, i));
   }
   NumberObject json;
   json.Set("schema_version", Json(kSchemaVersion))
@@ -201,6 +207,7 @@ nlohmann::ordered_json ToJson(const RunReport& report) {
       .Set("rig", report.rig ? report.rig->source : Json(nullptr))
       .Set("calibration", report.calibration)
       .Set("fits", std::move(fits))
+      .Set("comparison", ComparisonJson(report))
       .Set("closed_forms", ClosedFormsJson(report))
       .Set("warnings", WarningsJson(report));
   if (!report.closed_forms) json.Because(report.no_closed_forms);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace pendulum {
 namespace {
@@ -40,11 +41,59 @@ std::string Line(const std::vector<Column>& columns, const std::vector<int>& wid
   return line + "\n";
 }
 
+/// Columns beside the first one that are shown together.
+using Group = std::vector<std::size_t>;
+
+/// Fills lines of `width` with columns, each group beside the first column.
+std::vector<Group> GroupsWithin(const std::vector<Column>& columns, const std::vector<int>& widths, int indent,
+                                int width) {
+  std::vector<Group> groups(1);
+  const int first = indent + widths[0];
+  int used = first;
+  for (std::size_t i = 1; i < columns.size();) {
+    std::size_t end = i;
+    int needed = 0;
+    do {
+      if (widths[end] > 0) needed += columns[end].gap + widths[end];
+      ++end;
+    } while (end < columns.size() && columns[end].gap == 1);
+    if (used + needed > width && !groups.back().empty() && used > first) {
+      groups.emplace_back();
+      used = first;
+    }
+    used += needed;
+    for (; i < end; ++i) groups.back().push_back(i);
+  }
+  return groups;
+}
+
+/// The first column and a group.
+std::string GroupTable(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
+                       const Group& group, bool keep_empty, int indent) {
+  std::vector<Column> shown = {columns[0]};
+  for (const std::size_t i : group) shown.push_back(columns[i]);
+  std::vector<std::vector<std::string>> shown_rows;
+  for (const auto& row : rows) {
+    std::vector<std::string> cells = {row[0]};
+    for (const std::size_t i : group) cells.push_back(row[i]);
+    const bool has_text = std::any_of(cells.begin() + 1, cells.end(), [](const auto& cell) { return !cell.empty(); });
+    if (has_text || keep_empty) shown_rows.push_back(std::move(cells));
+  }
+  return AlignedTable(shown, shown_rows, indent);
+}
+
 }  // namespace
 
 int DisplayWidth(std::string_view text) {
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-  return static_cast<int>(text.size()) - static_cast<int>(std::count_if(text.begin(), text.end(), continues));
+  int width = 0;
+  bool in_sequence = false;
+  for (const char c : text) {
+    const bool continues = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+    if (c == '\x1B') in_sequence = true;
+    if (!in_sequence && !continues) ++width;
+    if (c == 'm') in_sequence = false;
+  }
+  return width;
 }
 
 std::string AlignedTable(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
@@ -56,6 +105,18 @@ std::string AlignedTable(const std::vector<Column>& columns, const std::vector<s
   std::string table = Line(columns, widths, headers, indent);
   if (table == "\n") table.clear();
   for (const auto& row : rows) table += Line(columns, widths, row, indent);
+  return table;
+}
+
+std::string TableWithin(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
+                        int indent, int width) {
+  if (columns.empty()) return "";
+  const std::vector<Group> groups = GroupsWithin(columns, ColumnWidths(columns, rows), indent, width);
+  std::string table;
+  for (const Group& group : groups) {
+    const bool is_first = table.empty();
+    table += (is_first ? "" : "\n") + GroupTable(columns, rows, group, is_first, indent);
+  }
   return table;
 }
 
@@ -76,6 +137,13 @@ std::string Paragraph(std::string_view text, std::string_view first, int width) 
     begin = text.find_first_not_of(' ', end);
   }
   return paragraph + line + "\n";
+}
+
+std::string WithBlanks(std::string text) {
+  for (std::size_t at = text.find(kNoBreak); at != std::string::npos; at = text.find(kNoBreak, at)) {
+    text.replace(at, kNoBreak.size(), " ");
+  }
+  return text;
 }
 
 std::string KeySuffix(std::string_view unit) {

@@ -34,15 +34,30 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   return data;
 }
 
-DataSummary SummarizeData(const SwingFit& fit, const ChosenSwings& swings, int release, Eigen::Index samples) {
-  DataSummary data = SummarizeData(fit.used, fit.used);
+DataSummary SummarizeData(const Recording& used, const FreeSwing& swing, const ChosenSwings& swings, int release,
+                          Eigen::Index samples) {
+  DataSummary data = SummarizeData(used, used);
   data.samples = samples;
-  data.begins = fit.swing.begins;
-  data.ends = fit.swing.ends;
-  if (fit.swing.from_given && fit.swing.to_given) return data;
-  for (const FreeSwing& swing : swings.found) data.releases.push_back({swing.from, swing.to});
+  data.begins = swing.begins;
+  data.ends = swing.ends;
+  if (swing.from_given && swing.to_given) return data;
+  for (const FreeSwing& found : swings.found) data.releases.push_back({found.from, found.to});
   data.release = release;
   return data;
+}
+
+std::size_t RunReport::MainFit() const {
+  const auto index_of = [&](const auto& is_it) {
+    return static_cast<std::size_t>(std::ranges::find_if(fits, is_it) - fits.begin());
+  };
+  if (comparison && !comparison->recommended.empty()) {
+    const std::size_t recommended =
+        index_of([&](const FitReport& fit) { return fit.model.name == comparison->recommended; });
+    if (recommended < fits.size()) return recommended;
+  }
+  const std::size_t converged =
+      index_of([](const FitReport& fit) { return fit.termination == Termination::kConverged; });
+  return converged < fits.size() ? converged : 0;
 }
 
 std::vector<Warning> AllWarnings(const RunReport& report) {

@@ -20,11 +20,23 @@ void AppendNumber(double value, std::string& text) {
   if (std::isfinite(value)) text += NumberText(value);
 }
 
+/// To seven digits, which is more than any sensor has.
+double Shortened(double value) {
+  constexpr double kDigits = 1e6;
+  if (!std::isfinite(value) || value == 0) return value;
+  const double scale = kDigits / std::pow(10.0, std::floor(std::log10(std::abs(value))));
+  const double shortened = std::round(value * scale) / scale;
+  return std::isfinite(shortened) ? shortened : value;
+}
+
 /// Numbers of N samples; null where they are of another size.
-Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples) {
+Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDetail detail) {
   if (values.size() != samples) return nullptr;
   Json json = Json::array();
-  for (const double value : values) json.push_back(NumberOrNull(value));
+  json.get_ref<Json::array_t&>().reserve(static_cast<std::size_t>(samples));
+  for (const double value : values) {
+    json.push_back(NumberOrNull(detail == SeriesDetail::kAll ? value : Shortened(value)));
+  }
   return json;
 }
 
@@ -67,14 +79,31 @@ Json PeaksJson(const RunReport& report, const std::string& unit) {
   return json;
 }
 
-Json ModelJson(const FitReport& fit, const ClosedFormCheck* check, Eigen::Index samples) {
-  const TextbookOverlay none;
-  const TextbookOverlay& overlay = check != nullptr ? check->overlay : none;
+Json ModelJson(const FitReport& fit, const TextbookOverlay& overlay, Eigen::Index samples, SeriesDetail detail) {
   Json json;
-  json["fitted"] = SamplesJson(fit.fitted, samples);
-  json["residual"] = SamplesJson(fit.residual, samples);
-  json["linear_closed_form"] = SamplesJson(overlay.linear, samples);
-  json["nonlinear_closed_form"] = SamplesJson(overlay.nonlinear, samples);
+  json["fitted"] = SamplesJson(fit.fitted, samples, detail);
+  json["residual"] = detail == SeriesDetail::kAll ? SamplesJson(fit.residual, samples, detail) : Json(nullptr);
+  json["linear_closed_form"] = SamplesJson(overlay.linear, samples, detail);
+  json["nonlinear_closed_form"] = SamplesJson(overlay.nonlinear, samples, detail);
+  return json;
+}
+
+Json ProfileJson(const ProfileCurve& curve) {
+  Json json;
+  for (const auto& [key, values] : {std::pair("value", &curve.value), std::pair("statistic", &curve.statistic)}) {
+    json[key] = Json::array();
+    for (const double value : *values) json[key].push_back(NumberOrNull(value));
+  }
+  json["threshold"] = NumberOrNull(curve.threshold);
+  return json;
+}
+
+/// By model and parameter; null where no fit has a profile.
+Json ProfilesJson(const RunReport& report) {
+  Json json;
+  for (const FitReport& fit : report.fits) {
+    for (const ProfileCurve& curve : fit.profiles) json[std::string(fit.model.name)][curve.name] = ProfileJson(curve);
+  }
   return json;
 }
 
@@ -103,19 +132,22 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
   return text;
 }
 
-nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report) {
+nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report, SeriesDetail detail) {
   const std::string unit = used.value_unit();
   Json json;
-  json["time_s"] = SamplesJson(used.time, used.size());
-  json["measured"] = SamplesJson(used.value, used.size());
+  json["time_s"] = SamplesJson(used.time, used.size(), SeriesDetail::kAll);
+  json["measured"] = SamplesJson(used.value, used.size(), detail);
   json["unit"] = unit;
   json["extrema"] = ExtremaJson(used);
   json["peaks"] = PeaksJson(report, unit);
-  json["profiles"] = nullptr;
+  json["profiles"] = ProfilesJson(report);
   json["models"] = Json::object();
   for (std::size_t i = 0; i < report.fits.size(); ++i) {
     const FitReport& fit = report.fits[i];
-    json["models"][std::string(fit.model.name)] = ModelJson(fit, report.CheckOf(i), used.size());
+    const ClosedFormCheck* const check = report.CheckOf(i);
+    const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || i == report.MainFit());
+    json["models"][std::string(fit.model.name)] =
+        ModelJson(fit, has_overlay ? check->overlay : TextbookOverlay(), used.size(), detail);
   }
   return json;
 }

@@ -14,8 +14,16 @@ std::string Heading(const std::string& title) { return "[[" + title + "]]\n"; }
 
 std::string Prose(std::string_view text) { return Paragraph(text, std::string(kTextIndent, ' '), kTextWidth); }
 
-std::string Facts(const std::vector<std::vector<std::string>>& rows) {
-  return AlignedTable({{""}, {""}}, rows, kTextIndent);
+std::string Printable(std::string_view text) {
+  std::string printable;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool second =
+        byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;  // U+0080
+    printable += byte < 0x20 || byte == 0x7F || second ? '?' : text[i];
+    if (second) ++i;
+  }
+  return printable;
 }
 
 std::optional<Conversion> Degrees(std::string_view unit) {

@@ -7,18 +7,25 @@
 #include <vector>
 
 #include <gflags/gflags.h>
+#include <unistd.h>
 
 #include "pendulum/fitting/fit.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/report/json.h"
+#include "pendulum/report/markdown.h"
+#include "pendulum/report/page.h"
 #include "pendulum/report/series.h"
+#include "pendulum/report/terminal_plot.h"
 #include "pendulum/report/text.h"
 #include "tools/fit_pendulum_options.h"
 #include "tools/fit_runs.h"
+#include "tools/gnuplot.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
+#include "tools/terminal.h"
 
-const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() + "; default coulomb.";
+const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() +
+                               ", several of them between commas to compare, or all; default coulomb.";
 
 DEFINE_string(data, "",
               "Recording (CSV), or several between commas; the header names the columns and their units, such as "
@@ -62,6 +69,10 @@ DEFINE_string(json, "", "Where to write the result as JSON; - is standard output
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
 DEFINE_string(series, "",
               "Where to write samples, turning points and models as JSON; - is standard output; default nowhere.");
+DEFINE_string(report, "",
+              "Where to write the result as a page (HTML, one file); - is standard output; default nowhere.");
+DEFINE_string(markdown, "", "Where to write the result as Markdown; - is standard output; default nowhere.");
+DEFINE_bool(terminal_plot, false, "Draws recording, fit and residuals in the terminal, by gnuplot; default off.");
 
 namespace pendulum {
 namespace {
@@ -95,6 +106,9 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.json = FLAGS_json;
   flags.residuals = FLAGS_residuals;
   flags.series = FLAGS_series;
+  flags.report = FLAGS_report;
+  flags.markdown = FLAGS_markdown;
+  flags.terminal_plot = FLAGS_terminal_plot;
   flags.closed_form_only = FLAGS_closed_form_only;
   flags.calibration = FLAGS_calibration;
   flags.time_column = FLAGS_time_column;
@@ -112,6 +126,22 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
+/// The command as a shell would take it again.
+std::string CommandLine() {
+  std::string command;
+  for (const std::string& word : gflags::GetArgvs()) {
+    const bool plain =
+        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%") ==
+        std::string::npos;
+    std::string quoted = word;
+    for (std::size_t at = quoted.find('\''); at != std::string::npos; at = quoted.find('\'', at + 4)) {
+      quoted.replace(at, 1, "'\\''");
+    }
+    command += (command.empty() ? "" : " ") + (plain && !word.empty() ? word : "'" + quoted + "'");
+  }
+  return command;
+}
+
 /// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
 void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index, int count,
                  std::vector<Output>& outputs) {
@@ -119,18 +149,34 @@ void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index
   if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(report)});
   if (!options.residuals.empty()) {
     const TextbookOverlay none;
-    const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks.front().overlay;
+    const std::size_t main = report.MainFit();
+    const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks[main].overlay;
     outputs.push_back(
-        {NumberedPath(options.residuals, index, count), ToResidualCsv(run.used, report.fits.front(), overlay)});
+        {NumberedPath(options.residuals, index, count), ToResidualCsv(run.used, report.fits[main], overlay)});
   }
   if (!options.series.empty()) {
     outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run.used, report)});
   }
+  if (!options.report.empty()) {
+    outputs.push_back({NumberedPath(options.report, index, count), ToHtml(run.used, report, CommandLine())});
+  }
+  if (!options.markdown.empty()) {
+    outputs.push_back({NumberedPath(options.markdown, index, count), ToMarkdown(report)});
+  }
+}
+
+/// The result for people, with a picture when asked for.
+Result<std::string> TextOf(const FitPendulumOptions& options, const FitRun& run) {
+  const std::string text = ToText(run.report, {.colour = WantsColour(STDOUT_FILENO)});
+  if (!options.terminal_plot) return text;
+  const auto drawn = RunGnuplot(TerminalPlot(run.used, run.report.fits[run.report.MainFit()]));
+  if (!drawn) return tl::unexpected(drawn.error());
+  return PictureText(*drawn) + "\n" + text;
 }
 
 /// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
 /// not be fitted is said.
-std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<Result<FitRun>>& runs) {
+Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std::vector<Result<FitRun>>& runs) {
   const bool data_on_stdout =
       std::ranges::any_of(options.Outputs(), [](const NamedFile& output) { return IsStandardOutput(output.path); });
   const auto count = static_cast<int>(runs.size());
@@ -143,23 +189,28 @@ std::vector<Output> Render(const FitPendulumOptions& options, const std::vector<
       continue;
     }
     RenderFiles(options, *run, i, count, outputs);
-    text += (text.empty() ? "" : "\n") + ToText(run->report);
+    const auto part = TextOf(options, *run);
+    if (!part) return tl::unexpected(part.error());
+    text += (text.empty() ? "" : "\n") + *part;
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(run->report)) Say(kName, "warning: " + warning.message);
     }
     for (const FitReport& fit : run->report.fits) {
       if (fit.termination == Termination::kConverged) continue;
-      Say(kName, std::string(TerminationName(fit.termination)) + ": " + fit.reason);
+      const std::string model = options.models.size() > 1 ? std::string(fit.model.name) + ": " : "";
+      Say(kName, model + std::string(TerminationName(fit.termination)) + ": " + fit.reason);
     }
   }
   if (!data_on_stdout && !text.empty()) outputs.push_back({"-", text});
   return outputs;
 }
 
-/// The exit code of a run: that of its fit; closed forms are there, or the run is an error.
+/// The exit code of a run: that of its fit, of several the recommended one; closed forms are there, or the run is an
+/// error.
 int ExitCodeOf(const Result<FitRun>& run) {
   if (!run) return ExitCode(run.error().code);
-  return run->report.fits.empty() ? 0 : ExitCode(run->report.fits.front().termination);
+  const RunReport& report = run->report;
+  return report.fits.empty() ? 0 : ExitCode(report.fits[report.MainFit()].termination);
 }
 
 /// Now and then how far the bootstrap is.
@@ -173,12 +224,15 @@ Result<int> Work(const std::vector<std::string>& positional) {
   options->fit.progress = SayProgress;
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
-  auto checked = CheckOutputs(options->Outputs(), setup->inputs);
+  auto checked = options->terminal_plot ? CheckGnuplot() : Result<void>();
+  if (checked) checked = CheckOutputs(options->Outputs(), setup->inputs);
   if (checked) checked = CheckNumberedOutputs(*options, *setup, setup->paths.size());
   if (!checked) return tl::unexpected(checked.error());
   const auto runs = FitAll(*options, *setup);
   if (!runs) return tl::unexpected(runs.error());
-  if (const auto written = WriteOutputs(Render(*options, *runs)); !written) return tl::unexpected(written.error());
+  const auto outputs = Render(*options, *runs);
+  if (!outputs) return tl::unexpected(outputs.error());
+  if (const auto written = WriteOutputs(*outputs); !written) return tl::unexpected(written.error());
   int worst = 0;
   for (const Result<FitRun>& run : *runs) worst = std::max(worst, ExitCodeOf(run));
   return worst;

@@ -44,13 +44,25 @@ Result<int> ParseRelease(const FitPendulumFlags& flags) {
   return BadFlag("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
-Result<MotionModel> ParseModel(const std::string& model) {
-  if (model.find(',') != std::string::npos || model == "all") {
-    return BadFlag("--model '" + model + "' asks for several models; it takes one of " + MotionModelNames());
+/// One model, several between commas, or all: that of every friction law.
+Result<std::vector<MotionModel>> ParseModels(const std::string& names) {
+  std::vector<MotionModel> models;
+  if (names == "all") {
+    models = MotionModels();
+    std::erase_if(models, [](const MotionModel& model) { return model.name != model.friction; });
+    return models;
   }
-  auto found = FindMotionModel(model);
-  if (!found) return BadFlag("--model: " + found.error().message);
-  return found;
+  std::vector<std::string> parts = Split(names, ',');
+  if (parts.empty() || names.ends_with(',')) parts.emplace_back();
+  for (const std::string& name : parts) {
+    const auto found = FindMotionModel(name);
+    if (!found) return BadFlag("--model: " + found.error().message);
+    if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
+      return BadFlag("--model '" + names + "' names " + name + " twice");
+    }
+    models.push_back(*found);
+  }
+  return models;
 }
 
 Result<StartChoice> ParseStart(const std::string& start) {
@@ -125,9 +137,14 @@ Result<void> ParseNoise(const FitPendulumFlags& flags, FitOptions& options) {
   return {};
 }
 
-/// Every parameter that a flag may name, whatever the start and the sensor turn out to be.
-std::vector<ParameterInfo> NameableParameters(const MotionModel& model) {
-  std::vector<ParameterInfo> infos = PhysicalParameters(model);
+/// Every parameter that a flag may name, whatever the start and the sensor turn out to be: that of any of the models.
+std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& models) {
+  std::vector<ParameterInfo> infos;
+  for (const MotionModel& model : models) {
+    for (const ParameterInfo& info : PhysicalParameters(model)) {
+      if (std::ranges::find(infos, info.name, &ParameterInfo::name) == infos.end()) infos.push_back(info);
+    }
+  }
   infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias,
                              kZeroDrift, kBiasDrift});
   return infos;
@@ -168,21 +185,20 @@ Result<void> CheckContradictions(const FitOptions& options) {
   return {};
 }
 
-Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options) {
-  const auto model = ParseModel(flags.model);
-  if (!model) return tl::unexpected(model.error());
+Result<void> ParseFitOptions(const FitPendulumFlags& flags, const std::vector<MotionModel>& models,
+                             FitOptions& options) {
   const auto start = ParseStart(flags.start);
   if (!start) return tl::unexpected(start.error());
-  const std::vector<ParameterInfo> parameters = NameableParameters(*model);
-  auto fixed = ParseSettings("--fix", flags.fix, model->name, parameters);
+  const std::vector<ParameterInfo> parameters = NameableParameters(models);
+  auto fixed = ParseSettings("--fix", flags.fix, flags.model, parameters);
   if (!fixed) return tl::unexpected(fixed.error());
-  auto initial = ParseSettings("--init", flags.init, model->name, parameters);
+  auto initial = ParseSettings("--init", flags.init, flags.model, parameters);
   if (!initial) return tl::unexpected(initial.error());
-  auto bounds = ParseRanges("--bounds", flags.bounds, model->name, parameters);
+  auto bounds = ParseRanges("--bounds", flags.bounds, flags.model, parameters);
   if (!bounds) return tl::unexpected(bounds.error());
-  auto priors = ParsePriors("--prior", flags.prior, model->name, parameters);
+  auto priors = ParsePriors("--prior", flags.prior, flags.model, parameters);
   if (!priors) return tl::unexpected(priors.error());
-  options.model = model->name;
+  options.model = models.front().name;
   options.start = *start;
   options.fixed = *std::move(fixed);
   options.initial = *std::move(initial);
@@ -196,7 +212,7 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, FitOptions& options)
 Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
   const FitPendulumFlags none;
-  const std::array<Word<bool>, 11> of_a_fit = {{{"--residuals", flags.residuals != none.residuals},
+  const std::array<Word<bool>, 12> of_a_fit = {{{"--residuals", flags.residuals != none.residuals},
                                                 {"--start", flags.start != none.start},
                                                 {"--fix", flags.fix != none.fix},
                                                 {"--init", flags.init != none.init},
@@ -206,7 +222,8 @@ Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
                                                 {"--loss", flags.loss != none.loss},
                                                 {"--interval", flags.interval != none.interval},
                                                 {"--seed", flags.seed != none.seed},
-                                                {"--threads", flags.threads != none.threads}}};
+                                                {"--threads", flags.threads != none.threads},
+                                                {"--terminal_plot", flags.terminal_plot}}};
   for (const auto& [flag, given] : of_a_fit) {
     if (!given) continue;
     return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
@@ -276,6 +293,8 @@ std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
   if (!json.empty()) outputs.push_back({"--json", NumberedPath(json, index, count)});
   if (!residuals.empty()) outputs.push_back({"--residuals", NumberedPath(residuals, index, count)});
   if (!series.empty()) outputs.push_back({"--series", NumberedPath(series, index, count)});
+  if (!report.empty()) outputs.push_back({"--report", NumberedPath(report, index, count)});
+  if (!markdown.empty()) outputs.push_back({"--markdown", NumberedPath(markdown, index, count)});
   return outputs;
 }
 
@@ -294,7 +313,10 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   FitPendulumOptions options;
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
-  if (const auto parsed = ParseFitOptions(flags, options.fit); !parsed) return tl::unexpected(parsed.error());
+  const auto models = ParseModels(flags.model);
+  if (!models) return tl::unexpected(models.error());
+  for (const MotionModel& model : *models) options.models.emplace_back(model.name);
+  if (const auto parsed = ParseFitOptions(flags, *models, options.fit); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());
   const auto release = ParseRelease(flags);
   if (!release) return tl::unexpected(release.error());
@@ -307,6 +329,9 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.json = flags.json;
   options.residuals = flags.residuals;
   options.series = flags.series;
+  options.report = flags.report;
+  options.markdown = flags.markdown;
+  options.terminal_plot = flags.terminal_plot;
   options.closed_form_only = flags.closed_form_only;
   return options;
 }

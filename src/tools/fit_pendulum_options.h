@@ -28,6 +28,9 @@ struct FitPendulumFlags {
   std::string json;
   std::string residuals;
   std::string series;
+  std::string report;
+  std::string markdown;
+  bool terminal_plot = false;
   bool closed_form_only = false;
   std::string calibration;
   std::string time_column;
@@ -55,8 +58,12 @@ struct FitPendulumOptions {
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.
   std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
   std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
+  std::string report;     ///< Path of the page that shows all of it; "-" is standard output; empty for none.
+  std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
+  bool terminal_plot = false;     ///< Draws the recording on standard output.
   bool closed_form_only = false;  ///< No fit is made; of `fit`, the model counts.
-  FitOptions fit;
+  std::vector<std::string> models;  ///< In the order asked for; several are compared.
+  FitOptions fit;                   ///< Its model is the first of them.
 
   /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;

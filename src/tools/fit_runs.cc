@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/analysis/constancy.h"
+#include "pendulum/analysis/fit_models.h"
+#include "pendulum/analysis/model_comparison.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
-#include "pendulum/fitting/fit_swing.h"
 #include "pendulum/fitting/undersampled.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/data_list.h"
@@ -61,11 +63,11 @@ tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path,
 }
 
 /// The samples of a swing, without a fit.
-Result<SwingFit> TakeSwing(Recording recording, const FreeSwing& swing) {
+Result<FittedModels> TakeSwing(Recording recording, const FreeSwing& swing) {
   auto used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
-  return SwingFit{*std::move(used), swing, {}};
+  return FittedModels{*std::move(used), swing, {}};
 }
 
 /// The model whose closed forms are asked for. An angle in an unknown unit has only those of small angles.
@@ -80,14 +82,9 @@ MotionModel ClosedFormModel(const FitPendulumOptions& options, const Recording& 
   return linear;
 }
 
-/// Puts the closed forms beside the fits of a run.
-void AddClosedForms(const MotionModel& model, bool undersampled, FitRun& run) {
+/// Puts the closed forms with that model's friction into the report.
+void AddClosedForms(const MotionModel& model, FitRun& run) {
   RunReport& report = run.report;
-  if (undersampled) {
-    report.no_closed_forms =
-        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
-    return;
-  }
   auto forms = EstimateClosedForms(run.used, model);
   if (!forms) {
     report.no_closed_forms = forms.error().message;
@@ -95,11 +92,30 @@ void AddClosedForms(const MotionModel& model, bool undersampled, FitRun& run) {
   }
   report.closed_forms = *std::move(forms);
   report.closed_forms_model = model.name;
-  const bool failed =
-      std::ranges::any_of(report.fits, [](const FitReport& fit) { return fit.termination == Termination::kFailed; });
-  if (failed) return;
+}
+
+/// Checks every fit against the closed forms with its own friction; a failed one has an empty check.
+void AddChecks(FitRun& run) {
+  RunReport& report = run.report;
+  if (!report.closed_forms) return;
   for (const FitReport& fit : report.fits) {
-    report.checks.push_back(CheckClosedForms(run.used, *report.closed_forms, fit, report.rig));
+    report.checks.emplace_back();
+    if (fit.termination == Termination::kFailed) continue;
+    const bool same = fit.model.name == report.closed_forms_model;
+    const auto own = same ? Result<ClosedForms>(*report.closed_forms) : EstimateClosedForms(run.used, fit.model);
+    if (own) report.checks.back() = CheckClosedForms(run.used, *own, fit, report.rig);
+  }
+}
+
+/// What is concluded from the fits together and from each.
+void AddAnalysis(const FitPendulumOptions& options, const FittedModels& fitted, FitRun& run) {
+  RunReport& report = run.report;
+  FitOptions fit_options = options.fit;
+  fit_options.rig = report.rig;
+  if (fitted.fits.size() > 1) report.comparison = CompareModels(fitted, fit_options);
+  for (const FitReport& fit : fitted.fits) {
+    const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
+    report.constancy.push_back(TestConstancy(fitted.used, fit, own));
   }
 }
 
@@ -114,7 +130,8 @@ void AddSampling(const FreeSwing& swing, FitRun& run) {
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
   std::optional<double> expected = ExpectedFrequency(report.rig);
   if (expected) *expected *= clock_scale;
-  const bool told = swing.undersampled && !report.fits.empty() && ExitCode(report.fits.front().termination) == 0;
+  const bool told =
+      swing.undersampled && !report.fits.empty() && ExitCode(report.fits[report.MainFit()].termination) == 0;
   if (expected && told) expected = 0.5 / swing.half_period;
   report.sampling = DescribeSampling(run.used, seen, expected);
   if (swing.undersampled) return;
@@ -122,21 +139,25 @@ void AddSampling(const FreeSwing& swing, FitRun& run) {
 }
 
 /// What is reported of one swing. kFailedPrecondition: there are neither fits nor closed forms.
-Result<FitRun> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, SwingFit swing) {
+Result<FitRun> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, FittedModels fitted) {
   FitRun run{one.common, {}};
-  run.report.data = SummarizeData(swing, one.swings, release, one.samples);
-  run.used = std::move(swing.used);
-  MotionModel model = swing.fit.model;
-  if (options.closed_form_only) {
-    model = ClosedFormModel(options, run.used, run.report);
+  run.report.data = SummarizeData(fitted.used, fitted.swing, one.swings, release, one.samples);
+  if (!options.closed_form_only) AddAnalysis(options, fitted, run);
+  run.used = std::move(fitted.used);
+  run.report.fits = std::move(fitted.fits);
+  if (fitted.swing.undersampled) {
+    run.report.no_closed_forms =
+        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+  } else if (options.closed_form_only) {
+    AddClosedForms(ClosedFormModel(options, run.used, run.report), run);
   } else {
-    run.report.fits.push_back(std::move(swing.fit));
+    AddClosedForms(run.report.fits[run.report.MainFit()].model, run);
+    AddChecks(run);
   }
-  AddClosedForms(model, swing.swing.undersampled, run);
   if (options.closed_form_only && !run.report.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, run.report.no_closed_forms);
   }
-  AddSampling(swing.swing, run);
+  AddSampling(fitted.swing, run);
   return run;
 }
 
@@ -151,9 +172,9 @@ void FitOne(const FitPendulumOptions& options, const std::string& path, ReadSwin
     const bool last = release == one.swings.chosen.back();
     Recording recording = last ? std::exchange(one.recording, {}) : one.recording;
     const FreeSwing& found = one.swings.found[static_cast<std::size_t>(release - 1)];
-    auto swing = options.closed_form_only ? TakeSwing(std::move(recording), found)
-                                          : FitSwing(std::move(recording), found, fit_options);
-    Result<FitRun> run = swing ? MakeRun(options, one, release, *std::move(swing)) : tl::unexpected(swing.error());
+    auto fitted = options.closed_form_only ? TakeSwing(std::move(recording), found)
+                                           : FitModels(std::move(recording), found, fit_options, options.models);
+    Result<FitRun> run = fitted ? MakeRun(options, one, release, *std::move(fitted)) : tl::unexpected(fitted.error());
     if (!run && (among_others || several)) run = ErrorAmong(run.error(), path, several ? release : 0);
     runs.push_back(std::move(run));
   }

@@ -15,6 +15,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
+#include "pendulum/model/nesting.h"
 #include "pendulum/trajectory/tolerance.h"
 
 namespace pendulum {
@@ -90,6 +91,15 @@ Result<void> CheckModel(const SyntheticOptions& options) {
     if (Result<void> checked = CheckNumber(rule); !checked) return checked;
     if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
     if (rule.value > infos[i].upper) return BadOption(rule.name, rule.value, "at most " + NumberText(infos[i].upper));
+  }
+  if (const auto [larger, smaller] = OrderOf(options.model); larger >= 0) {
+    const double least = options.parameters[static_cast<std::size_t>(smaller)];
+    const auto at = static_cast<std::size_t>(larger);
+    if (options.parameters[at] < least) {
+      return BadOption(
+          infos[at].name, options.parameters[at],
+          "at least " + std::string(infos[static_cast<std::size_t>(smaller)].name) + ", which is " + NumberText(least));
+    }
   }
   return CheckNumber({infos[0].name, options.parameters[0], NumberRule::Domain::kPositive});
 }

@@ -122,7 +122,7 @@ Result<std::string> FitFile(const std::filesystem::path& path, const FitOptions&
   Result<SwingFit> fit = FitSwing(repaired, swings->found[static_cast<std::size_t>(release - 1)], options);
   if (!fit) return tl::unexpected(fit.error());
   report = {};
-  report.data = SummarizeData(*fit, *swings, release, repaired.size());
+  report.data = SummarizeData(fit->used, fit->swing, *swings, release, repaired.size());
   report.rig = options.rig;
   report.warnings = repaired.warnings;
   report.fits.push_back(std::move(fit->fit));

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/model/nesting.h"
 #include "pendulum/recording/window.h"
 #include "pendulum/trajectory/synthetic.h"
 
@@ -103,6 +104,10 @@ EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int
     const auto found = std::find_if(known.begin(), known.end(), named);
     if (found == known.end()) continue;
     point.parameters[i] = kTruth[found - known.begin()] / point.problem.si_per_internal[i];
+  }
+  if (const OrderedPair order = OrderOf(point.problem.model); order.larger >= 0) {
+    point.parameters[static_cast<std::size_t>(order.larger)] =
+        2 * point.parameters[static_cast<std::size_t>(order.smaller)];
   }
   return point;
 }

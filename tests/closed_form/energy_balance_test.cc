@@ -19,7 +19,7 @@ using testing::Ge;
 
 std::vector<double> FrictionOf(const Recording& recording, std::string_view model) {
   const HalfSwingTable table = Must(TabulateHalfSwings(recording));
-  return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, NaturalFrequency(table)));
+  return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, NaturalFrequency(table)).front());
 }
 
 /// Amplitudes of a swing that loses energy to dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
@@ -40,7 +40,7 @@ HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
 TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
   for (const double amplitude : {0.3, 1.5, 2.6}) {
     const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
-    const std::vector<double> friction = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5));
+    const std::vector<double> friction = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
     EXPECT_NEAR(friction[0], 0, 1e-8) << amplitude;
     EXPECT_NEAR(friction[1], 0.01, 1e-8) << amplitude;
   }
@@ -53,7 +53,7 @@ TEST(FrictionFrom, OfSmallViscousSwingsIsTheLogDecrement) {
   for (int i = 0; i < 10; ++i) {
     table.half_swings.push_back({0, 0.01 * std::pow(ratio, i), 0.01 * std::pow(ratio, i + 1), i > 0});
   }
-  EXPECT_NEAR(FrictionFrom(BalanceEnergy(Must(FindMotionModel("viscous")), table, 5))[0] / viscous, 1, 1e-4);
+  EXPECT_NEAR(FrictionFrom(BalanceEnergy(Must(FindMotionModel("viscous")), table, 5).front())[0] / viscous, 1, 1e-4);
 }
 
 TEST(FrictionFrom, RecoversEachLawAloneFromItsDecay) {
@@ -107,15 +107,15 @@ TEST(FrictionFrom, CountsNoLossAcrossAGap) {
 TEST(FrictionFrom, GivesEveryRegisteredModelItsParameters) {
   const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
   for (const MotionModel& model : MotionModels()) {
-    EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5)).size() + 1, PhysicalParameters(model).size()) << model.name;
+    EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5).front()).size() + 1, PhysicalParameters(model).size()) << model.name;
   }
 }
 
 TEST(FrictionFrom, LeavingOneOutIsTheBalanceOfTheSimplerLaw) {
   Decay decay{5, 0.003, 0.003, 0.0006, 60 * kRadFromDeg, 60, Quantity::kAngle};
   const HalfSwingTable table = Must(TabulateHalfSwings(SimulateDecay(decay)));
-  const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5);
-  const std::vector<double> coulomb = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5));
+  const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5).front();
+  const std::vector<double> coulomb = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
   const std::vector<double> without = FrictionFrom(drag, {false, false, true});
   EXPECT_EQ(without[2], 0);
   EXPECT_NEAR(without[0] / coulomb[0], 1, 1e-9);

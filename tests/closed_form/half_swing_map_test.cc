@@ -22,7 +22,7 @@ using Friction = std::array<double, 3>;
 
 std::optional<HalfSwingEnd> Swing(const MotionModel& model, const Friction& friction, double amplitude,
                                   double natural_frequency) {
-  return SwingThrough(model, friction, amplitude, natural_frequency, true);
+  return SwingThrough(model, friction, amplitude, natural_frequency, 1, true);
 }
 
 /// Rate and angle of the drag law by classical Runge-Kutta steps in the angle-rate plane, an independent way through.

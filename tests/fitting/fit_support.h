@@ -33,15 +33,15 @@ T Must(Result<T> result) {
 }
 
 /// Inertia and friction of the textbook rig in units of G, for any registered model: I_O 0.079 kg m², b 0.003 N m
-/// s/rad, τ_c 0.004 N m, c 0.0005 N m s²/rad²; a parameter that is none of these has the value TypicalFriction gives
-/// it.
+/// s/rad, τ_c 0.004 N m, τ_s 0.008 N m, c 0.0005 N m s²/rad²; a parameter that is none of these has the value
+/// TypicalFriction gives it.
 inline std::vector<double> TextbookParameters(const MotionModel& model) {
   std::vector<double> parameters = {0.079 / kTextbookTorque};
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     const auto typical = TypicalFriction<F>(0.002);
     for (std::size_t i = 0; i < typical.size(); ++i) {
       const std::string_view name = F::kParameters[i].name;
-      const double torque = name == "viscous" ? 0.003 : name == "coulomb" ? 0.004 : name == "drag" ? 0.0005 : 0.0;
+      const double torque = name == "viscous" ? 0.003 : name == "coulomb" ? 0.004 : name == "drag" ? 0.0005 : name == "stiction" ? 0.008 : 0.0;
       parameters.push_back(torque > 0 ? torque / kTextbookTorque : typical[i]);
     }
   });

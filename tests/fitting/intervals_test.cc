@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/intervals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -55,6 +56,29 @@ TEST(SetIntervals, AreProfilesForAllWhereAnyIsAtABoundOrNearIt) {
     }
     EXPECT_EQ(*report.Find("coulomb")->lower95, 0);
   }
+}
+
+TEST(SetIntervals, ReportProfilesInTheUnitsAndOrderOfTheParameters) {
+  FitOptions options = ModelOptions("coulomb");
+  options.interval = IntervalMethod::kProfile;
+  options.rig = Must(ParseRig(R"({"gravity_torque": 2})", "rig"));
+  options.fixed["zero_angle"] = 0.012;
+  const FitReport report = Fit(Must(SimulateRecording(ShortSwing())), options);
+  ASSERT_EQ(report.profiles.size(), 5);
+  for (std::size_t i = 0; i < report.profiles.size(); ++i) {
+    const ProfileCurve& curve = report.profiles[i];
+    const ParameterEstimate& parameter = report.parameters[i];
+    EXPECT_EQ(curve.name, parameter.info.name);
+    ASSERT_EQ(curve.value.size(), curve.statistic.size());
+    EXPECT_GE(curve.value.size(), 9) << curve.name;
+    EXPECT_TRUE(std::ranges::is_sorted(curve.value)) << curve.name;
+    // Near the optimum the likelihood of a fine recording is a parabola.
+    for (std::size_t k = 0; k < curve.value.size(); ++k) {
+      const double distance = (curve.value[k] - parameter.estimate) / *parameter.std_error;
+      EXPECT_NEAR(curve.statistic[k], distance * distance, 0.05 * curve.threshold) << curve.name;
+    }
+  }
+  EXPECT_THAT(FitOwnModel(ShortSwing()).profiles, IsEmpty());
 }
 
 TEST(SetIntervals, OfTheCovarianceLeaveTheOtherEndOfABoundOpenAndSayWhatGivesIt) {

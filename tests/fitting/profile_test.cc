@@ -176,6 +176,59 @@ TEST(ProfileParameter, OfWhatLeavesNoTraceHasNoEnds) {
   EXPECT_THAT(profile.open, HasSubstr("does not determine it"));
 }
 
+// ---- The curve -----------------------------------------------------------------------------------------------------
+
+/// Of a straight line the statistic is the parabola (t (slope - estimate) / half length)², t² at the ends.
+TEST(ProfileParameter, OfAStraightLineIsAParabola) {
+  const Line line(0.3);
+  const double threshold = TwoSided95(18) * TwoSided95(18);
+  for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
+    const ProfileInterval profile =
+        ProfileOfLine(line, *disguise, disguise->parameter(0.25), disguise->parameter(0.05), 20);
+    EXPECT_NEAR(profile.threshold, threshold, 1e-9 * threshold);
+    ASSERT_GE(profile.points.size(), 9);
+    for (const ProfilePoint& point : profile.points) {
+      const double distance = (disguise->slope(point.value) - line.Slope()) / line.HalfLength();
+      // The solver leaves 1e-10 of the sum of squares, 18 here.
+      EXPECT_NEAR(point.statistic, threshold * distance * distance, 1e-6) << point.value;
+    }
+  }
+}
+
+TEST(ProfileParameter, HasPointsFromEndToEndAndTheEstimateAmongThem) {
+  const Line line(0.3);
+  const ProfileInterval profile = ProfileOfLine(line, kExponential, kExponential.parameter(0.25), -5, 5);
+  const std::vector<ProfilePoint>& points = profile.points;
+  ASSERT_GE(points.size(), 9);
+  const double longest = 0.3 * (*profile.upper - *profile.lower);
+  int at_estimate = 0, at_ends = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    at_estimate += points[i].statistic == 0;
+    // Ends are sought to a hundredth of the statistic's root.
+    at_ends += (points[i].value == *profile.lower || points[i].value == *profile.upper) &&
+               std::abs(points[i].statistic / profile.threshold - 1) < 0.021;
+    if (i == 0) continue;
+    EXPECT_GT(points[i].value, points[i - 1].value);
+    EXPECT_LT(points[i].value - points[i - 1].value, longest);
+  }
+  EXPECT_EQ(at_estimate, 1);
+  EXPECT_EQ(at_ends, 2);
+}
+
+TEST(ProfileParameter, HasPointsOnOneSideOfABoundOnly) {
+  const Line line(0.3);
+  const double bound = line.Slope() + 0.5 * line.HalfLength();
+  const ProfileInterval profile = ProfileOfLine(line, kNone, 1, bound, 5);
+  ASSERT_GE(profile.points.size(), 5);
+  EXPECT_EQ(profile.points.front().value, bound);
+  EXPECT_EQ(profile.points.front().statistic, 0);
+}
+
+TEST(ProfileParameter, HasNoPointsOfWhatLeavesNoTrace) {
+  const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
+  EXPECT_THAT(ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded).points, testing::IsEmpty());
+}
+
 // ---- Swings --------------------------------------------------------------------------------------------------------
 
 TEST(ProfileParameter, OfAFineRecordingIsTheCovariancesInterval) {

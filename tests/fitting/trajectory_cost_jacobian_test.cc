@@ -61,7 +61,9 @@ std::vector<Eigen::Index> QuietSamples(const std::vector<double>& time,
 void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const TrajectoryCost& cost,
                                const TrajectoryData& data, const std::vector<double>& p, int column,
                                const Eigen::MatrixXd& jacobian) {
-  const double step = 1e-6 * std::abs(p[column]);
+  const std::vector<ParameterInfo> infos = PhysicalParameters(model);
+  const bool is_share = static_cast<std::size_t>(column) < infos.size() && std::isfinite(infos[column].upper);
+  const double step = (is_share ? 1e-4 : 1e-6) * std::abs(p[column]);  // readings hardly move with a share
   std::vector<double> above = p, below = p;
   above[column] += step;
   below[column] -= step;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "pendulum/model/friction/friction_model.h"
 
@@ -10,13 +11,15 @@ namespace pendulum {
 
 /// Parameters for any friction law, also one that was added yesterday. A torque's coefficient is such that it alone
 /// gives about `torque` (in units of G) at rest or at 1 rad/s, each a quarter more than the last, so that no two of
-/// them cancel; what is no torque, such as a reference rate, is 1.
+/// them cancel; what is no torque, such as a reference rate, is 1, or a quarter of its upper bound. Ordered
+/// parameters keep their order.
 template <FrictionModel F>
 std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
   const auto clamp = [](double value, const ParameterInfo& info) { return std::clamp(value, info.lower, info.upper); };
+  const auto shape = [](const ParameterInfo& info) { return std::isfinite(info.upper) ? 0.25 * info.upper : 1.0; };
   std::array<double, kFrictionParameters<F>> none{};
   for (int i = 0; i < kFrictionParameters<F>; ++i) {
-    if (!F::kParameters[i].scales_with_gravity()) none[i] = clamp(1.0, F::kParameters[i]);
+    if (!F::kParameters[i].scales_with_gravity()) none[i] = shape(F::kParameters[i]);
   }
   std::array<double, kFrictionParameters<F>> typical = none;
   for (int i = 0; i < kFrictionParameters<F>; ++i) {
@@ -25,6 +28,10 @@ std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
     alone[i] = 1;
     const double unit = std::max(F::Torque(0.0, 1.0, alone.data()), F::Torque(1.0, 1.0, alone.data()));
     typical[i] = clamp(torque * (1 + 0.25 * i) / unit, F::kParameters[i]);
+  }
+  if constexpr (HasOrder<F>) {
+    double& larger = typical[F::kOrdered.larger];
+    larger = std::max(larger, 1.5 * typical[F::kOrdered.smaller]);
   }
   return typical;
 }

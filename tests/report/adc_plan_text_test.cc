@@ -19,17 +19,19 @@ TEST(AdcPlanText, ComparesReferencesAndSaysWhichSaturate) {
       {.reference_voltage = 5}, {.reference_voltage = 3.3}, {.reference_voltage = 1.1}};
   EXPECT_EQ(AdcPlanText(sensors),
             R"([[Sensor]]
-    Potentiometer of 270 deg across 5 V, read by 10 bits; angles in deg from the middle of the
-    travel.
+    Potentiometer of 270 deg across 5 V, read by 10 bits; angles in deg from the
+    middle of the travel.
     reference [V]  deg per count  counts per deg   usable [deg]  about the middle [deg]     counts
                 5         0.2637           3.793    -135 to 135                   ± 135  0 to 1023
               3.3          0.174           5.746   -135 to 43.2                  ± 43.2  0 to 1023
               1.1        0.05801           17.24  -135 to -75.6                    none  0 to 1023
-    With a reference of 3.3 V, below the 5 V that the potentiometer gives, all angles above 43.2 deg
-    read 1023. --divider 0.66 would bring the whole travel within it, at 0.2637 deg per count.
-    With a reference of 1.1 V, below the 5 V that the potentiometer gives, all angles above -75.6
-    deg read 1023, the middle of the travel among them. --divider 0.22 would bring the whole travel
+    With a reference of 3.3 V, below the 5 V that the potentiometer gives, all
+    angles above 43.2 deg read 1023. --divider 0.66 would bring the whole travel
     within it, at 0.2637 deg per count.
+    With a reference of 1.1 V, below the 5 V that the potentiometer gives, all
+    angles above -75.6 deg read 1023, the middle of the travel among them.
+    --divider 0.22 would bring the whole travel within it, at 0.2637 deg per
+    count.
 )");
 }
 

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/report/section_text.h"
 #include "tests/report/example_report.h"
 
 namespace pendulum {
@@ -15,6 +16,9 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
+
+std::string ClosedFormText(const RunReport& report) { return ToText(ClosedFormSections(report)); }
+std::string SamplingText(const RunReport& report) { return ToText(SamplingSections(report)); }
 
 /// Turning points beyond those of the example, each 0.65 s after the one before it.
 RunReport ReportWithTurningPoints(int count) {
@@ -43,8 +47,8 @@ std::vector<std::string> TurningPointLines(const RunReport& report) {
 // Rounding by hand; G = 1.8 N m, and 1 rad = 57.2958 deg.
 TEST(ClosedFormText, GivesTheClosedFormsInSi) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), StartsWith(R"([[Closed forms]]
-    Formulas of the linear pendulum, over 2 periods from turning point 1 on; corrected_inertia: each
-    period divided by the elliptic integral's ratio.
+    Formulas of the linear pendulum, over 2 periods from turning point 1 on;
+    corrected_inertia: each period divided by the elliptic integral's ratio.
     name               symbol    value ± std error  unit
     damped_frequency   ω_d      4.7500 ± 0.0025     rad/s
     log_decrement      δ        0.0265 ± 0.0025     1
@@ -53,8 +57,8 @@ TEST(ClosedFormText, GivesTheClosedFormsInSi) {
     inertia            I_O     0.08010 ± 0.00023    kg m^2
     viscous            b        0.0032 ± 0.0005     N m s/rad
     corrected_inertia  I_O     0.07920 ± 0.00023    kg m^2
-    Fitted to all 5 turning points, exact at any amplitude, with the friction of model coulomb:
-    chi-square 4 for 2 degrees of freedom, p 0.14.
+    Fitted to all 5 turning points, exact at any amplitude, with the friction of
+    model coulomb: chi-square 4 for 2 degrees of freedom, p 0.14.
     name            symbol    value ± std error  unit
     zero_angle      z       0.01000 ± 0.00010    rad
                               0.573 ± 0.006      deg
@@ -63,8 +67,8 @@ TEST(ClosedFormText, GivesTheClosedFormsInSi) {
     coulomb         τ_c      0.0090 ± 0.0009     N m
     sticking_angle  θ_s      0.0050 ± 0.0005     rad
                               0.286 ± 0.029      deg
-    envelope  as exponential (viscous friction alone, p 0.25); not as straight line (coulomb
-              friction alone, p 1e-06)
+    envelope  as exponential (viscous friction alone, p 0.25); not as straight
+              line (coulomb friction alone, p 1e-06)
 [[Closed forms against the fit]]
 )"));
 }
@@ -79,23 +83,23 @@ TEST(ClosedFormText, IsInUnitsOfGravityWithoutARig) {
 
 TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), HasSubstr(R"([[Closed forms against the fit]]
-    quantity               closed form ± std error      fit ± std error  unit         z  agrees
-    inertia_small_angle        0.08020 ± 0.00020    0.07900 ± 0.00010    kg m^2     6.2  NO
-    viscous_log_decrement       0.0031 ± 0.0005     0.00300 ± 0.00004    N m s/rad  0.0  yes
-    inertia_point_mass          0.0703              0.07900 ± 0.00010    kg m^2       -  -
-    inertia_small_angle: finite amplitude: of the fitted model's own trajectory the formula makes
-    0.0801.
+    quantity               formula ± error        fit    z  agrees
+    inertia_small_angle    0.08020 ± 0.00020  0.07900  6.2  NO
+    viscous_log_decrement   0.0031 ± 0.0005   0.00300  0.0  yes
+    inertia_point_mass      0.0703            0.07900    -  -
+    inertia_small_angle: finite amplitude: of the fitted model's own trajectory
+    the formula makes 0.0801.
     inertia_point_mass: the rig file gives no errors.
     the nonlinear model with the textbook's numbers is further off: 0.02 rad.
     1 of 2 quantities agree.
-[[Turning points]]
+[[Turning points]] (ζ: damping ratio of a pair, and over n periods)
 )"));
 }
 
 TEST(ClosedFormText, ShowsNoZThatIsNoNumber) {
   RunReport report = ExampleReport();
   report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(ClosedFormText(report), HasSubstr("0.07900 ± 0.00010    kg m^2       -  NO\n"));
+  EXPECT_THAT(ClosedFormText(report), HasSubstr("0.08020 ± 0.00020  0.07900    -  NO\n"));
 }
 
 TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {
@@ -108,14 +112,23 @@ TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of viscous]]\n"));
 }
 
+TEST(ClosedFormText, ChecksOnlyTheMainFitOfAComparison) {
+  RunReport report = ExampleComparedReport();
+  report.checks[1] = ExampleCheck();
+  const std::string text = ClosedFormText(report);
+  EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of coulomb]]\n"));
+  EXPECT_THAT(text, Not(HasSubstr("drag")));
+}
+
 TEST(ClosedFormText, ListsTurningPointsInDegrees) {
-  EXPECT_THAT(ClosedFormText(ExampleReport()), HasSubstr(R"([[Turning points]]
-    number   t [s]  angle [deg]  ζ of the pair ± std error  ζ over n periods ± std error  n
-         1  2.5000        22.92         0.0041 ± 0.0008
-         2  3.1500       -21.49         0.0039 ± 0.0008
-         3  3.8000        22.35         0.0042 ± 0.0008               0.0041 ± 0.0008     1
-         4  4.4500       -20.91                                       0.0039 ± 0.0008     1
-         5  5.1000        21.77                                       0.0042 ± 0.0004     2
+  EXPECT_THAT(ClosedFormText(ExampleReport()),
+              HasSubstr(R"([[Turning points]] (ζ: damping ratio of a pair, and over n periods)
+    number   t [s]  angle [deg]  ζ (pair) ± error   ζ over n ± error   n
+         1  2.5000        22.92    0.0041 ± 0.0008
+         2  3.1500       -21.49    0.0039 ± 0.0008
+         3  3.8000        22.35    0.0042 ± 0.0008    0.0041 ± 0.0008  1
+         4  4.4500       -20.91                       0.0039 ± 0.0008  1
+         5  5.1000        21.77                       0.0042 ± 0.0004  2
 )"));
 }
 
@@ -169,8 +182,10 @@ TEST(ClosedFormText, SaysWhatThereIsNot) {
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
   EXPECT_THAT(ClosedFormText(report), StartsWith(R"([[Closed forms]]
-    No two turning points a whole period apart follow each other: no log decrement.
-    No law was fitted to the turning points: too few turning points for 4 unknowns.
+    No two turning points a whole period apart follow each other: no log
+    decrement.
+    No law was fitted to the turning points: too few turning points for 4
+    unknowns.
     envelope  as )"));
   EXPECT_EQ(ClosedFormText(ExampleRateReport()),
             "[[Closed forms]]\n    There are none: only 2 turning points can be located.\n");
@@ -181,7 +196,8 @@ TEST(SamplingText, GivesTheFacts) {
   EXPECT_EQ(SamplingText(ExampleReport()), R"([[Sampling]]
     rate       100 Hz, intervals scatter by 0.2 ms
     gaps       1, of 0.5 s at most
-    swing      0.8 Hz: 125 samples a period, Nyquist margin 62.5; 0.775 Hz expected from the rig
+    swing      0.8 Hz: 125 samples a period, Nyquist margin 62.5; 0.775 Hz
+               expected from the rig
     levels     194 peak to peak at the start, 20 at the end
     saturated  12 readings at an end of the sensor's range
 )");

@@ -142,6 +142,68 @@ inline ClosedFormCheck ExampleCheck() {
   return check;
 }
 
+/// Halves that agree, and an inertia that follows the amplitude; friction is held. Numbers made up by hand.
+inline Constancy ExampleConstancy() {
+  Constancy constancy;
+  constancy.halves = {{"inertia", "kg m^2", 0.079, 0.0791, 0.00025, 0.0004, 0.25},
+                      {"viscous", "N m s/rad", 0.003, 0.0025, 0.0005, 0.00075, -0.5}};
+  constancy.halves_statistic = 0.3125;
+  constancy.halves_dof = 2;
+  constancy.halves_p = 0.875;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constancy.windows = {{1.5, 7.5, 0.4, 0.0795, 0.000125, kNone, kNone},
+                       {7.5, 13.5, 0.3, 0.079, 0.000125, kNone, kNone},
+                       {13.5, 19.5, 0.2, 0.0785, 0.000125, kNone, kNone}};
+  constancy.trends = {{"inertia", "kg m^2", 0.0125, 0.0005, 0.0195, 1e-9}};
+  constancy.verdict = "inertia falls by 1.9 % from the largest to the smallest swings (p = 1e-09)";
+  return constancy;
+}
+
+/// Halves that agree and no trend, no more.
+inline Constancy ExampleConstant() {
+  Constancy constancy = ExampleConstancy();
+  constancy.trends[0].p = 0.5;
+  constancy.verdict = "inertia and friction are constants of the recording";
+  return constancy;
+}
+
+/// The example's fit beside one that did not converge; numbers made up by hand.
+inline Comparison ExampleComparison() {
+  Comparison comparison;
+  comparison.recommended = "coulomb";
+  comparison.reason = "It is the only one that converged.";
+  comparison.criterion = "BIC of independent residuals";
+  comparison.effective_samples = 1801;
+  ComparisonRow coulomb;
+  coulomb.model = "coulomb";
+  coulomb.judged = true;
+  coulomb.parameters = 4;
+  coulomb.rms = 0.00349;
+  coulomb.log_likelihood = 1234.5;
+  coulomb.aic = -2461;
+  coulomb.aicc = -2460.75;
+  coulomb.bic = -2439;
+  coulomb.delta_bic = 0;
+  coulomb.akaike_weight = 1;
+  coulomb.cross_validation = {0.0035, 1.0125, 1600, ""};
+  coulomb.forward = {0.004, 1.125, 720, ""};
+  coulomb.lag1_correlation = 0.125;
+  coulomb.ljung_box_p = 0.25;
+  ComparisonRow drag = coulomb;
+  drag.model = "drag";
+  drag.judged = false;
+  drag.parameters = 5;
+  drag.rms = 0.5;
+  drag.log_likelihood = drag.aic = drag.aicc = drag.bic = drag.delta_bic = drag.akaike_weight = std::nullopt;
+  drag.cross_validation = drag.forward = {0, 0, 0, "the fit did not converge"};
+  drag.lack_of_fit = true;
+  drag.reason = "100 iterations were not enough";
+  comparison.rows = {coulomb, drag};
+  comparison.tests = {{"viscous", "coulomb", {"coulomb"}, 812.125, "half χ²(0), half χ²(1)", 1e-10, ""},
+                      {"coulomb", "drag", {"drag"}, 0, "", std::nullopt, "drag did not converge"}};
+  return comparison;
+}
+
 /// A run with a rig whose masses are uncertain, and one warning of the recording.
 inline RunReport ExampleReport() {
   RunReport report;
@@ -165,6 +227,7 @@ inline RunReport ExampleReport() {
   report.closed_forms = ExampleClosedForms();
   report.closed_forms_model = "coulomb";
   report.checks = {ExampleCheck()};
+  report.constancy = {ExampleConstant()};
   report.warnings = {{"gap", "there is a gap of 0.5 s after 7 s"}};
   return report;
 }
@@ -177,6 +240,7 @@ inline RunReport ExampleRateReport() {
   report.closed_forms.reset();
   report.no_closed_forms = "only 2 turning points can be located";
   report.checks.clear();
+  report.constancy.clear();
   report.data.unit = "rad/s";
   report.data.resolution = 0;
   report.data.resolution_source.clear();
@@ -203,6 +267,23 @@ inline RunReport ExampleRateReport() {
   fit.systematic_covariance.resize(0, 0);
   fit.identifiability.clear();
   fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, 0, "the readings stand on no levels", 0.125, {}};
+  return report;
+}
+
+/// The example beside a fit that did not converge, compared with it; inertia follows the amplitude.
+inline RunReport ExampleComparedReport() {
+  RunReport report = ExampleReport();
+  FitReport drag = ExampleRateReport().fits.front();
+  drag.model = {"drag", "drag", Gravity::kSine};
+  drag.quantity = Quantity::kAngle;
+  drag.reading_unit = "rad";
+  drag.parameters.resize(1);
+  drag.parameters[0].unit = "kg m^2";
+  drag.parameters[0].estimate = 0.075;
+  report.fits.push_back(drag);
+  report.checks.emplace_back();
+  report.constancy = {ExampleConstancy(), Constancy()};
+  report.comparison = ExampleComparison();
   return report;
 }
 

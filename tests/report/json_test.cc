@@ -36,17 +36,17 @@ std::string FileText(const char* path) {
 
 // The example was written from design and schema, number by number; tests/tools/result_schema_test.py validates it.
 TEST(ToJsonText, GivesTheExampleByteForByte) {
-  EXPECT_EQ(ToJsonText(ExampleReport()), FileText("tests/report/result_example.json"));
+  EXPECT_EQ(ToJsonText(ExampleComparedReport()), FileText("tests/report/result_example.json"));
 }
 
 TEST(ToJson, KeepsTheOrderOfKeys) {
   const Json json = ToJson(ExampleReport());
-  EXPECT_THAT(Keys(json),
-              ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "closed_forms", "warnings"));
+  EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
+                                      "closed_forms", "warnings"));
   EXPECT_THAT(Keys(json["fits"][0]),
-              ElementsAre("model", "status", "reason", "parameters", "derived", "covariance", "correlation", "noise",
-                          "systematic_covariance", "std_error_method", "interval_method", "identifiability",
-                          "statistics", "closed_form", "solver"));
+              ElementsAre("model", "status", "reason", "equation", "parameters", "derived", "covariance", "correlation",
+                          "noise", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
+                          "statistics", "closed_form", "constancy", "solver"));
   EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
               ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
   EXPECT_EQ(json["tool"]["version"], kVersion);
@@ -69,6 +69,18 @@ TEST(ToJson, SaysWhyThereAreNoClosedForms) {
   EXPECT_EQ(json["fits"][0]["closed_form"], Json::array());
   EXPECT_TRUE(json["data"]["sampling"].is_null());
   EXPECT_FALSE(ToJson(ExampleReport()).contains("reason"));
+}
+
+TEST(ToJson, SaysWhyConstancyWasNotTested) {
+  const Json fit = ToJson(ExampleRateReport())["fits"][0];
+  EXPECT_TRUE(fit["constancy"].is_null());
+  EXPECT_EQ(fit["constancy_reason"], "the fit is not_converged");
+  EXPECT_FALSE(ToJson(ExampleReport())["fits"][0].contains("constancy_reason"));
+}
+
+TEST(ToJson, HasNoComparisonOfOneFit) {
+  EXPECT_TRUE(ToJson(ExampleReport())["comparison"].is_null());
+  EXPECT_EQ(ToJson(ExampleComparedReport())["comparison"]["recommended"], "coulomb");
 }
 
 TEST(ToJson, SaysWhyThereIsNoStandardError) {

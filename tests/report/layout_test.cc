@@ -13,6 +13,31 @@ TEST(DisplayWidth, CountsCharactersNotBytes) {
   EXPECT_EQ(DisplayWidth(""), 0);
 }
 
+TEST(DisplayWidth, CountsNoSequenceOfColour) { EXPECT_EQ(DisplayWidth("\x1B[1;31mmm\x1B[0mτ"), 3); }
+
+TEST(TableWithin, IsAnAlignedTableWhereThatFits) {
+  const std::vector<Column> columns = {{"name"}, {"value", true}, {"± error", false, 1}};
+  const std::vector<std::vector<std::string>> rows = {{"b", "12", "± 3"}};
+  EXPECT_EQ(TableWithin(columns, rows, 2, 21), AlignedTable(columns, rows, 2));  // 2 + 4 + 2 + 5 + 1 + 7
+  EXPECT_EQ(TableWithin({}, {}, 2, 20), "");
+}
+
+// Value and error are one: both go below, beside the name, and the row that has neither is left out there.
+TEST(TableWithin, GoesOnBelowWithTheFirstColumn) {
+  const std::vector<Column> columns = {{"name"}, {"unit"}, {"value", true}, {"± error", false, 1}};
+  EXPECT_EQ(TableWithin(columns, {{"b", "s", "12", "± 3"}, {"c", "m", "", ""}}, 0, 20),
+            "name  unit\n"
+            "b     s\n"
+            "c     m\n"
+            "\n"
+            "name  value ± error\n"
+            "b        12 ± 3\n");
+}
+
+TEST(TableWithin, KeepsAColumnThatFitsNowhereBesideTheFirst) {
+  EXPECT_EQ(TableWithin({{""}, {""}, {""}}, {{"a", "incomprehensible", "b"}}, 0, 8), "a  incomprehensible\n\na  b\n");
+}
+
 TEST(AlignedTable, AlignsSymbolsOfSeveralBytes) {
   const std::vector<Column> columns = {{"symbol"}, {"value", true}, {"± error", false, 1}};
   EXPECT_EQ(AlignedTable(columns, {{"b", "0.003", "± 0.1"}, {"τ_c", "12", "± 3"}, {"ω", "7", ""}}, 2),
@@ -36,6 +61,10 @@ TEST(Paragraph, FillsLinesAndIndentsThem) {
 
 TEST(Paragraph, GivesAWordThatIsTooLongALineOfItsOwn) {
   EXPECT_EQ(Paragraph("a incomprehensible b", "", 4), "a\nincomprehensible\nb\n");
+}
+
+TEST(Paragraph, BreaksNoLineAtANoBreakSpace) {
+  EXPECT_EQ(WithBlanks(Paragraph("a\u00A0b c\u00A0d", "", 4)), "a b\nc d\n");
 }
 
 TEST(Paragraph, MeasuresWidthInCharacters) { EXPECT_EQ(Paragraph("ττττ ωω", "", 7), "ττττ ωω\n"); }

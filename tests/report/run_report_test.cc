@@ -63,5 +63,26 @@ TEST(Correlation, IsCovarianceOverBothStandardErrors) {
   EXPECT_EQ(Correlation(fit, 0, 2), 0);
 }
 
+TEST(MainFit, IsTheRecommendedElseTheFirstThatConverged) {
+  RunReport report = ExampleComparedReport();
+  EXPECT_EQ(report.MainFit(), 0);
+  report.comparison->recommended = "drag";
+  EXPECT_EQ(report.MainFit(), 1);
+  EXPECT_TRUE(report.IsShownInFull(1));
+  EXPECT_FALSE(report.IsShownInFull(0));
+  report.comparison->recommended.clear();
+  std::swap(report.fits[0], report.fits[1]);
+  EXPECT_EQ(report.MainFit(), 1);
+  report.fits[1].termination = Termination::kNotIdentifiable;
+  EXPECT_EQ(report.MainFit(), 0);
+}
+
+TEST(IsShownInFull, IsTrueOfAllFitsThatAreNotCompared) {
+  RunReport report = ExampleComparedReport();
+  report.comparison.reset();
+  EXPECT_TRUE(report.IsShownInFull(0));
+  EXPECT_TRUE(report.IsShownInFull(1));
+}
+
 }  // namespace
 }  // namespace pendulum

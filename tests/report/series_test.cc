@@ -92,6 +92,13 @@ TEST(SeriesJson, HasSamplesAndModelsByName) {
             R"("linear_closed_form":[0.5,0.25,0.125],"nonlinear_closed_form":[1.0,2.0,3.0]}})");
 }
 
+TEST(SeriesJson, HasProfilesByModelAndParameter) {
+  RunReport report = ReportOfThreeSamples();
+  report.fits[0].profiles = {{"inertia", {0.5, 1, 1.5}, {4, 0, kNan}, 3.875}};
+  EXPECT_EQ(SeriesJson(ThreeSamples(), report)["profiles"].dump(),
+            R"({"coulomb":{"inertia":{"value":[0.5,1.0,1.5],"statistic":[4.0,0.0,null],"threshold":3.875}}})");
+}
+
 // The standard errors are the roots of the variances 1e-6 s² and 4e-6 rad².
 TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
   const Json peaks = SeriesJson(ThreeSamples(), ReportOfThreeSamples())["peaks"];

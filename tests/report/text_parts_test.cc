@@ -50,9 +50,12 @@ TEST(ReadingText, AddsDegreesToRadians) {
   EXPECT_EQ(ReadingText(0.5, "counts"), "0.5 counts");
 }
 
-TEST(Facts, AreIndentedBelowTheirHeading) {
-  EXPECT_EQ(Heading("Data") + Facts({{"a", "one"}, {"long", "two"}}) + Prose("three"),
-            "[[Data]]\n    a     one\n    long  two\n    three\n");
+TEST(Prose, IsIndentedBelowItsHeading) { EXPECT_EQ(Heading("Data") + Prose("one two"), "[[Data]]\n    one two\n"); }
+
+// ESC [ clears screens; U+009B is the same in one character.
+TEST(Printable, HasNothingThatSteersATerminal) {
+  EXPECT_EQ(Printable("a\x1B[2Jb\n\x7F\xC2\x9Bm.csv"), "a?[2Jb???m.csv");
+  EXPECT_EQ(Printable("Mañana τ ±.csv"), "Mañana τ ±.csv");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/text.h"
 
+#include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,13 +18,19 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
+/// Lines joined, for sentences that are broken anywhere.
+std::string OneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool is_blank = c == ' ' || c == '\n';
+    if (!is_blank || !line.ends_with(' ')) line += is_blank ? ' ' : c;
+  }
+  return line;
+}
+
 // Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg. The rest is rounding by hand; closed forms:
 // closed_form_text_test.cc.
-TEST(ToText, GivesTheWholeFit) {
-  RunReport report = ExampleReport();
-  report.sampling.reset();
-  report.closed_forms.reset();
-  EXPECT_EQ(ToText(report), R"([[Data]]
+constexpr const char* kWholeFit = R"([[Data]]
     file        swing.csv
     samples     1801 used of 2000
     window      1.5 s to 19.5 s, 100 Hz on average
@@ -30,22 +38,30 @@ TEST(ToText, GivesTheWholeFit) {
     ends        the end of the recording
     resolution  0.00436 rad (0.25 deg), found in the values
 [[Fit]]
-    model  coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0
-    start  held at an angle, then released
-    status  converged: the last step changed no parameter by more than 0.001 standard errors
+    model   coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0
+    start   held at an angle, then released
+    status  converged: the last step changed no parameter by more than 0.001
+            standard errors
 [[Parameters]]
-    name           symbol     value ± std error  unit       95 % interval       ± systematic
-    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]  ± 0.0010
-    viscous        b         0.0030 ± 0.0005     N m s/rad  [0.0020, 0.0040]
-    coulomb        τ_c            0              N m        [0, 0.000125]                     at its bound
-    release_angle  θ_r      0.42300 ± 0.00020    rad        [0.42260, 0.42340]
-                             24.236 ± 0.011      deg        [24.213, 24.259]
-    zero_angle     z           0.01              rad                                          fixed
-                           0.572958              deg
+    name              value ± std error  unit       95 % interval
+    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]
+    viscous          0.0030 ± 0.0005     N m s/rad  [0.0020, 0.0040]
+    coulomb               0 (at bound)   N m        [0, 0.000125]
+    release_angle   0.42300 ± 0.00020    rad        [0.42260, 0.42340]
+                     24.236 ± 0.011      deg        [24.213, 24.259]
+    zero_angle         0.01 (fixed)      rad
+                   0.572958              deg
+    name           symbol  ± systematic  unit
+    inertia        I_O     ± 0.0010      kg m^2
+    viscous        b
+    coulomb        τ_c
+    release_angle  θ_r
+    zero_angle     z
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
-    viscous is weakly identifiable (traded for coulomb): let it swing for longer.
+    viscous is weakly identifiable (traded for coulomb): let it swing for
+    longer.
     coulomb is weakly identifiable: let it come to rest.
 [[Derived quantities]]
     natural_frequency  4.778 ± 0.008  rad/s  [4.763, 4.793]
@@ -53,23 +69,33 @@ TEST(ToText, GivesTheWholeFit) {
 [[Correlations]] (those below 0.1 in size are not listed)
     inertia, viscous  0.500
 [[Noise and statistics]]
-    noise              quantized, sigma 0.00350 ± 0.00010 rad (0.201 deg, 0.802 resolutions)
+    noise              quantized, sigma 0.00350 ± 0.00010 rad (0.201 deg, 0.802
+                       resolutions)
     because            the residuals are 0.8 resolutions
     rms residual       0.00349 rad (0.2 deg)
     lag-1 correlation  0.125
     Durbin-Watson      1.750
     Ljung-Box, runs    p 0.04, 0.25
-    memory             AR(2); of a constant the samples tell as much as 1200 independent ones
+    memory             AR(2); of a constant the samples tell as much as 1200
+                       independent ones
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50
     solver             7 iterations, 15 trajectories, accurate to 2e-10 rad
 [[Equation of motion]]
     0.07900 th'' + 0.0030 th' + 0 sgn(th') + 1.800 sin th = 0
     th in rad from hanging straight down, torques in N m.
+[[Constancy]]
+    inertia and friction are constants of the recording.
 [[Warnings]]
   - there is a gap of 0.5 s after 7 s
   - the residuals are not white; friction may be of another kind
-)");
+)";
+
+TEST(ToText, GivesTheWholeFit) {
+  RunReport report = ExampleReport();
+  report.sampling.reset();
+  report.closed_forms.reset();
+  EXPECT_EQ(ToText(report), kWholeFit);
 }
 
 TEST(ToText, HasTheClosedFormsAfterTheFit) {
@@ -79,22 +105,22 @@ TEST(ToText, HasTheClosedFormsAfterTheFit) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
   EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Fit", "Parameters", "Derived quantities", "Correlations",
-                                    "Noise and statistics", "Equation of motion", "Closed forms",
+                                    "Noise and statistics", "Equation of motion", "Constancy", "Closed forms",
                                     "Closed forms against the fit", "Turning points", "Warnings"));
 }
 
 TEST(ToText, TellsWithoutARigWhatToMeasure) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0\n"));
-  EXPECT_THAT(text, HasSubstr("torques are in units of the gravity torque G"));
-  EXPECT_THAT(text, HasSubstr("give --rig."));
+  EXPECT_THAT(OneLine(text), HasSubstr("torques are in units of the gravity torque G"));
+  EXPECT_THAT(OneLine(text), HasSubstr("give --rig."));
   EXPECT_THAT(text, Not(HasSubstr("rig file")));
   EXPECT_THAT(text, Not(HasSubstr("systematic")));
 }
 
 TEST(ToText, GivesARateInDegreesPerSecondToo) {
   const std::string text = ToText(ExampleRateReport());
-  EXPECT_THAT(text, HasSubstr("    rate_bias  z          0.25  rad/s\n                       14.3239  deg/s\n"));
+  EXPECT_THAT(text, HasSubstr("    rate_bias     0.25  rad/s\n               14.3239  deg/s\n"));
   EXPECT_THAT(text, HasSubstr("sigma 0.0035 rad/s (0.201 deg/s)"));
 }
 
@@ -104,8 +130,8 @@ TEST(ToText, SaysWhichIntervalIsOpen) {
   viscous.lower95.reset();
   viscous.open_interval = "its likelihood does not fall";
   const std::string text = ToText(report);
-  EXPECT_THAT(text, HasSubstr("    Intervals: profile likelihood. That of viscous is open: its likelihood does not "
-                              "fall.\n"));
+  EXPECT_THAT(OneLine(text),
+              HasSubstr("Intervals: profile likelihood. That of viscous is open: its likelihood does not fall. "));
   EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 
@@ -128,8 +154,8 @@ TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
 TEST(ToText, SaysAReasonOnceForAllParametersItConcerns) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    status  not_converged: 100 iterations were not enough\n"));
-  EXPECT_THAT(text,
-              HasSubstr("No standard error of inertia, viscous, coulomb, rate_bias: the fit did not converge.\n"));
+  EXPECT_THAT(OneLine(text),
+              HasSubstr("No standard error of inertia, viscous, coulomb, rate_bias: the fit did not converge. "));
   EXPECT_THAT(text, Not(HasSubstr("Standard errors:")));
 }
 
@@ -156,10 +182,11 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
   viscous.systematic_std_error = 4e-8;
-  EXPECT_THAT(
-      ToText(report),
-      HasSubstr("    inertia        I_O      0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]    ± 0.0010\n"
-                "    viscous        b          (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]  ± 0.04e-06\n"));
+  const std::string text = ToText(report);
+  EXPECT_THAT(text, HasSubstr("    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]\n"
+                              "    viscous           (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]\n"));
+  EXPECT_THAT(text, HasSubstr("    inertia        I_O     ± 0.0010      kg m^2\n"
+                              "    viscous        b       ± 0.04e-06    N m s/rad\n"));
 }
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
@@ -167,10 +194,11 @@ TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
   RunReport report = ExampleReport();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
   report.checks.clear();
-  EXPECT_THAT(ToText(report),
-              HasSubstr("The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger.\n"));
+  EXPECT_THAT(OneLine(ToText(report)),
+              HasSubstr("The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger. "));
   report.rig->inertia = RigValue{0.088, 0};
-  EXPECT_THAT(ToText(report), HasSubstr("The rig file gives I_O = 0.088 kg m^2; the fitted I_O is 10 % smaller.\n"));
+  EXPECT_THAT(OneLine(ToText(report)),
+              HasSubstr("The rig file gives I_O = 0.088 kg m^2; the fitted I_O is 10 % smaller. "));
   report.rig->inertia.reset();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
 }
@@ -193,6 +221,80 @@ TEST(ToText, HasNoWarningsSectionWithoutWarnings) {
   report.warnings.clear();
   report.fits[0].warnings.clear();
   EXPECT_THAT(ToText(report), Not(HasSubstr("[[Warnings]]")));
+}
+
+TEST(ToText, ComparesBeforeItTellsAndOfTheOthersGivesTheParameters) {
+  const std::string text = ToText(ExampleComparedReport());
+  std::vector<std::string> sections;
+  for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
+    sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
+  }
+  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
+                                    "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
+                                    "Constancy", "Parameters of drag", "Closed forms",
+                                    "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
+}
+
+TEST(ToText, HidesWhatWouldSteerATerminalInTheNameOfAFile) {
+  RunReport report = ExampleReport();
+  report.data.path = "a\x1B[2J\n[[Fit]].csv";
+  EXPECT_THAT(ToText(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
+}
+
+/// The widest line of a text.
+int WidestOf(const std::string& text) {
+  int widest = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) widest = std::max(widest, DisplayWidth(line));
+  return widest;
+}
+
+/// The example with the longest names, units and numbers that fits give.
+RunReport WideReport() {
+  RunReport report = ExampleComparedReport();
+  FitReport& fit = report.fits[0];
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.systematic_std_error = 1.2e-9;
+    parameter.closed_form = 1.1 * parameter.estimate;
+  }
+  fit.parameters[0] = ExampleParameter(kInertia, "kg m^2", 0.0789996123, 2.8e-9);
+  fit.parameters[1] = ExampleParameter(kViscous, "N m s^2/rad^2", -3.2345678e-7, 1.2e-13);
+  fit.parameters[1].systematic_std_error = 3e-9;
+  fit.parameters[1].closed_form = 3.1e-7;
+  fit.derived.push_back({"gravity_over_inertia", "1/s^2", 22.827012345, 8e-9, 22.8, 22.9});
+  fit.noise.why = std::string(300, 'x')
+                      .replace(50, 1, " ")
+                      .replace(100, 1, " ")
+                      .replace(150, 1, " ")
+                      .replace(200, 1, " ")
+                      .replace(250, 1, " ");
+  ClosedFormRow& row = report.checks[0].rows[0];
+  row = {"damping_ratio_log_decrement", "", "N m s^2/rad^2", -0.0000123456, 1.2e-9, -1.234567e-5, 1e-11, -3123.4, false,
+         "by the formula's friction"};
+  report.comparison->rows[1].delta_bic = 123456.7;
+  report.comparison->tests[0].null = "0.25 χ²(0), 0.5 χ²(1), 0.25 χ²(2)";
+  report.constancy[0].halves_p = 1e-5;
+  report.constancy[0].trends.push_back({"viscous", "N m s/rad", 1, 0.1, 2, 1e-4});
+  for (AmplitudeRow& window : report.constancy[0].windows) {
+    window.friction = 0.0031234;
+    window.friction_std_error = 0.0000123;
+  }
+  return report;
+}
+
+TEST(ToText, FitsATerminalOfEightyColumns) {
+  EXPECT_LE(WidestOf(ToText(ExampleReport())), 80);
+  EXPECT_LE(WidestOf(ToText(ExampleRateReport())), 80);
+  EXPECT_LE(WidestOf(ToText(ExampleComparedReport())), 80);
+  RunReport report = WideReport();
+  EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
+  EXPECT_LE(WidestOf(ToText(report, {.colour = true})), 80);
+  report.rig.reset();
+  report.comparison.reset();
+  EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
+  report.fits.clear();
+  report.checks.clear();
+  EXPECT_LE(WidestOf(ToText(report)), 80);
 }
 
 }  // namespace

@@ -130,8 +130,11 @@ class BadFlags(CliTest):
     def test_unknown_model_lists_those_there_are(self):
         self.assert_flags_refused("linear, viscous, coulomb, drag", "--data", "run.csv", "--model", "columb")
 
-    def test_several_models(self):
-        self.assert_flags_refused("several models", "--data", "run.csv", "--model", "viscous,coulomb")
+    def test_a_model_named_twice(self):
+        self.assert_flags_refused("names viscous twice", "--data", "run.csv", "--model", "viscous,drag,viscous")
+
+    def test_an_unknown_model_among_several(self):
+        self.assert_flags_refused("mud", "--data", "run.csv", "--model", "viscous,mud")
 
     def test_fix_of_an_unknown_name(self):
         self.assert_flags_refused("no parameter 'mass'", "--data", "run.csv", "--fix", "mass=1")

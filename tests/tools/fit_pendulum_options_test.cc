@@ -9,10 +9,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/model/friction/registry.h"
+
 namespace pendulum {
 namespace {
 
 using testing::ElementsAre;
+using testing::ElementsAreArray;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
 
@@ -123,11 +127,31 @@ TEST(MakeFitPendulumOptions, NamesTheModelsThereAre) {
   FitPendulumFlags flags = WithData();
   flags.model = "columb";
   EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames());
-  for (const char* several : {"viscous,coulomb", "all"}) {
-    flags.model = several;
-    EXPECT_EQ(Refusal(flags),
-              "--model '" + std::string(several) + "' asks for several models; it takes one of " + MotionModelNames());
-  }
+}
+
+TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
+  FitPendulumFlags flags = WithData();
+  flags.model = "drag,viscous";
+  EXPECT_THAT(MakeFitPendulumOptions(flags).value().models, ElementsAre("drag", "viscous"));
+  flags.model = "drag,viscous,drag";
+  EXPECT_EQ(Refusal(flags), "--model 'drag,viscous,drag' names drag twice");
+  flags.model = "drag,";
+  EXPECT_THAT(Refusal(flags), HasSubstr("there is no model ''"));
+}
+
+TEST(MakeFitPendulumOptions, TakesEveryFrictionLawForAll) {
+  FitPendulumFlags flags = WithData();
+  flags.model = "all";
+  EXPECT_THAT(MakeFitPendulumOptions(flags).value().models, ElementsAreArray(FrictionModels::kNames));
+}
+
+TEST(MakeFitPendulumOptions, TakesParametersThatOnlySomeOfTheModelsHave) {
+  FitPendulumFlags flags = WithData();
+  flags.model = "viscous,drag";
+  flags.fix = "drag=0.001";
+  EXPECT_EQ(MakeFitPendulumOptions(flags).value().fit.fixed.size(), 1);
+  flags.fix = "stiction=0.001";
+  EXPECT_THAT(Refusal(flags), HasSubstr("stiction"));
 }
 
 TEST(MakeFitPendulumOptions, KnowsThreeKindsOfStart) {

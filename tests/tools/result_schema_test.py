@@ -46,7 +46,12 @@ class Schema(unittest.TestCase):
                      ["fits", 0, "derived", "natural_frequency"], ["warnings", 0], ["data", "sampling"],
                      ["fits", 0, "closed_form", 0], ["closed_forms"], ["closed_forms", "linear"],
                      ["closed_forms", "linear", "inertia"], ["closed_forms", "decrement"],
-                     ["closed_forms", "envelopes", 0]):
+                     ["closed_forms", "envelopes", 0], ["comparison"], ["comparison", "rows", 0],
+                     ["comparison", "rows", 1], ["comparison", "rows", 0, "cross_validation"],
+                     ["comparison", "tests", 0], ["comparison", "tests", 1], ["fits", 0, "constancy"],
+                     ["fits", 0, "constancy", "halves"], ["fits", 0, "constancy", "halves", "rows", 0],
+                     ["fits", 0, "constancy", "amplitude"], ["fits", 0, "constancy", "amplitude", "windows", 0],
+                     ["fits", 0, "constancy", "amplitude", "trends", 0]):
             part = EXAMPLE
             for step in path:
                 part = part[step]
@@ -68,6 +73,28 @@ class Schema(unittest.TestCase):
         self.assert_refused(lambda result: result["fits"][0]["parameters"]["coulomb"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["derived"]["damping_ratio"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["closed_form"][2].pop("reason"))
+
+    def test_wants_a_reason_for_missing_constancy(self):
+        self.assert_refused(lambda result: result["fits"][1].pop("constancy_reason"))
+        self.assert_refused(lambda result: result["fits"][0].update(constancy_reason="too short"))
+        self.assert_refused(lambda result: result["fits"][0]["constancy"]["halves"].update(p=None))
+
+    def test_wants_a_reason_for_missing_predictions_and_tests(self):
+        self.assert_refused(lambda result: result["comparison"]["rows"][0].update(forward_prediction=None))
+        self.assert_refused(lambda result: result["comparison"]["rows"][0].update(judged=False))
+        self.assert_refused(lambda result: result["comparison"]["tests"][0].update(p=None))
+
+    def test_knows_a_criterion_unless_there_is_no_likelihood(self):
+        self.assert_refused(lambda result: result["comparison"].update(criterion=None))
+        self.assert_refused(lambda result: result["comparison"].update(likelihood="none"))
+        result = copy.deepcopy(EXAMPLE)
+        result["comparison"].update(likelihood="none", criterion=None, recommended=None)
+        VALIDATOR.validate(result)
+
+    def test_holds_without_a_comparison(self):
+        result = copy.deepcopy(EXAMPLE)
+        result["comparison"] = None
+        VALIDATOR.validate(result)
 
     def test_wants_a_reason_for_missing_closed_forms(self):
         for key in ("linear", "decrement"):

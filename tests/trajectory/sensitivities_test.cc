@@ -141,7 +141,10 @@ struct ColumnError {
 template <FrictionModel F>
 void ExpectColumn(const Experiment<F>& experiment, const Curve<typename Experiment<F>::Dual>& dual, int parameter) {
   const bool is_release_time = experiment.kind == StartKind::kRelease && parameter + 1 == experiment.kParameters;
-  const double step = 1e-6 * std::abs(experiment.p[parameter]);
+  const bool is_share =
+      parameter > 0 && parameter <= kFrictionParameters<F> && std::isfinite(F::kParameters[parameter - 1].upper);
+  const double step =
+      (is_share ? 1e-4 : 1e-6) * std::abs(experiment.p[parameter]);  // readings hardly move with a share
   const Curve<double> plus = experiment.TraceShifted(parameter, step);
   const Curve<double> minus = experiment.TraceShifted(parameter, -step);
   std::array<std::vector<double>, 3> instants = {dual.reversals, plus.reversals, minus.reversals};

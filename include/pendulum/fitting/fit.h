@@ -94,6 +94,14 @@ struct NoiseEstimate {
   Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
 };
 
+/// The likelihood along one parameter, the others at their best, at M values: what its profile interval rests on.
+struct ProfileCurve {
+  std::string name;
+  std::vector<double> value;      ///< M, increasing, in the parameter's unit.
+  std::vector<double> statistic;  ///< M, as ProfilePoint: 0 at the estimate, at least 0.
+  double threshold = 0;           ///< Of the statistic, where the 95 % interval ends.
+};
+
 /// What the solver did, over all its runs.
 struct SolverSummary {
   int iterations = 0;
@@ -114,6 +122,7 @@ struct FitReport {
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
   Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
   std::string std_error_method, interval_method;
+  std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
   std::vector<std::string> systematic_names;
   Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
   std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.

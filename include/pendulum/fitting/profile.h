@@ -3,21 +3,33 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pendulum/fitting/optimum.h"
 
 namespace pendulum {
+
+/// The likelihood with one parameter held at a value (the problem's units) and the others at their best.
+struct ProfilePoint {
+  double value = 0;
+  /// 2 (log L of the estimate - log L), at least 0, times the variance that the likelihood has at fixed σ over that of
+  /// ComputeErrors: for a parabola ((value - estimate) / standard error)².
+  double statistic = 0;
+};
 
 /// An interval in the problem's units; `open` says why an end is missing, and is empty when none is.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
   std::string open;
+  std::vector<ProfilePoint> points;  ///< Values increasing, the estimate among them; empty where there is no interval.
+  double threshold = 0;              ///< Of the statistic at the ends: Student's t².
 };
 
 /// The 95 % profile-likelihood interval of parameter k, free or at its bound (D. J. Venzon and S. H. Moolgavkar,
 /// Applied Statistics 37:87, 1988), with regard to residuals that remember (R. E. Chandler and S. Bate, Biometrika
-/// 94:167, 2007). An end beyond a bound is the bound. Cost: about six solves.
+/// 94:167, 2007). An end beyond a bound is the bound. Its points are spread evenly over the interval, four or more on a
+/// side that has a length. Cost: about ten solves.
 ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
                                  const Optimum& optimum, const Autocorrelation& correlation, int k);
 

@@ -17,6 +17,7 @@ struct SolveOptions {
   int holding_parameter = -1;        ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
   int last_friction = 1;             ///< The last parameter of friction; the first is 1, behind inertia.
   int release_time = -1;             ///< -1: the recording begins in motion.
+  std::vector<int> late;             ///< Parameters that only small swings tell: held while the last part is left out.
   int max_iterations = 100;          ///< Of Ceres, for each run.
   int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
 };

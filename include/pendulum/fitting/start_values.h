@@ -21,6 +21,8 @@ struct StartValues {
   double amplitude = 0;            ///< rad, the largest.
   double natural_frequency = 0;    ///< rad/s
   EnergyBalance energy_balance;    ///< Gives the friction of simpler laws too.
+  std::vector<EnergyBalance>
+      other_balances;  ///< At other reference rates, where the law has one: starts to fall back on.
 };
 
 /// Inertia from the crossings, friction from the energy balance, zero from the turning points, and a release or the

@@ -25,6 +25,11 @@ struct ParameterPrior {
   double std_dev = 0;  ///< Positive.
 };
 
+/// Indices of two parameters of a friction law, of which one is at least the other.
+struct OrderedPair {
+  int larger = -1, smaller = -1;
+};
+
 using ParameterRanges = std::map<std::string, ParameterRange, std::less<>>;
 using ParameterPriors = std::map<std::string, ParameterPrior, std::less<>>;
 

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/analysis/constancy.h"
+#include "pendulum/analysis/model_comparison.h"
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
@@ -41,8 +43,10 @@ struct DataSummary {
 
 DataSummary SummarizeData(const Recording& recording, const Recording& used);
 
-/// The same, and why: swing number `release` of those that were found in a recording of so many samples.
-DataSummary SummarizeData(const SwingFit& fit, const ChosenSwings& swings, int release, Eigen::Index samples);
+/// The same, and why: `used` is what was fitted of `swing`, number `release` of those that were found in a recording of
+/// so many samples.
+DataSummary SummarizeData(const Recording& used, const FreeSwing& swing, const ChosenSwings& swings, int release,
+                          Eigen::Index samples);
 
 /// All that a run of fit_pendulum found: what every form of the report is made from.
 struct RunReport {
@@ -55,10 +59,21 @@ struct RunReport {
   std::string closed_forms_model;           ///< The name of that model; empty when no closed forms were asked for.
   std::string no_closed_forms;              ///< Why there are none.
   std::vector<ClosedFormCheck> checks;      ///< One for each fit, in their order, or none at all.
+  std::optional<Comparison> comparison;     ///< Of the fits, where several were asked for.
+  std::vector<Constancy> constancy;         ///< One for each fit, in their order, or none at all.
   std::vector<Warning> warnings;            ///< Of the recording; a fit's own stand in its FitReport.
 
   /// The check of the fit of that index, or nullptr.
   const ClosedFormCheck* CheckOf(std::size_t fit) const { return fit < checks.size() ? &checks[fit] : nullptr; }
+
+  /// The constancy of the fit of that index, or nullptr.
+  const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
+
+  /// The fit that stands for the run: the recommended one, else the first that converged, else the first.
+  std::size_t MainFit() const;
+
+  /// Whether text for people gives all of the fit of that index: of a comparison only the main fit.
+  bool IsShownInFull(std::size_t fit) const { return !comparison || fit == MainFit(); }
 };
 
 /// The warnings of the recording, then those of the fits, each said once.

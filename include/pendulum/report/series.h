@@ -18,13 +18,19 @@ namespace pendulum {
 /// or one that is not finite, its fields are empty.
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
+/// All of the series, or what the page needs: seven digits, no residuals (it takes differences), and the closed forms'
+/// trajectories of the main fit alone.
+enum class SeriesDetail { kAll, kPage };
+
 /// The samples and what was made of them, beside the result: {"time_s", "measured", "unit" (of all readings),
 /// "extrema": [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error",
 /// "angle_rad" (or rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta",
-/// "zeta_std_error", "periods"}], "profiles": null, "models": {name: {"fitted", "residual", "linear_closed_form",
-/// "nonlinear_closed_form"}}}. used: the N samples of the report. What there is not is null: an array, a number in one,
-/// the damping ratio (zeta) of a turning point that none on its side follows.
-nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report);
+/// "zeta_std_error", "periods"}], "profiles": {model: {parameter: {"value", "statistic", "threshold"}}} as
+/// ProfileCurve, "models": {name: {"fitted", "residual", "linear_closed_form", "nonlinear_closed_form"}}}. used: the N
+/// samples of the report. What there is not is null: an array, a number in one, the profiles, the damping ratio (zeta)
+/// of a turning point that none on its side follows.
+nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report,
+                                  SeriesDetail detail = SeriesDetail::kAll);
 
 /// SeriesJson as one line of UTF-8 text.
 std::string ToSeriesJsonText(const Recording& used, const RunReport& report);

@@ -4,13 +4,17 @@
 #include <string>
 
 #include "pendulum/report/run_report.h"
+#include "pendulum/report/section.h"
+#include "pendulum/report/section_text.h"
 
 namespace pendulum {
 
-/// The result for people: UTF-8 text in the layout lmfit's fit_report made customary, about 100 columns wide. Numbers
-/// are rounded by PdgRounding, intervals to the decimal of their value; angles and rates are given in degrees too. Of
-/// the correlations, those of at least 0.1 are listed, the largest first. Data and sampling, each fit, closed forms and
-/// the check of each fit against them, turning points, warnings.
-std::string ToText(const RunReport& report);
+/// The result for people, section by section: data and sampling, the comparison of several models, each fit and whether
+/// its parameters are constants, closed forms and the check of the fit against them, turning points, warnings. In a
+/// comparison one fit is given in full (RunReport::IsShownInFull), the parameters of the others.
+Sections ReportSections(const RunReport& report);
+
+/// ReportSections as UTF-8 text for a terminal of 80 columns, in the layout lmfit's fit_report made customary.
+std::string ToText(const RunReport& report, TextStyle style = {});
 
 }  // namespace pendulum

@@ -10,9 +10,9 @@
 
 namespace pendulum {
 
-inline constexpr int kTextIndent = 4;   ///< Columns, of everything below a heading.
-inline constexpr int kTextWidth = 100;  ///< Columns, of prose.
-inline constexpr int kTextDigits = 6;   ///< Significant digits of a number without an error.
+inline constexpr int kTextIndent = 4;  ///< Columns, of everything below a heading.
+inline constexpr int kTextWidth = 80;  ///< Columns, of a terminal: no line is wider.
+inline constexpr int kTextDigits = 6;  ///< Significant digits of a number without an error.
 
 /// "[[title]]" as a line.
 std::string Heading(const std::string& title);
@@ -20,8 +20,8 @@ std::string Heading(const std::string& title);
 /// Words filled into lines below a heading.
 std::string Prose(std::string_view text);
 
-/// Lines of a name and what is said of it.
-std::string Facts(const std::vector<std::vector<std::string>>& rows);
+/// A text from outside, such as the name of a file, with "?" for each character that would steer a terminal.
+std::string Printable(std::string_view text);
 
 /// Another unit for a quantity: its numbers times `factor`.
 struct Conversion {

@@ -129,7 +129,7 @@ class Tracer {
       VisitSwing(Value(state.time), length);
       state = next;
       if (root > 0) {
-        NoteReversal(Value(state.angle), direction);
+        NoteReversal(Value(state.angle));
         return true;
       }
     }
@@ -143,8 +143,9 @@ class Tracer {
     visit_(std::as_const(segment_));
   }
 
-  void NoteReversal(double angle, double direction) {
+  void NoteReversal(double angle) {
     ++summary_.reversals;
+    const double direction = angle > 0 ? -1.0 : 1.0;
     const double holding = direction * F::Torque(0.0, direction, values_.friction.data());
     summary_.smallest_reversal_margin = std::min(summary_.smallest_reversal_margin,
                                                  std::abs(std::abs(GravityTorque(values_.gravity, angle)) - holding));

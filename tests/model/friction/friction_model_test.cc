@@ -58,6 +58,14 @@ class FrictionLaw : public testing::Test {
     return p;
   }
 
+  /// The law seen in a mirror: what has a sign changes it.
+  static Parameters Mirrored(Parameters p) {
+    for (int i = 0; i < kParameters; ++i) {
+      if (F::kParameters[i].lower < 0) p[i] = -p[i];
+    }
+    return p;
+  }
+
   std::mt19937_64 generator_{20260803};
 };
 
@@ -66,11 +74,12 @@ TYPED_TEST_SUITE(FrictionLaw, TypesOf<FrictionModels>::Type, LawName);
 /// Rest, 1e-9, typical and fast [rad/s].
 constexpr std::array kRates = {0.0, 1e-9, 1e-3, 0.4, 2.7, 30.0};
 
-TYPED_TEST(FrictionLaw, IsOdd) {
+TYPED_TEST(FrictionLaw, IsOddButForParametersThatHaveASign) {
   for (int trial = 0; trial < 20; ++trial) {
     const auto p = this->RandomParameters();
+    const auto mirrored = this->Mirrored(p);
     for (const double rate : kRates) {
-      EXPECT_EQ(TypeParam::Torque(-rate, -1.0, p.data()), -TypeParam::Torque(rate, 1.0, p.data())) << rate;
+      EXPECT_EQ(TypeParam::Torque(-rate, -1.0, mirrored.data()), -TypeParam::Torque(rate, 1.0, p.data())) << rate;
     }
   }
 }
@@ -146,7 +155,7 @@ TYPED_TEST(FrictionLaw, RecurrenceIsTheTaylorSeriesOfTheTorque) {
   for (int trial = 0; trial < 40; ++trial) {
     const double direction = trial % 2 == 0 ? 1.0 : -1.0;
     auto p = TypicalFriction<TypeParam>(1.0);
-    for (double& value : p) value *= factor(this->generator_);
+    for (double& value : p) value *= factor(this->generator_);  // a bound does not matter to a series
     const Series<double> rate = RandomRate(this->generator_, direction);
     const TorqueSeries expected = TorqueByContour<TypeParam>(rate, direction, p);
     Series<double> known;
@@ -176,7 +185,7 @@ TYPED_TEST(FrictionLaw, HasParametersThatAreNamedOnceAndExplained) {
 
 TYPED_TEST(FrictionLaw, HasBoundsThatKeepItFromAddingEnergy) {
   for (const ParameterInfo& info : TypeParam::kParameters) {
-    EXPECT_THAT(info.lower, Ge(0)) << info.name;
+    EXPECT_THAT(info.lower, Ge(info.scales_with_gravity() ? 0 : -1)) << info.name;
     EXPECT_LT(info.lower, info.upper) << info.name;
   }
 }
@@ -224,6 +233,29 @@ TEST(DragFriction, AddsTheSquareOfTheRateInTheDirectionOfMotion) {
   EXPECT_EQ(DragFriction::Torque(3.0, 1.0, p.data()), 19.75);
   EXPECT_EQ(DragFriction::Torque(-3.0, -1.0, p.data()), -19.75);
   EXPECT_EQ(DragFriction::Torque(0.0, -1.0, p.data()), -0.25);
+}
+
+// exp(-1) = 0.36787944117144233.
+TEST(StribeckFriction, FallsFromStictionToCoulombAsTheRateGrows) {
+  const std::array p = {0.5, 0.25, 0.75, 2.0};
+  EXPECT_EQ(StribeckFriction::Torque(0.0, 1.0, p.data()), 0.75);
+  EXPECT_DOUBLE_EQ(StribeckFriction::Torque(2.0, 1.0, p.data()), 1.0 + 0.25 + 0.5 * 0.36787944117144233);
+  EXPECT_DOUBLE_EQ(StribeckFriction::Torque(-2.0, -1.0, p.data()), -1.25 - 0.5 * 0.36787944117144233);
+  EXPECT_EQ(StribeckFriction::Torque(200.0, 1.0, p.data()), 100.25);
+}
+
+TEST(StribeckFriction, IsCoulombFrictionWhereStictionIsNoLarger) {
+  const std::array p = {0.5, 0.25, 0.25, 2.0};
+  for (const double rate : {0.0, 0.3, 5.0}) {
+    EXPECT_EQ(StribeckFriction::Torque(rate, 1.0, p.data()), CoulombFriction::Torque(rate, 1.0, p.data())) << rate;
+  }
+}
+
+TEST(AsymmetricFriction, IsLargerTowardsPositiveAngles) {
+  const std::array p = {0.5, 0.25, 0.5};
+  EXPECT_EQ(AsymmetricFriction::Torque(3.0, 1.0, p.data()), 1.875);
+  EXPECT_EQ(AsymmetricFriction::Torque(-3.0, -1.0, p.data()), -1.625);
+  EXPECT_EQ(AsymmetricFriction::Torque(0.0, -1.0, p.data()), -0.125);
 }
 
 // ---- The list ----------------------------------------------------------------------------------------------------

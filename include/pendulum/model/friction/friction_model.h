@@ -15,9 +15,11 @@ namespace pendulum {
 /// motion in direction s = ±1, and coefficient n of that torque's Taylor series along a swing, from the rate's
 /// coefficients 0..n. kFormula is T as text for the report's equation of motion: th' is the rate, {name} the value of a
 /// parameter. Torque and parameters are in units of the gravity torque G. Torque(0, 1, p) is the static torque: the
-/// pendulum stays at rest while |sin θ| does not exceed it. The law is odd, T(-ω, -s) = -T(ω, s), and never adds
-/// energy, T(ω) ω >= 0, for parameters within their bounds; all parameters 0 is no friction. A law that is not linear
-/// in its parameters needs a start value of its own: see EstimateStartValues in start_values.h.
+/// pendulum stays at rest while |sin θ| does not exceed it, that of the direction in which it would move. The law is
+/// odd, T(-ω, -s) = -T(ω, s), but for parameters of either sign, which change theirs; it never adds energy, T(ω) ω >=
+/// 0, for parameters within their bounds; all torques 0 is no friction. Two members may be left out: kOrdered, a
+/// parameter that is never below another; kRateScales, where the last parameter is a rate that the torque is not linear
+/// in: the multiples of the largest rate from which a search begins.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
@@ -26,6 +28,16 @@ concept FrictionModel = requires(double x, const double* p, const Series<double>
   { F::kFormula } -> std::convertible_to<std::string_view>;
   { F::template Torque<double>(x, x, p) } -> std::same_as<double>;
   { recurrence(0, rate, x, p) } -> std::same_as<double>;
+};
+
+template <typename F>
+concept HasOrder = requires {
+  { F::kOrdered } -> std::convertible_to<OrderedPair>;
+};
+
+template <typename F>
+concept HasRateScale = requires {
+  { F::kRateScales[0] } -> std::convertible_to<double>;
 };
 
 /// The number of parameters of a friction law, at compile time.

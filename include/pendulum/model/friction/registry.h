@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pendulum/model/friction/asymmetric.h"
 #include "pendulum/model/friction/coulomb.h"
 #include "pendulum/model/friction/drag.h"
 #include "pendulum/model/friction/friction_model.h"
+#include "pendulum/model/friction/stribeck.h"
 #include "pendulum/model/friction/viscous.h"
 
 namespace pendulum {
 
 /// Every friction law there is. To add one: its header above, its name here (CONTRIBUTING.md tells the rest).
-using FrictionModels = FrictionModelList<ViscousFriction, CoulombFriction, DragFriction>;
+using FrictionModels =
+    FrictionModelList<ViscousFriction, CoulombFriction, DragFriction, StribeckFriction, AsymmetricFriction>;
 
 }  // namespace pendulum

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pendulum/analysis/model_comparison.h"
+
+namespace pendulum {
+
+/// Sets `recommended` and its reason from the rows: of the models within kWithinBic of the smallest BIC the one of the
+/// fewest physical parameters, then of the smallest BIC; none where there is no criterion.
+void Recommend(const FittedModels& fitted, Comparison& comparison);
+
+}  // namespace pendulum

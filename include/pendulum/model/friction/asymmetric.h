@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pendulum/model/friction/coulomb.h"
+
+namespace pendulum {
+
+inline constexpr ParameterInfo kAsymmetry{
+    "asymmetry", "α", "1", "1", -1.0, 1.0, "share by which dry friction is larger towards positive angles"};
+
+/// Viscous friction and dry friction that depends on the direction, as cables and brushes give:  T(ω) = b ω + s τ_c
+/// (1 + s α).  MODEL.md eq. (48).
+struct AsymmetricFriction {
+  static constexpr std::string_view kName = "asymmetric";
+  static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, kCoulomb, kAsymmetry}};
+  static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} (sgn(th') + {asymmetry})";
+
+  template <typename T>
+  static T Torque(const T& rate, double direction, const T* p) {
+    return p[0] * rate + p[1] * (direction + p[2]);
+  }
+
+  template <typename T>
+  struct Recurrence {
+    T operator()(int n, const Series<T>& rate, double direction, const T* p) {
+      return n == 0 ? p[0] * rate[0] + p[1] * (direction + p[2]) : p[0] * rate[n];
+    }
+  };
+};
+
+}  // namespace pendulum

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/analysis/constancy.h"
+#include "pendulum/report/run_report.h"
+
+namespace pendulum {
+
+/// "comparison" of the result; null without one.
+nlohmann::ordered_json ComparisonJson(const RunReport& report);
+
+/// "constancy" of a fit: its two tests; null where neither could be made.
+nlohmann::ordered_json ConstancyJson(const Constancy* constancy);
+
+/// Why ConstancyJson of a fit is null; empty when it is not.
+std::string NoConstancyReason(const FitReport& fit, const Constancy* constancy);
+
+}  // namespace pendulum

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/fitting/fit.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/report/section.h"
+
+namespace pendulum {
+
+/// One fit: model and status, parameters, derived quantities, correlations, noise and statistics, equation of motion.
+/// Numbers are rounded by PdgRounding, intervals to the decimal of their value; angles and rates are given in degrees
+/// too. Of the correlations those of at least 0.1 are listed, the largest first. check: of this fit, or nullptr.
+Sections FitSections(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check);
+
+/// The table of estimates alone, and the status of a fit that did not converge: "Parameters of drag".
+Section ParameterSection(const FitReport& fit, bool is_one_of_several);
+
+/// An equation that breaks only before +, - and =: the other blanks are no-break spaces.
+std::string TermsTogether(const std::string& equation);
+
+}  // namespace pendulum

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "pendulum/recording/recording.h"
+#include "pendulum/report/run_report.h"
+
+namespace pendulum {
+
+/// The report as one HTML file that needs no network: the page built from src/report/page with result, series and the
+/// command line (empty for none) embedded as JSON. used: the samples of the report.
+std::string ToHtml(const Recording& used, const RunReport& report, const std::string& command);
+
+}  // namespace pendulum

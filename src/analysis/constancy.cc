@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/constancy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "pendulum/analysis/amplitude_trend.h"
+#include "pendulum/analysis/part_fit.h"
+#include "pendulum/base/format.h"
+#include "pendulum/closed_form/extrema.h"
+#include "pendulum/fitting/undersampled.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// ---- Where to cut --------------------------------------------------------------------------------------------------
+
+/// The first instant that is surely after the release [s, file's clock].
+double BeginOfMotion(const Recording& used, const FitReport& fit) {
+  constexpr double kSurely = 4;  // standard errors
+  const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
+  if (release == nullptr) return used.time[0];
+  return release->estimate + kSurely * release->std_error.value_or(0);
+}
+
+/// Where the motion begins and each turning point after it [s, file's clock]: M + 1 ends of M half swings.
+std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
+  constexpr double kFirst = 0.5;  // of a half swing; what comes earlier is the start itself
+  const Result<Recording> moving = SelectWindow(used, begin, std::numeric_limits<double>::quiet_NaN());
+  const auto turns = moving ? FindExtrema(*moving) : tl::unexpected(moving.error());
+  std::vector<double> ends = {begin};
+  if (!turns) return ends;
+  const double half_swing = (turns->back().time - turns->front().time) / static_cast<double>(turns->size() - 1);
+  for (const Extremum& turn : *turns) {
+    if (turn.time > begin + kFirst * half_swing) ends.push_back(turn.time);
+  }
+  return ends;
+}
+
+// ---- Halves --------------------------------------------------------------------------------------------------------
+
+/// Inertia and friction of a half as its readings alone would have them, whatever bounds they have.
+struct HalfEstimate {
+  std::vector<std::string_view> names;  // K
+  VectorXd value;                       // K
+  MatrixXd covariance;                  // K x K
+};
+
+/// The covariance of all that is free, with the residuals' own variance and memory (MODEL.md eq. (29)).
+MatrixXd CovarianceOf(const PartFit& half, const LinearFit& linear, const NoiseModel& noise,
+                      const ReadingTerms& terms) {
+  const VectorXd time = half.part.clock_scale * half.part.time;
+  const bool converged = half.fit.termination == Termination::kConverged;
+  const Autocorrelation memory =
+      converged ? half.fit.noise.memory
+                : MemoryOf(time, half.part.value, noise, half.fit.fitted, linear.jacobian(Eigen::all, linear.free));
+  const MatrixXd covariance = ScoreCovariance(noise, memory, terms, time, linear.influence);
+  const double lost = linear.inverse.ldlt().solve(covariance).trace();
+  return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
+}
+
+/// A step to where the likelihood would be greatest without the bounds: what a bound cut off has no normal
+/// distribution, and what is left beside it depends on it.
+std::optional<HalfEstimate> EstimateHalf(const PartFit& half, const NoiseModel& noise, const std::optional<Rig>& rig) {
+  const ReadingTerms terms = TermsOf(noise, half.part.value, half.fit.fitted);
+  const std::optional<LinearFit> linear = Linearize(half.part, half.fit, rig, terms, {}, false);
+  if (!linear) return std::nullopt;
+  const VectorXd step = linear->influence.transpose() * terms.score;
+  const MatrixXd covariance = CovarianceOf(half, *linear, noise, terms);
+  HalfEstimate estimate;
+  const auto physical = static_cast<Index>(PhysicalParameters(half.fit.model).size());
+  std::vector<double> values;
+  for (std::size_t i = 0; i < linear->free.size() && linear->free[i] < physical; ++i) {
+    const ParameterEstimate& parameter = half.fit.parameters[static_cast<std::size_t>(linear->free[i])];
+    estimate.names.push_back(parameter.info.name);
+    values.push_back(parameter.estimate + step[static_cast<Index>(i)]);
+  }
+  const auto size = static_cast<Index>(values.size());
+  estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
+  estimate.covariance = covariance.topLeftCorner(size, size);
+  return estimate;
+}
+
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal.
+double SquaredLength(const VectorXd& difference, const MatrixXd& covariance) {
+  const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const VectorXd scaled = scale.asDiagonal() * difference;
+  const MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  return scaled.dot(correlation.ldlt().solve(scaled));
+}
+
+void CompareEstimates(const HalfEstimate& first, const HalfEstimate& second, const FitReport& fit, Constancy& result) {
+  const VectorXd difference = second.value - first.value;
+  const MatrixXd covariance = first.covariance + second.covariance;
+  for (Index i = 0; i < difference.size(); ++i) {
+    const ParameterEstimate& parameter = *fit.Find(first.names[static_cast<std::size_t>(i)]);
+    result.halves.push_back({std::string(parameter.info.name), parameter.unit, first.value[i], second.value[i],
+                             std::sqrt(first.covariance(i, i)), std::sqrt(second.covariance(i, i)),
+                             difference[i] / std::sqrt(covariance(i, i))});
+  }
+  if (difference.size() == 0) return;
+  result.halves_dof = static_cast<int>(difference.size());
+  result.halves_statistic = std::max(SquaredLength(difference, covariance), 0.0);
+  result.halves_p =
+      boost::math::cdf(boost::math::complement(boost::math::chi_squared(result.halves_dof), result.halves_statistic));
+}
+
+/// Why there is no test; empty when there is.
+std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
+                          const std::optional<Rig>& rig, Constancy& result) {
+  if (ends.size() - 1 < 2 * kFewestHalfSwings) return TooShort(ends, "halves", 2 * kFewestHalfSwings);
+  const double cut = ends[CutEvenly(ends, 2, parts)[1]];
+  std::vector<HalfEstimate> estimates;
+  for (const auto& [name, from, to] :
+       {std::tuple("first", ends.front(), cut), std::tuple("second", After(cut), ends.back())}) {
+    const PartFit half = parts.Fit(from, to, {});
+    if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
+    std::optional<HalfEstimate> estimate = EstimateHalf(half, parts.NoiseOf(half.fit), rig);
+    if (!estimate) return std::string("the ") + name + " half does not tell all parameters";
+    estimates.push_back(*std::move(estimate));
+  }
+  CompareEstimates(estimates[0], estimates[1], fit, result);
+  return result.halves_p ? "" : "inertia and friction are held: there is nothing to compare";
+}
+
+// ---- Words ---------------------------------------------------------------------------------------------------------
+
+std::string Join(const std::string& first, const std::string& second, const std::string& between) {
+  return first.empty() || second.empty() ? first + second : first + between + second;
+}
+
+std::string Estimate(double value, double std_error) {
+  constexpr int kDigits = 4;
+  return NumberText(value, kDigits) + " ± " + NumberText(std_error, 2);
+}
+
+/// What differs between the halves: the parameter that does so most.
+std::string DescribeHalves(const Constancy& result) {
+  const auto row =
+      std::ranges::max_element(result.halves, {}, [](const HalvesRow& candidate) { return std::abs(candidate.z); });
+  const bool alone = TwoSidedP(row->z) < kNotConstant;
+  const std::string what =
+      alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
+  return what + " between the halves: " + Estimate(row->first, row->first_std_error) + " then " +
+         Estimate(row->second, row->second_std_error) + " " + row->unit + " (p = " + ProbabilityText(*result.halves_p) +
+         ")";
+}
+
+std::string DescribeTrend(const AmplitudeTrend& trend) {
+  const std::string change = trend.span > 0 ? " falls by " : " rises by ";
+  const std::string why = trend.name == kInertia.name
+                              ? "the period depends on amplitude in another way than the model's"
+                              : "friction depends on amplitude in another way than the model's, or on time";
+  return trend.name + change + NumberText(100 * std::abs(trend.span), 2) +
+         " % from the largest to the smallest swings (p = " + ProbabilityText(trend.p) + "): " + why;
+}
+
+std::string Describe(const Constancy& result) {
+  std::string found;
+  if (result.halves_p && *result.halves_p < kNotConstant) found = DescribeHalves(result);
+  for (const AmplitudeTrend& trend : result.trends)
+    if (trend.p < kNotConstant) found = Join(found, DescribeTrend(trend), "; ");
+  if (!found.empty()) return found;
+  if (!result.halves_p && result.trends.empty()) return "not tested: " + result.reason;
+  std::string names;
+  for (const auto& trend : result.trends)
+    names = Join(names, trend.name + " (p = " + ProbabilityText(trend.p) + ")", " or ");
+  return "inertia and friction are constants of the recording: " +
+         Join(result.halves_p ? "halves agree (p = " + ProbabilityText(*result.halves_p) + ")" : "",
+              names.empty() ? "" : "no trend of " + names + " with amplitude", ", ");
+}
+
+}  // namespace
+
+bool Constancy::constant() const {
+  return halves_p.value_or(1) >= kNotConstant &&
+         std::ranges::all_of(trends, [](const AmplitudeTrend& trend) { return trend.p >= kNotConstant; });
+}
+
+Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOptions& options) {
+  Constancy result;
+  if (fit.termination != Termination::kConverged) {
+    result.reason = "the fit did not converge";
+  } else if (IsUndersampled(used, options.rig)) {
+    result.reason = "the recording is sampled too slowly to be cut at its turning points";
+  } else {
+    const std::vector<double> ends = HalfSwingEnds(used, BeginOfMotion(used, fit));
+    const Parts parts(used, fit, options);
+    const std::string halves = CompareHalves(parts, ends, fit, options.rig, result);
+    result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");
+  }
+  result.verdict = Describe(result);
+  return result;
+}
+
+}  // namespace pendulum

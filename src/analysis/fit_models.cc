@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/fit_models.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/model/nesting.h"
+
+namespace pendulum {
+namespace {
+
+/// All names that options may say something of, with any start.
+std::set<std::string, std::less<>> NamesOf(const std::string& model) {
+  std::set<std::string, std::less<>> names;
+  const Result<MotionModel> found = FindMotionModel(model);
+  if (!found) return names;
+  for (const ParameterInfo& info : PhysicalParameters(*found)) names.emplace(info.name);
+  return names;
+}
+
+/// The model that finds the window: of most parameters, and none that a recording may leave without meaning.
+std::size_t Richest(const std::vector<std::string>& models) {
+  std::size_t richest = 0;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Result<MotionModel> model = FindMotionModel(models[i]);
+    if (!model || OrderOf(*model).larger >= 0 || model->gravity != Gravity::kSine) continue;
+    const std::size_t size = PhysicalParameters(*model).size();
+    if (size > most) most = size, richest = i;
+  }
+  return richest;
+}
+
+NoiseChoice ChoiceOf(const FitReport& fit, const FitOptions& options) {
+  if (fit.noise.family == NoiseFamily::kGaussian) return NoiseChoice::kGaussian;
+  return fit.noise.family == NoiseFamily::kQuantized ? NoiseChoice::kQuantized : options.noise;
+}
+
+StartChoice ChoiceOf(StartKind start) {
+  return start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
+}
+
+FitReport FailedFit(const std::string& model, const FitReport& like, const Status& status) {
+  FitReport fit;
+  fit.model = *FindMotionModel(model);
+  fit.termination = Termination::kFailed;
+  fit.reason = status.message;
+  fit.start = like.start;
+  fit.quantity = like.quantity;
+  fit.reading_unit = like.reading_unit;
+  return fit;
+}
+
+/// What is no pendulum's swing is none for any model.
+void ShareVerdict(const FitReport& lead, FitReport& fit) {
+  const auto said = std::ranges::find(lead.warnings, "not_a_pendulum", &Warning::code);
+  if (said == lead.warnings.end() || fit.termination == Termination::kFailed) return;
+  fit.termination = Termination::kNotConverged;
+  fit.reason = said->message;
+  WithdrawErrors("not a pendulum", fit);
+}
+
+/// The fits of one run of FitModels.
+class SharedFits {
+ public:
+  SharedFits(SwingFit lead, std::size_t lead_index, const FitOptions& options, const std::vector<std::string>& models)
+      : options_(options), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
+    options_.start = ChoiceOf(lead.fit.start);
+    result_.fits.resize(models.size());
+    result_.fits[lead_index] = std::move(lead.fit);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      if (i != lead_index) Fit(i, result_.fits[lead_index]);
+    }
+    ShareNoise();
+  }
+
+  FittedModels Take() && { return std::move(result_); }
+
+ private:
+  void Fit(std::size_t i, const FitReport& lead) {
+    auto [options, ignored] = ForModel(options_, models_[i], models_);
+    Result<FitReport> fit = FitRecording(result_.used, options);
+    result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], lead, fit.error());
+    ShareVerdict(lead, result_.fits[i]);
+  }
+
+  /// Likelihoods are compared within a family only: that of the smallest residuals.
+  void ShareNoise() {
+    const auto best = std::ranges::min_element(result_.fits, {}, [](const FitReport& fit) {
+      return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
+    });
+    const NoiseFamily family = best->noise.family;
+    options_.noise = ChoiceOf(*best, options_);
+    const FitReport lead = *best;
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      FitReport& fit = result_.fits[i];
+      if (fit.termination == Termination::kFailed || fit.noise.family == family) continue;
+      std::vector<Warning> said = std::move(fit.warnings);
+      Fit(i, lead);
+      for (Warning& warning : said) {
+        const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
+        const bool of_window = warning.code == "disturbed" || warning.code == "left_out";
+        if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
+      }
+    }
+  }
+
+  FitOptions options_;
+  const std::vector<std::string>& models_;
+  FittedModels result_;
+};
+
+/// A swing whose frequency is looked for among aliases is looked for by every model.
+Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
+                             const std::vector<std::string>& models) {
+  FittedModels fitted;
+  for (const std::string& model : models) {
+    Result<SwingFit> fit = FitSwing(recording, swing, ForModel(options, model, models).options);
+    if (!fit) return tl::unexpected(fit.error());
+    fitted.used = std::move(fit->used);
+    fitted.swing = std::move(fit->swing);
+    fitted.fits.push_back(std::move(fit->fit));
+  }
+  return fitted;
+}
+
+Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,
+                               const std::vector<std::string>& models) {
+  const std::size_t lead_index = Richest(models);
+  const FitOptions lead_options = ForModel(options, models[lead_index], models).options;
+  Result<SwingFit> lead = FitSwing(std::move(recording), swing, lead_options);
+  if (!lead) return tl::unexpected(lead.error());
+  return SharedFits(*std::move(lead), lead_index, options, models).Take();
+}
+
+void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedModels& fitted) {
+  for (FitReport& fit : fitted.fits) {
+    const std::string model(fit.model.name);
+    for (const std::string& name : ForModel(options, model, models).ignored) {
+      fit.warnings.push_back({"ignored_parameter", "model " + model + " has no " + name +
+                                                       "; what was said of it is "
+                                                       "left out there"});
+    }
+  }
+}
+
+}  // namespace
+
+OptionsForModel ForModel(const FitOptions& options, const std::string& model, const std::vector<std::string>& models) {
+  OptionsForModel own{options, {}};
+  own.options.model = model;
+  const auto names = NamesOf(model);
+  std::set<std::string, std::less<>> others;
+  for (const std::string& other : models) others.merge(NamesOf(other));
+  std::set<std::string> ignored;
+  const auto narrow = [&](auto& map) {
+    std::erase_if(map, [&](const auto& entry) {
+      const bool only_others = others.contains(entry.first) && !names.contains(entry.first);
+      if (only_others) ignored.insert(entry.first);
+      return only_others;
+    });
+  };
+  narrow(own.options.fixed);
+  narrow(own.options.initial);
+  narrow(own.options.bounds);
+  narrow(own.options.priors);
+  own.ignored.assign(ignored.begin(), ignored.end());
+  return own;
+}
+
+Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
+                               const std::vector<std::string>& models) {
+  Result<FittedModels> fitted = swing.undersampled ? FitEach(recording, swing, options, models)
+                                                   : FitShared(std::move(recording), swing, options, models);
+  if (!fitted) return fitted;
+  if (models.size() > 1) WarnOfIgnored(options, models, *fitted);
+  return fitted;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/part_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pendulum/fitting/covariance.h"
+#include "pendulum/fitting/estimate_autocorrelation.h"
+#include "pendulum/fitting/fit_problem.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool IsStart(std::string_view name) {
+  return name == kReleaseAngle.name || name == kReleaseTime.name || name == kInitialAngle.name ||
+         name == kInitialRate.name;
+}
+
+bool IsZero(std::string_view name) { return name == kZeroAngle.name || name == kRateBias.name; }
+
+/// A part begins where the whole fit ended: tens are enough, and more would be spent on what is no swing.
+constexpr int kMostTraces = 200;
+
+/// What was asked of the whole, without what belongs to its start alone and what both halves would share.
+FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
+  options.start = StartChoice::kMoving;
+  options.start_values.reset();
+  options.initial.clear();
+  options.priors.clear();
+  std::erase_if(options.fixed, [](const auto& entry) { return IsStart(entry.first); });
+  std::erase_if(options.bounds, [](const auto& entry) { return IsStart(entry.first); });
+  options.interval = IntervalMethod::kCovariance;
+  options.progress = nullptr;
+  options.max_traces = std::min(options.max_traces, kMostTraces);
+  if (options.loss == Loss::kNone) {
+    options.noise = fit.noise.family == NoiseFamily::kQuantized ? NoiseChoice::kQuantized : NoiseChoice::kGaussian;
+  }
+  return options;
+}
+
+/// The motion of a fit over its recording; its parameters as in TrajectoryCost.
+std::optional<Trajectory> MotionOf(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig) {
+  const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
+  std::vector<double> parameters;
+  for (std::size_t i = 0; i < PhysicalParameters(fit.model).size(); ++i) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    parameters.push_back(parameter.estimate / (parameter.info.scales_with_gravity() ? gravity_torque : 1.0));
+  }
+  const ParameterEstimate* const start = &fit.parameters[parameters.size()];
+  Start<double> begin{fit.start, 0, start[0].estimate, start[1].estimate};
+  if (fit.start == StartKind::kRelease) {
+    begin.time = used.clock_scale * (start[1].estimate - used.time[0]);
+    begin.rate = 0;
+  }
+  TraceOptions trace;
+  trace.end = used.clock_scale * (used.time[used.size() - 1] - used.time[0]);
+  Result<Trajectory> motion = MakeTrajectory(fit.model, parameters, begin, trace);
+  if (!motion) return std::nullopt;
+  return *std::move(motion);
+}
+
+/// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its
+/// bound: near enough for a last step on the linear motion.
+bool IsNear(const PartFit& part, const NoiseModel& noise, const std::optional<Rig>& rig) {
+  constexpr double kMostUnexplained = 0.12;
+  constexpr double kNear = 1;
+  if (part.fit.termination != Termination::kNotConverged) return false;
+  const VectorXd& value = part.part.value;
+  const double variance = (value.array() - value.mean()).matrix().squaredNorm();
+  if (part.fit.residual.squaredNorm() > kMostUnexplained * variance) return false;
+  const ReadingTerms terms = TermsOf(noise, value, part.fit.fitted);
+  const std::optional<LinearFit> linear = Linearize(part.part, part.fit, rig, terms, {}, true);
+  if (!linear) return false;
+  const VectorXd gradient = linear->jacobian(Eigen::all, linear->free).transpose() * terms.score;
+  return gradient.dot(linear->inverse * gradient) < kNear * kNear;
+}
+
+}  // namespace
+
+bool IsDrift(std::string_view name) { return name == kZeroDrift.name || name == kBiasDrift.name; }
+
+ReadingTerms TermsOf(const NoiseModel& noise, const VectorXd& value, const VectorXd& readings) {
+  ReadingTerms terms{VectorXd(value.size()), VectorXd(value.size())};
+  for (Index i = 0; i < value.size(); ++i) {
+    const NoiseLikelihood l = noise.LikelihoodAt(value[i], readings[i]);
+    terms.score[i] = l.score;
+    terms.information[i] = l.information;
+  }
+  if (noise.IsRobust()) terms.information.setConstant(terms.information.mean());
+  return terms;
+}
+
+MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
+                         const VectorXd& time, const MatrixXd& weights) {
+  const MatrixXd correlated = CorrelatedSum(memory, time, weights);
+  if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(time.size()) * correlated;
+  const double variance = noise.sigma * noise.sigma;
+  const VectorXd lost = 1 - variance * terms.information.array();
+  return (correlated - weights.transpose() * lost.asDiagonal() * weights) / variance;
+}
+
+std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
+                                   const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds) {
+  LinearFit linear;
+  const FittedMotion motion(recording, fit, rig);
+  if (!motion.Readings(motion.instants(), &linear.jacobian)) return std::nullopt;
+  const MatrixXd weighted = terms.information.asDiagonal() * linear.jacobian;
+  MatrixXd information = linear.jacobian.transpose() * weighted;
+  std::vector<int> free;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    const auto k = static_cast<Index>(i);
+    if (const auto prior = priors.find(parameter.info.name); prior != priors.end())
+      information(k, k) += 1 / (prior->second.std_dev * prior->second.std_dev);
+    if (parameter.fixed || (with_bounds && parameter.at_bound)) continue;
+    linear.free.push_back(k);
+    free.push_back(static_cast<int>(i));
+  }
+  const InformationInverse inverse = InvertInformation(information, free);
+  if (!inverse.identifiable) return std::nullopt;
+  linear.inverse = inverse.matrix;
+  linear.influence = linear.jacobian(Eigen::all, linear.free) * linear.inverse;
+  return linear;
+}
+
+Parts::Parts(const Recording& used, const FitReport& fit, const FitOptions& options)
+    : used_(used), fit_(fit), options_(OptionsOfParts(fit, options)), motion_(MotionOf(used, fit, options.rig)) {
+  const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
+  inertia_ = fit.parameters[0].estimate / gravity_torque;
+  if (fit.noise.censored == 0) return;
+  if (const Result<FitProblem> problem = MakeFitProblem(used, options)) {
+    low_ = problem->noise.low;
+    high_ = problem->noise.high;
+  }
+}
+
+PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& held) const {
+  PartFit result;
+  Result<Recording> part = SelectWindow(used_, from, to);
+  if (!part) return {{}, 0, {}, part.error().message};
+  result.part = *std::move(part);
+  result.first = std::ranges::lower_bound(used_.time, result.part.time[0]) - used_.time.begin();
+  FitOptions options = options_;
+  const double instant = Instant(result.part.time[0]);
+  for (const ParameterEstimate& parameter : fit_.parameters) {
+    const std::string_view name = parameter.info.name;
+    if (IsStart(name)) continue;
+    double value = parameter.estimate;
+    // What drifts is told at the first sample.
+    if (const ParameterEstimate& last = fit_.parameters.back(); IsZero(name) && IsDrift(last.info.name))
+      value += last.estimate * instant;
+    const bool hold = parameter.fixed || std::ranges::find(held, name) != held.end();
+    (hold ? options.fixed : options.initial).insert_or_assign(std::string(name), value);
+  }
+  if (motion_) {
+    options.initial.insert_or_assign(std::string(kInitialAngle.name), motion_->Angle(instant));
+    options.initial.insert_or_assign(std::string(kInitialRate.name), motion_->Rate(instant));
+  }
+  Result<FitReport> fit = FitRecording(result.part, options);
+  if (!fit) {
+    result.reason = fit.error().message;
+    return result;
+  }
+  result.fit = *std::move(fit);
+  const bool converged =
+      result.fit.termination == Termination::kConverged || IsNear(result, NoiseOf(result.fit), options.rig);
+  if (!converged) result.reason = result.fit.reason;
+  return result;
+}
+
+NoiseModel Parts::NoiseOf(const FitReport& fit) const {
+  return {fit.noise.family, fit.noise.sigma, fit.noise.resolution, low_, high_};
+}
+
+double Parts::Amplitude(double time) const {
+  if (!motion_) return 0;
+  const double angle = motion_->Angle(Instant(time));
+  const double rate = motion_->Rate(Instant(time));
+  const double kinetic = inertia_ * rate * rate;  // twice, in units of G
+  if (fit_.model.gravity == Gravity::kLinear) return std::sqrt(kinetic + angle * angle);
+  return std::acos(std::clamp(std::cos(angle) - 0.5 * kinetic, -1.0, 1.0));
+}
+
+std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits) {
+  std::vector<double> told = {0};
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    told.push_back(told.back() + std::pow(fits.Amplitude(0.5 * (ends[i - 1] + ends[i])), 2.0 / 3.0));
+  std::vector<std::size_t> cuts = {0};
+  for (std::size_t k = 1; k < parts; ++k) {
+    const double wanted = told.back() * static_cast<double>(k) / static_cast<double>(parts);
+    const auto above = static_cast<std::size_t>(std::ranges::lower_bound(told, wanted) - told.begin());
+    const std::size_t nearest = above > 0 && wanted - told[above - 1] < told[above] - wanted ? above - 1 : above;
+    const std::size_t last = ends.size() - 1 - kFewestHalfSwings * (parts - k);
+    cuts.push_back(std::clamp(nearest, cuts.back() + kFewestHalfSwings, last));
+  }
+  cuts.push_back(ends.size() - 1);
+  return cuts;
+}
+
+std::string TooShort(const std::vector<double>& ends, const std::string& what, std::size_t needed) {
+  return std::to_string(ends.size() - 1) + " half swings are too few for " + what + "; " + std::to_string(needed) +
+         " are needed";
+}
+
+double After(double time) { return std::nextafter(time, std::numeric_limits<double>::infinity()); }
+
+double TwoSidedP(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
+
+Autocorrelation MemoryOf(const VectorXd& time, const VectorXd& value, const NoiseModel& noise, const VectorXd& readings,
+                         const MatrixXd& jacobian) {
+  constexpr double kDoubtful = 0.05;
+  const VectorXd z = QuantileResiduals(noise, value, readings);
+  if (LjungBoxP(z) > kDoubtful) return {};
+  return EstimateAutocorrelation(time, z, jacobian / noise.sigma);
+}
+
+double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {
+  const auto count = static_cast<double>(samples);
+  const double known = noise.IsPlain() ? static_cast<double>(free) : 0;  // to σ
+  return (count - known) / std::max(count - lost, 1.0);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/recommendation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+/// The rows of one comparison, by their place.
+class Judge {
+ public:
+  Judge(const FittedModels& fitted, const Comparison& comparison) : fitted_(fitted), rows_(comparison.rows) {}
+
+  bool IsNear(std::size_t i) const { return rows_[i].delta_bic && *rows_[i].delta_bic <= kWithinBic; }
+
+  std::size_t Terms(std::size_t i) const { return PhysicalParameters(fitted_.fits[i].model).size(); }
+
+  /// The recommended row; their number when there is none.
+  std::size_t Simplest() const {
+    std::size_t chosen = rows_.size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!IsNear(i)) continue;
+      const bool simpler = chosen == rows_.size() || Terms(i) < Terms(chosen) ||
+                           (Terms(i) == Terms(chosen) && *rows_[i].bic < *rows_[chosen].bic);
+      if (simpler) chosen = i;
+    }
+    return chosen;
+  }
+
+  /// The row next in BIC that is not near; their number when there is none.
+  std::size_t RunnerUp() const {
+    std::size_t next = rows_.size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!rows_[i].bic || IsNear(i)) continue;
+      if (next == rows_.size() || *rows_[i].bic < *rows_[next].bic) next = i;
+    }
+    return next;
+  }
+
+  /// Models as near as the chosen one, with names between commas.
+  std::string Undecided(std::size_t chosen) const {
+    std::string names;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (i == chosen || !IsNear(i)) continue;
+      names += (names.empty() ? "" : " and ") + rows_[i].model;
+    }
+    return names;
+  }
+
+ private:
+  const FittedModels& fitted_;
+  const std::vector<ComparisonRow>& rows_;
+};
+
+std::string BicText(double difference) {
+  return difference < 100 ? NumberText(difference, 2) : std::to_string(std::lround(difference));
+}
+
+/// ", and predicts the last 40 % with 0.5 times its rms": where both predicted and differ by more than a tenth.
+std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& other) {
+  constexpr double kDiffers = 1.1;
+  if (chosen.forward.samples == 0 || other.forward.samples == 0) return "";
+  const double ratio = other.forward.rms / chosen.forward.rms;
+  if (ratio < kDiffers && ratio > 1 / kDiffers) return ", and predicts the last 40 % equally well";
+  const std::string times = NumberText(ratio > 1 ? ratio : 1 / ratio, 2);
+  return ratio > 1 ? ", and predicts the last 40 % " + times + " times as well"
+                   : ", although it predicts the last 40 % " + times + " times worse";
+}
+
+/// What the fit itself has against its law.
+std::string Doubts(const ComparisonRow& row, const FitReport& fit) {
+  if (row.lack_of_fit) {
+    return "; but more than noise is left (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
+           "): something else is missing";
+  }
+  if (fit.noise.memory.kind == Autocorrelation::Kind::kWhite) return "";
+  return "; its residuals remember (" + fit.noise.memory.Name() + "), which the criterion takes into account";
+}
+
+}  // namespace
+
+void Recommend(const FittedModels& fitted, Comparison& comparison) {
+  const Judge judge(fitted, comparison);
+  const std::size_t chosen = judge.Simplest();
+  if (chosen == comparison.rows.size()) {
+    comparison.reason = "none is recommended: there is no criterion";
+    return;
+  }
+  const ComparisonRow& row = comparison.rows[chosen];
+  comparison.recommended = row.model;
+  comparison.reason = row.model + ": ";
+  const std::size_t next = judge.RunnerUp();
+  const std::string undecided = judge.Undecided(chosen);
+  if (!undecided.empty()) {
+    comparison.reason += "the simplest of those that the readings do not tell apart (" + undecided + ", too, within " +
+                         NumberText(kWithinBic) + " of the smallest BIC)";
+  }
+  if (next != comparison.rows.size()) {
+    const ComparisonRow& other = comparison.rows[next];
+    comparison.reason += (undecided.empty() ? "BIC lower by " : "; BIC lower by ") + BicText(*other.bic - *row.bic) +
+                         " than with " + other.model + PredictionText(row, other);
+  } else if (undecided.empty()) {
+    comparison.reason += "the only one that converged";
+  }
+  comparison.reason += Doubts(row, fitted.fits[chosen]);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/broken_order.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/model/nesting.h"
+
+namespace pendulum {
+namespace {
+
+/// Leaves out what the user said of parameters that the model does not have.
+template <typename Map>
+void KeepKnown(const std::vector<ParameterInfo>& infos, Map& map) {
+  std::erase_if(map, [&](const auto& entry) {
+    return std::ranges::find(infos, entry.first, &ParameterInfo::name) == infos.end();
+  });
+}
+
+/// The parameters of the richer law: those of the simpler fit, the larger of the pair equal to the smaller, the others
+/// as the data gave them at first.
+std::vector<ParameterEstimate> Embed(const FitReport& simpler, const FitProblem& problem, const OrderedPair& order) {
+  std::vector<ParameterEstimate> parameters;
+  for (std::size_t i = 0; i < problem.infos.size(); ++i) {
+    const ParameterInfo& info = problem.infos[i];
+    if (const ParameterEstimate* known = simpler.Find(info.name)) {
+      parameters.push_back(*known);
+      continue;
+    }
+    const ParameterEstimate* smaller = simpler.Find(problem.infos[static_cast<std::size_t>(order.smaller)].name);
+    const bool is_larger = static_cast<int>(i) == order.larger && smaller != nullptr;
+    ParameterEstimate parameter = is_larger ? *smaller : ParameterEstimate();
+    parameter.info = info;
+    parameter.fixed = parameter.at_bound = false;
+    parameter.closed_form = std::nullopt;
+    if (!is_larger) {
+      parameter.unit = info.unit;
+      parameter.estimate = problem.Reported(i, problem.first_guess[i]);
+    }
+    parameters.push_back(std::move(parameter));
+  }
+  return parameters;
+}
+
+}  // namespace
+
+std::string BrokenOrder(const FitProblem& problem, const std::vector<double>& parameters) {
+  const OrderedPair order = OrderOf(problem.model);
+  if (order.larger < 0) return "";
+  const auto larger = static_cast<std::size_t>(order.larger);
+  const auto smaller = static_cast<std::size_t>(order.smaller);
+  if (parameters[larger] >= parameters[smaller]) return "";
+  const std::string above(problem.infos[larger].name);
+  const std::string below(problem.infos[smaller].name);
+  return "the readings would have " + above + " " + NumberText(problem.Reported(larger, parameters[larger]), 4) +
+         ", below " + below + " " + NumberText(problem.Reported(smaller, parameters[smaller]), 4) +
+         ", which it never is; where they are equal nothing else of the law has an effect, and a simpler one does as "
+         "well";
+}
+
+Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                                   const std::string& reason) {
+  const std::optional<MotionModel> simpler = RichestWithin(problem.model);
+  FitOptions narrowed = options;
+  narrowed.model = simpler ? simpler->name : problem.model.name;
+  narrowed.start_values.reset();
+  const std::vector<ParameterInfo> known =
+      FitParameters(*FindMotionModel(narrowed.model), problem.start.start, recording.quantity, true);
+  KeepKnown(known, narrowed.fixed);
+  KeepKnown(known, narrowed.initial);
+  KeepKnown(known, narrowed.bounds);
+  KeepKnown(known, narrowed.priors);
+  Result<FitReport> report = FitRecording(recording, narrowed);
+  if (!report) return report;
+  report->parameters = Embed(*report, problem, OrderOf(problem.model));
+  report->model = problem.model;
+  if (report->termination == Termination::kFailed) return report;
+  report->termination = Termination::kNotIdentifiable;
+  report->reason = reason;
+  report->identifiability.clear();
+  WithdrawErrors("not identifiable: " + reason, *report);
+  return report;
+}
+
+}  // namespace pendulum

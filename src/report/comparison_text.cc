@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/comparison_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr int kResidualDigits = 3;
+constexpr int kWeightDigits = 2;
+constexpr const char* kLackOfFit = "lack of fit";
+
+/// Degrees of an angle, else the readings' own unit.
+Conversion ShownUnit(const RunReport& report) {
+  return Degrees(report.data.unit).value_or(Conversion{report.data.unit});
+}
+
+std::string FixedOrDash(const std::optional<double>& value, int decimals) {
+  return value && std::isfinite(*value) ? FixedText(*value, decimals) : "-";
+}
+
+/// A size to be compared with others of its column: three digits, trailing zeros included.
+std::string SizeText(double size) {
+  if (!(size > 0) || !std::isfinite(size)) return NumberText(size, kResidualDigits);
+  return RoundedText(size, SignificantRounding(size, kResidualDigits));
+}
+
+/// A sentence whether or not it ends with a full stop.
+std::string Sentence(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
+
+// --- comparison ------------------------------------------------------------------------------------------------------
+
+Table CriteriaTable(const Comparison& comparison, const Conversion& shown) {
+  Table table{{{"model"},
+               {"parameters", true},
+               {"rms [" + std::string(shown.unit) + "]", true},
+               {"ΔBIC", true},
+               {"AICc weight", true},
+               {"lag 1", true},
+               {""}}};
+  table.caution = kLackOfFit;
+  for (const ComparisonRow& row : comparison.rows) {
+    const bool has_weight = row.akaike_weight && std::isfinite(*row.akaike_weight);
+    table.rows.push_back(
+        {row.model, std::to_string(row.parameters), SizeText(shown.factor * row.rms), FixedOrDash(row.delta_bic, 1),
+         has_weight ? NumberText(*row.akaike_weight, kWeightDigits) : "-", FixedText(row.lag1_correlation, 2),
+         row.lack_of_fit ? kLackOfFit
+         : row.judged    ? ""
+                         : "not judged"});
+  }
+  return table;
+}
+
+/// The rms of what was foreseen and that of the standardized, in two cells.
+Row PredictionCells(const Prediction& prediction, double factor) {
+  if (prediction.samples == 0) return {"-", "-"};
+  return {SizeText(factor * prediction.rms), SizeText(prediction.standardized)};
+}
+
+Table PredictionTable(const Comparison& comparison, const Conversion& shown) {
+  const std::string unit = " [" + std::string(shown.unit) + "]";
+  Table table{{{"model"},
+               {"left-out blocks" + unit, true},
+               {"standardized", true},
+               {"last part" + unit, true},
+               {"standardized", true}}};
+  for (const ComparisonRow& row : comparison.rows) {
+    Row cells = {row.model};
+    for (const Prediction& prediction : {row.cross_validation, row.forward}) {
+      for (std::string& cell : PredictionCells(prediction, shown.factor)) cells.push_back(std::move(cell));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+bool PredictsSomething(const Comparison& comparison) {
+  return std::ranges::any_of(comparison.rows, [](const ComparisonRow& row) {
+    return row.cross_validation.samples > 0 || row.forward.samples > 0;
+  });
+}
+
+/// What no row's numbers tell.
+void SayReasons(const Comparison& comparison, Section& section) {
+  for (const ComparisonRow& row : comparison.rows) {
+    if (!row.judged) {
+      section.Say(row.model + " is not judged: " + Sentence(row.reason));
+      continue;
+    }
+    const std::string& first = row.cross_validation.reason;
+    const std::string& second = row.forward.reason;
+    if (!first.empty()) section.Say(row.model + ", left-out blocks: " + Sentence(first));
+    if (!second.empty()) section.Say(row.model + ", last part: " + (second == first ? "the same." : Sentence(second)));
+  }
+}
+
+Table TestTable(const Comparison& comparison) {
+  Table table{{{"law"}, {"adds"}, {"2 Δ log L", true}, {"p"}, {"if not needed follows"}}};
+  for (const NestedTest& test : comparison.tests) {
+    table.rows.push_back({test.richer + " over " + test.simpler, NameList(test.added), NumberText(test.statistic, 3),
+                          test.p ? ProbabilityText(*test.p) : "-", test.null});
+  }
+  return table;
+}
+
+Section ComparisonSection(const Comparison& comparison, const Conversion& shown) {
+  const bool recommends = !comparison.recommended.empty();
+  Section section{"Comparison"};
+  section.Say(recommends ? "Recommended: " + comparison.recommended + "." : "No model is recommended.",
+              recommends ? Emphasis::kNone : Emphasis::kCaution);
+  section.Say(Sentence(comparison.reason)).Add(CriteriaTable(comparison, shown));
+  section.Say(Sentence(comparison.criterion));
+  if (PredictsSomething(comparison)) {
+    section.Say(
+        "Prediction of samples that were left out of the fit, block by block, and of the last part from the "
+        "first: rms of measured - predicted, and of the same over its predicted standard deviation, which is 1 "
+        "where model and errors are right.");
+    section.Add(PredictionTable(comparison, shown));
+  }
+  SayReasons(comparison, section);
+  return section;
+}
+
+Section TestSection(const Comparison& comparison) {
+  Section section{"Likelihood-ratio tests", "small p: the simpler law lacks what is added", {TestTable(comparison)}};
+  for (const NestedTest& test : comparison.tests) {
+    if (!test.p) section.Say(test.richer + " over " + test.simpler + ": no p: " + Sentence(test.reason));
+  }
+  return section;
+}
+
+// --- constancy -------------------------------------------------------------------------------------------------------
+
+Table HalvesTable(const Constancy& constancy) {
+  Table table{{{"name"},
+               {"first half", true},
+               {"± error", false, 1},
+               {"second half", true},
+               {"± error", false, 1},
+               {"unit"},
+               {"z", true}}};
+  for (const HalvesRow& row : constancy.halves) {
+    const QuantityNumbers first(row.first, row.first_std_error);
+    const QuantityNumbers second(row.second, row.second_std_error);
+    table.rows.push_back(
+        {row.name, first.Value(), first.Error(), second.Value(), second.Error(), row.unit, FixedOrDash(row.z, 1)});
+  }
+  return table;
+}
+
+/// A value with its error, or nothing where there is none.
+Row CellsOf(double value, double std_error) {
+  if (!std::isfinite(value)) return {"", ""};
+  const QuantityNumbers numbers(value, std_error);
+  return {numbers.Value(), numbers.Error()};
+}
+
+Table WindowTable(const Constancy& constancy) {
+  const auto& trends = constancy.trends;
+  const auto header = [&](std::size_t i, const std::string& name) {
+    return i < trends.size() ? trends[i].name + " [" + trends[i].unit + "]" : name;
+  };
+  Table table{{{"from [s]", true},
+               {"to [s]", true},
+               {"amplitude [deg]", true},
+               {header(0, "inertia"), true},
+               {"± error", false, 1},
+               {header(1, "friction"), true},
+               {"± error", false, 1}}};
+  const double degrees = Degrees("rad")->factor;
+  for (const AmplitudeRow& row : constancy.windows) {
+    Row cells = {FixedText(row.from, 2), FixedText(row.to, 2), FixedText(degrees * row.amplitude, 2)};
+    for (const Row& more :
+         {CellsOf(row.inertia, row.inertia_std_error), CellsOf(row.friction, row.friction_std_error)}) {
+      cells.insert(cells.end(), more.begin(), more.end());
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+bool HasTrend(const Constancy& constancy) {
+  return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
+}
+
+}  // namespace
+
+Sections ComparisonSections(const RunReport& report) {
+  if (!report.comparison) return {};
+  Sections sections = {ComparisonSection(*report.comparison, ShownUnit(report))};
+  if (!report.comparison->tests.empty()) sections.push_back(TestSection(*report.comparison));
+  return sections;
+}
+
+Sections ConstancySections(const RunReport& report, std::size_t fit) {
+  const Constancy* constancy = report.ConstancyOf(fit);
+  if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
+  Section section{"Constancy"};
+  section.Say(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
+  if (constancy->halves_p.value_or(1) < kNotConstant) section.Add(HalvesTable(*constancy));
+  if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
+  section.Say(constancy->reason.empty() ? "" : "Not tested: " + Sentence(constancy->reason));
+  return {std::move(section)};
+}
+
+}  // namespace pendulum

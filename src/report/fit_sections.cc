@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/fit_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/equation.h"
+#include "pendulum/report/rounding.h"
+#include "pendulum/report/run_report.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+constexpr double kLeastCorrelation = 0.1;  // smaller ones are not listed
+
+using Row = std::vector<std::string>;
+
+bool IsConverged(const FitReport& fit) { return fit.termination == Termination::kConverged; }
+
+/// The title, with the name of the model where there are several.
+std::string TitleOf(const std::string& title, const FitReport& fit, bool is_one_of_several) {
+  return is_one_of_several ? title + " of " + std::string(fit.model.name) : title;
+}
+
+Section ModelSection(const FitReport& fit) {
+  const std::string start =
+      fit.start == StartKind::kRelease ? "held at an angle, then released" : "in motion at the first used sample";
+  return {"Fit",
+          "",
+          {Facts{{"model", std::string(fit.model.name) + ":  " + TermsTogether(SymbolicEquation(fit.model))},
+                 {"start", start},
+                 {"status", std::string(TerminationName(fit.termination)) + ": " + fit.reason,
+                  IsConverged(fit) ? Emphasis::kNone : Emphasis::kAlarm}}}};
+}
+
+// --- parameters ------------------------------------------------------------------------------------------------------
+
+/// What stands in place of a standard error.
+std::string Note(const ParameterEstimate& parameter) {
+  if (parameter.fixed) return "(fixed)";
+  return parameter.at_bound ? "(at bound)" : "";
+}
+
+/// A parameter in closed form: from all turning points where the check has it, else where the fit began.
+std::optional<double> InClosedForm(const ParameterEstimate& parameter, const ClosedFormCheck* check) {
+  if (check == nullptr) return parameter.closed_form;
+  const std::string quantity = std::string(parameter.info.name) + "_turning_points";
+  const auto row = std::ranges::find(check->rows, quantity, &ClosedFormRow::quantity);
+  return row == check->rows.end() ? parameter.closed_form : row->closed_form;
+}
+
+/// A parameter in one unit: name, value, error or note, unit, interval.
+Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversion, bool is_first) {
+  const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
+  const std::string note = is_first ? Note(parameter) : "";
+  const std::string error = numbers.Error();
+  return {is_first ? std::string(parameter.info.name) : "", numbers.Value(),
+          error + (error.empty() || note.empty() ? "" : " ") + note, std::string(conversion.unit),
+          numbers.Interval(parameter.lower95, parameter.upper95)};
+}
+
+/// What else is known of it: name, symbol, systematic error, closed form, unit.
+Row FurtherRow(const ParameterEstimate& parameter, const std::optional<double>& closed_form,
+               const Conversion& conversion, bool is_first) {
+  const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
+  const std::string systematic = numbers.SecondError(parameter.systematic_std_error);
+  const std::string number = closed_form ? numbers.Number(*closed_form) : "";
+  const bool says_something = !systematic.empty() || !number.empty();
+  return {is_first ? std::string(parameter.info.name) : "", is_first ? std::string(parameter.info.symbol) : "",
+          systematic, number, says_something ? std::string(conversion.unit) : ""};
+}
+
+Table FurtherTable(const FitReport& fit, const ClosedFormCheck* check) {
+  Table table{{{"name"}, {"symbol"}, {"± systematic"}, {"closed form", true}, {"unit"}}};
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    const std::optional<double> closed_form = InClosedForm(parameter, check);
+    table.rows.push_back(FurtherRow(parameter, closed_form, {parameter.unit}, true));
+    const auto degrees = Degrees(parameter.unit);
+    if (!degrees) continue;
+    Row row = FurtherRow(parameter, closed_form, *degrees, false);
+    if (!row.back().empty()) table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Why parameters have no standard error, each reason said once.
+void SayMissingErrors(const FitReport& fit, Section& section) {
+  std::vector<std::pair<std::string, std::string>> names_by_reason;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.std_error || parameter.fixed || parameter.reason.empty()) continue;
+    const auto known = std::find_if(names_by_reason.begin(), names_by_reason.end(),
+                                    [&](const auto& entry) { return entry.first == parameter.reason; });
+    if (known == names_by_reason.end()) {
+      names_by_reason.emplace_back(parameter.reason, parameter.info.name);
+    } else {
+      known->second.append(", ").append(parameter.info.name);
+    }
+  }
+  for (const auto& [reason, names] : names_by_reason) {
+    section.Say(std::string("No standard error of ").append(names).append(": ").append(reason).append("."));
+  }
+}
+
+std::string OpenIntervals(const FitReport& fit) {
+  std::string text;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.open_interval.empty()) continue;
+    text += " That of " + std::string(parameter.info.name) + " is open: " + parameter.open_interval + ".";
+  }
+  return text;
+}
+
+/// What the recording hardly tells, and what would.
+void SayIdentifiability(const FitReport& fit, Section& section) {
+  for (const Identifiability& known : fit.identifiability) {
+    if (known.verdict == Identifiability::Verdict::kIdentifiable) continue;
+    std::string traded;
+    for (const std::string& name : known.direction) {
+      if (name != known.parameter) traded += (traded.empty() ? " (traded for " : ", ") + name;
+    }
+    if (!traded.empty()) traded += ")";
+    section.Say(known.parameter + " is " + std::string(VerdictName(known.verdict)) + traded + ": " + known.advice +
+                ".");
+  }
+}
+
+/// The rig file's own moment of inertia beside the fitted one, where no check says it.
+std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
+  const ParameterEstimate* fitted = fit.Find("inertia");
+  if (!rig || !rig->inertia || fitted == nullptr) return "";
+  const double from_rig = rig->inertia->value;
+  const double percent = 100 * (fitted->estimate / from_rig - 1);
+  const ValueAndError text = PdgText(from_rig, rig->inertia->std_dev);
+  const std::string value =
+      rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : NumberText(from_rig, kTextDigits);
+  return "The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + NumberText(std::abs(percent), 2) +
+         " % " + (percent < 0 ? "smaller" : "larger") + ".";
+}
+
+Table EstimateTable(const FitReport& fit) {
+  Table table{{{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    table.rows.push_back(ParameterRow(parameter, {parameter.unit}, true));
+    if (const auto degrees = Degrees(parameter.unit)) table.rows.push_back(ParameterRow(parameter, *degrees, false));
+  }
+  return table;
+}
+
+constexpr const char* kNoEstimates = "These are no estimates: nothing was fitted.";
+
+Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
+  Section section{"Parameters"};
+  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
+  section.Add(EstimateTable(fit)).Add(FurtherTable(fit, check));
+  SayMissingErrors(fit, section);
+  if (!fit.std_error_method.empty()) section.Say("Standard errors: " + fit.std_error_method + ".");
+  if (!fit.interval_method.empty()) section.Say("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
+  SayIdentifiability(fit, section);
+  return section.Say(check != nullptr ? "" : InertiaText(fit, rig));
+}
+
+// --- what follows from the parameters -----------------------------------------------------------------------------
+
+/// An error beyond the value, of a quotient whose divisor may be 0, says nothing.
+bool SaysNothing(const DerivedQuantity& quantity) {
+  return quantity.std_error.value_or(0) >= std::abs(quantity.estimate);
+}
+
+std::string DerivedInterval(const DerivedQuantity& quantity) {
+  if (!quantity.lower95 && !quantity.upper95) return "";
+  const auto number = [&](const std::optional<double>& end) -> std::string {
+    if (!end) return "?";
+    const double error = quantity.std_error.value_or(0);
+    if (!(error > 0) || SaysNothing(quantity)) return NumberText(*end, kDigitsWithoutError);
+    return RoundedText(*end, PdgRounding(quantity.estimate, error));
+  };
+  return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
+}
+
+Section DerivedSection(const FitReport& fit) {
+  Table table{{{""}, {"", true}, {"", false, 1}, {""}, {""}}};
+  for (const DerivedQuantity& quantity : fit.derived) {
+    const bool nothing = SaysNothing(quantity);
+    ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
+    if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
+    table.rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
+                          DerivedInterval(quantity)});
+  }
+  return {"Derived quantities", "", {std::move(table)}};
+}
+
+Section CorrelationSection(const FitReport& fit) {
+  std::vector<std::pair<double, std::string>> pairs;
+  const auto size = static_cast<Eigen::Index>(fit.covariance_names.size());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = i + 1; j < size; ++j) {
+      const double correlation = Correlation(fit, i, j);
+      if (!(std::abs(correlation) >= kLeastCorrelation)) continue;
+      pairs.emplace_back(correlation, fit.covariance_names[i] + ", " + fit.covariance_names[j]);
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  Table table{{{""}, {"", true}}};
+  for (const auto& [correlation, names] : pairs) table.rows.push_back({names, FixedText(correlation, 3)});
+  return {"Correlations", "those below 0.1 in size are not listed", {std::move(table)}};
+}
+
+/// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
+std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
+  constexpr int kReadingDigits = 3;
+  std::string also;
+  if (const auto degrees = Degrees(unit)) {
+    also = NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit);
+  }
+  if (noise.resolution > 0) {
+    also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.resolution, kReadingDigits) + " resolutions";
+  }
+  return also.empty() ? "" : " (" + also + ")";
+}
+
+std::string NoiseText(const FitReport& fit) {
+  const NoiseEstimate& noise = fit.noise;
+  std::string text(NoiseFamilyName(noise.family));
+  text += noise.family == NoiseFamily::kStudent ? "'s t, 4 degrees of freedom, scale " : ", sigma ";
+  const ValueAndError sigma = PdgText(noise.sigma, noise.sigma_std_error.value_or(0));
+  text +=
+      noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
+  return text + " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
+}
+
+Section StatisticsSection(const FitReport& fit) {
+  const FitStatistics& statistics = fit.statistics;
+  return {
+      "Noise and statistics",
+      "",
+      {Facts{
+          {"noise", NoiseText(fit)},
+          {"because", fit.noise.why},
+          {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
+          {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
+          {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+          {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
+          {"memory", fit.noise.memory.Name() + "; of a constant the samples tell as much as " +
+                         NumberText(std::round(statistics.effective_samples)) + " independent ones"},
+          {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
+          {"AIC, AICc, BIC",
+           FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)},
+          {"solver", std::to_string(fit.solver.iterations) + " iterations, " + std::to_string(fit.solver.evaluations) +
+                         " trajectories, accurate to " + NumberText(fit.trace_error, 1) + " " + fit.reading_unit}}}};
+}
+
+Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
+  Section section{"Equation of motion", "", {Formula{TermsTogether(FittedEquation(fit, rig))}}};
+  if (rig) return section.Say("th in rad from hanging straight down, torques in N m.");
+  return section.Say(
+      "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
+      "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
+      "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
+}
+
+}  // namespace
+
+std::string TermsTogether(const std::string& equation) {
+  std::string text;
+  const auto is_sign = [&](std::size_t i) {
+    return i < equation.size() && std::string_view("+-=").find(equation[i]) < 3;
+  };
+  for (std::size_t i = 0; i < equation.size(); ++i) {
+    if (equation[i] == ' ' && !is_sign(i + 1)) {
+      text += kNoBreak;
+    } else {
+      text += equation[i];
+    }
+  }
+  return text;
+}
+
+Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
+  Section section{TitleOf("Parameters", fit, is_one_of_several)};
+  if (!IsConverged(fit)) {
+    section.Say(std::string(TerminationName(fit.termination)) + ": " + fit.reason + ".", Emphasis::kAlarm);
+  }
+  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
+  return section.Add(EstimateTable(fit));
+}
+
+Sections FitSections(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
+  Sections sections = {ModelSection(fit), AllOfParameters(fit, rig, check)};
+  if (!fit.derived.empty()) sections.push_back(DerivedSection(fit));
+  if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
+  if (fit.termination == Termination::kFailed) return sections;
+  sections.push_back(StatisticsSection(fit));
+  sections.push_back(EquationSection(fit, rig));
+  return sections;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/markdown.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "pendulum/report/fit_sections.h"
+#include "pendulum/report/text.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+bool IsWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & '\x80') != 0; }
+
+/// Whether the character at i would be obeyed where it stands.
+bool IsActive(std::string_view text, std::size_t i) {
+  const char before = i > 0 ? text[i - 1] : ' ';
+  const char after = i + 1 < text.size() ? text[i + 1] : ' ';
+  switch (text[i]) {
+    case '_': return !IsWordCharacter(before) || !IsWordCharacter(after);  // within a word it is a letter
+    case ']': return after == '(' || after == '[' || after == ':';         // elsewhere brackets make no link
+    default: return std::string_view("\\`*<|&~$").find(text[i]) != std::string_view::npos;
+  }
+}
+
+/// Where a line would begin a heading, a list, a quotation or a rule.
+bool BeginsActively(std::string_view text) {
+  if (text.empty()) return false;
+  const std::size_t digits = text.find_first_not_of("0123456789");
+  const bool is_number =
+      digits != 0 && digits != std::string_view::npos && (text[digits] == '.' || text[digits] == ')');
+  return std::string_view("#>-+=").find(text[0]) != std::string_view::npos ||
+         (is_number && (digits + 1 == text.size() || text[digits + 1] == ' '));
+}
+
+/// A paragraph or an item: what stands at its beginning is no markup either.
+std::string LineText(std::string_view text) {
+  const std::string escaped = MarkdownText(text);
+  if (!BeginsActively(escaped)) return escaped;
+  const std::size_t digits = std::min(escaped.find_first_not_of("0123456789"), escaped.size());
+  return escaped.substr(0, digits) + "\\" + escaped.substr(digits);
+}
+
+std::string Emphasized(const std::string& text, Emphasis emphasis) {
+  return emphasis == Emphasis::kNone || text.empty() ? text : "**" + text + "**";
+}
+
+// --- tables ----------------------------------------------------------------------------------------------------------
+
+/// A table of Markdown, column by column; texts are escaped.
+struct PipeTable {
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+bool IsEmptyColumn(const Table& table, std::size_t i) {
+  return std::ranges::all_of(table.rows, [&](const auto& row) { return row[i].empty(); });
+}
+
+/// Columns without text left out, errors put into the column of their value.
+PipeTable Joined(const Table& table) {
+  PipeTable joined;
+  joined.rows.resize(table.rows.size());
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (IsEmptyColumn(table, i)) continue;
+    const bool joins = table.columns[i].gap == 1 && !joined.columns.empty();
+    if (joins) {
+      if (!table.columns[i].header.empty()) joined.columns.back().header += " " + MarkdownText(table.columns[i].header);
+    } else {
+      joined.columns.push_back({MarkdownText(table.columns[i].header), table.columns[i].right_aligned});
+    }
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+      const std::string cell = MarkdownText(table.rows[k][i]);
+      const bool stops = !table.caution.empty() && table.rows[k][i] == table.caution;
+      const std::string shown = Emphasized(cell, stops ? Emphasis::kCaution : Emphasis::kNone);
+      if (!joins) {
+        joined.rows[k].push_back(shown);
+      } else if (!shown.empty()) {
+        joined.rows[k].back() += " " + shown;
+      }
+    }
+  }
+  return joined;
+}
+
+std::string PipeRow(const std::vector<std::string>& cells) {
+  std::string row = "|";
+  for (const std::string& cell : cells) row += (cell.empty() ? "" : " " + cell) + " |";
+  return row + "\n";
+}
+
+std::string TableText(const Table& table) {
+  PipeTable pipes = Joined(table);
+  if (pipes.columns.empty()) return "";
+  std::vector<std::string> headers;
+  std::string rule = "|";
+  for (const Column& column : pipes.columns) {
+    headers.push_back(column.header);
+    rule += column.right_aligned ? " --: |" : " --- |";
+  }
+  std::string text = PipeRow(headers) + rule + "\n";
+  for (std::size_t k = 0; k < pipes.rows.size(); ++k) {
+    if (!table.left_out.empty() && k == table.rows_before) text += PipeRow({MarkdownText(table.left_out)});
+    text += PipeRow(pipes.rows[k]);
+  }
+  return text + "\n";
+}
+
+// --- blocks ----------------------------------------------------------------------------------------------------------
+
+struct Renderer {
+  std::string operator()(const Words& words) const { return Emphasized(LineText(words.text), words.emphasis) + "\n\n"; }
+  std::string operator()(const Facts& facts) const {
+    std::string text = "| | |\n| --- | --- |\n";
+    for (const Fact& fact : facts) {
+      text += PipeRow({MarkdownText(fact.name), Emphasized(MarkdownText(WithBlanks(fact.text)), fact.emphasis)});
+    }
+    return text + "\n";
+  }
+  std::string operator()(const Table& table) const { return TableText(table); }
+  std::string operator()(const Formula& formula) const { return "```text\n" + WithBlanks(formula.text) + "\n```\n\n"; }
+  std::string operator()(const Items& items) const {
+    std::string text;
+    for (const std::string& item : items.texts) text += "- " + LineText(item) + "\n";
+    return text + "\n";
+  }
+};
+
+// --- the verdict -----------------------------------------------------------------------------------------------------
+
+/// The sentences that matter most.
+Items VerdictItems(const RunReport& report, std::size_t main) {
+  const FitReport& fit = report.fits[main];
+  Items items;
+  items.texts.push_back("Model " + std::string(fit.model.name) + ", " + std::string(TerminationName(fit.termination)) +
+                        ": " + fit.reason);
+  if (report.comparison) items.texts.push_back(report.comparison->reason);
+  if (const Constancy* constancy = report.ConstancyOf(main)) items.texts.push_back(constancy->verdict);
+  std::erase(items.texts, "");
+  return items;
+}
+
+/// What a reader who reads no further should know.
+Sections VerdictSections(const RunReport& report) {
+  Section verdict{"Verdict"};
+  Sections sections;
+  if (report.fits.empty()) {
+    verdict.Say("No fit was asked for: closed forms only.");
+  } else {
+    const std::size_t main = report.MainFit();
+    if (report.fits[main].termination != Termination::kConverged) {
+      verdict.Say("The fit did not converge: its numbers are no result.", Emphasis::kAlarm);
+    }
+    verdict.blocks.emplace_back(VerdictItems(report, main));
+    sections.push_back(ParameterSection(report.fits[main], report.fits.size() > 1));
+    sections.back().title = "Result";
+  }
+  sections.insert(sections.begin(), std::move(verdict));
+  return sections;
+}
+
+}  // namespace
+
+std::string MarkdownText(std::string_view text) {
+  const std::string printable = Printable(text);
+  std::string escaped;
+  for (std::size_t i = 0; i < printable.size(); ++i) {
+    if (IsActive(printable, i)) escaped += '\\';
+    escaped += printable[i];
+  }
+  return escaped;
+}
+
+std::string ToMarkdown(const Sections& sections) {
+  std::string text;
+  for (const Section& section : sections) {
+    text += "## " + MarkdownText(section.title) + "\n\n";
+    if (!section.remark.empty()) text += "(" + MarkdownText(section.remark) + ")\n\n";
+    for (const Block& block : section.blocks) text += std::visit(Renderer(), block);
+  }
+  if (text.ends_with("\n\n")) text.pop_back();
+  return text;
+}
+
+std::string ToMarkdown(const RunReport& report) {
+  Sections sections = VerdictSections(report);
+  const Sections all = ReportSections(report);
+  const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };
+  std::ranges::copy_if(all, std::back_inserter(sections), is_warning);
+  std::ranges::copy_if(all, std::back_inserter(sections), std::not_fn(is_warning));
+  const std::string name = report.data.path.empty() ? "a recording" : report.data.path;
+  return "# Pendulum: " + MarkdownText(name) + "\n\n" + ToMarkdown(sections);
+}
+
+}  // namespace pendulum

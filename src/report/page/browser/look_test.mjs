@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light, dark, wide, narrow, on paper, and for those who do not see.
+
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import { createRequire } from 'node:module';
+import { test } from 'node:test';
+
+import { makeResult, makeSeries } from './fixture.mjs';
+import { ink, kPlot, open } from './page.mjs';
+
+const axeSource = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+for (const colorScheme of ['light', 'dark']) {
+  for (const [name, width] of [
+    ['desktop', 1280],
+    ['phone', 360],
+  ]) {
+    test(`${colorScheme}, ${name}: accessible, and the page is not wider than the window`, async (t) => {
+      const page = await open(t, makeResult(), makeSeries(), {
+        context: { colorScheme, viewport: { width, height: 800 } },
+      });
+      assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
+      await page.evaluate(axeSource);
+      const { violations } = await page.evaluate(() =>
+        window.axe.run({ runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice'] }),
+      );
+      const found = violations.map(
+        (violation) =>
+          `${violation.id}: ${violation.nodes
+            .map((node) => `${node.target} ${node.failureSummary}`)
+            .slice(0, 3)
+            .join(' | ')}`,
+      );
+      assert.deepEqual(found, []);
+    });
+  }
+}
+
+test('the theme changes by its button, with the plots', async (t) => {
+  const page = await open(t, makeResult(), makeSeries(), { context: { colorScheme: 'light' } });
+  const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await background();
+  await page.getByRole('button', { name: 'Dark' }).click();
+  assert.notEqual(await background(), light);
+  assert.ok((await ink(page, kPlot)) > 3000);
+  await page.getByRole('button', { name: 'Light' }).click();
+  assert.equal(await background(), light);
+});
+
+test('paper is light, without controls, and no plot is wider than the page', async (t) => {
+  const page = await open(t, makeResult(), makeSeries(), { context: { colorScheme: 'dark' } });
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');
+  assert.equal(await page.locator('.buttons').first().isVisible(), false);
+  const widths = await page
+    .locator('.plot canvas')
+    .evaluateAll((all) => all.map((canvas) => canvas.getBoundingClientRect().width));
+  assert.ok(Math.max(...widths) <= 680, String(widths)); // A4 less margins of 15 mm is 680 px wide
+  const pdf = await page.pdf({ preferCSSPageSize: true });
+  assert.ok(pdf.length > 20_000);
+});

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Light or dark, as the system says or as chosen; light on paper. */
+
+import { button } from './dom';
+
+type Theme = 'light' | 'dark';
+
+const listeners = new Set<() => void>();
+const dark = (): MediaQueryList => window.matchMedia('(prefers-color-scheme: dark)');
+let chosen: Theme | null = null;
+let onPaper = false;
+let started = false;
+
+const wanted = (): Theme => (onPaper ? 'light' : (chosen ?? (dark().matches ? 'dark' : 'light')));
+
+function apply(): void {
+  document.documentElement.dataset.theme = wanted();
+  for (const listener of listeners) listener();
+}
+
+/** Called when colours or the medium change. */
+export function onThemeChange(listener: () => void): () => void {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** True while the page is laid out for paper. */
+export const printing = (): boolean => onPaper;
+
+function setPaper(now: boolean): void {
+  if (now === onPaper) return;
+  onPaper = now;
+  apply();
+}
+
+/** Follows the system and the printer from now on; once is enough. */
+export function startTheme(): void {
+  if (started) return apply();
+  started = true;
+  dark().addEventListener('change', apply);
+  window.matchMedia('print').addEventListener('change', (event) => setPaper(event.matches));
+  window.addEventListener('beforeprint', () => setPaper(true));
+  window.addEventListener('afterprint', () => setPaper(false));
+  apply();
+}
+
+/** The button that goes from one to the other. */
+export function themeButton(): HTMLButtonElement {
+  const label = (): string => (wanted() === 'dark' ? 'Light' : 'Dark');
+  const element = button(
+    label(),
+    () => {
+      chosen = wanted() === 'dark' ? 'light' : 'dark';
+      apply();
+    },
+    { class: 'theme', title: 'Change between light and dark' },
+  );
+  onThemeChange(() => {
+    if (!onPaper) element.textContent = label();
+  });
+  return element;
+}
+
+/** A colour of style.css by name: colour("ink") is --ink. */
+export function colour(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || '#888';
+}

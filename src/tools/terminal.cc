@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/terminal.h"
+
+#include <cstdlib>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace pendulum {
+namespace {
+
+/// An environment variable; empty when it is not set.
+std::string_view Environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string_view() : value;
+}
+
+}  // namespace
+
+bool WantsColour(int descriptor) {
+  const std::string_view terminal = Environment("TERM");
+  return ::isatty(descriptor) == 1 && Environment("NO_COLOR").empty() && !terminal.empty() && terminal != "dumb";
+}
+
+}  // namespace pendulum

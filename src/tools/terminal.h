@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace pendulum {
+
+/// Whether text written to a file descriptor may be coloured: it is a terminal that knows how (TERM is there and not
+/// "dumb"), and the user has not said otherwise (NO_COLOR is absent or empty, https://no-color.org).
+bool WantsColour(int descriptor);
+
+}  // namespace pendulum

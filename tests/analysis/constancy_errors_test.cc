@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// How often the tests of constancy cry wolf where the law holds.
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/analysis/constancy.h"
+#include "tests/analysis/fitted_run.h"
+
+namespace pendulum {
+namespace {
+
+using testing::Le;
+
+constexpr int kSeeds = 40;
+
+struct Alarms {
+  int tested = 0;
+  int halves = 0, inertia = 0, friction = 0;  // p < 0.05
+  int certain = 0;                            // any p < kNotConstant
+};
+
+Alarms CountAlarms(SyntheticOptions run) {
+  Alarms alarms;
+  const FitOptions options = ModelOptions(run.model.name);
+  for (int i = 0; i < kSeeds; ++i) {
+    ++run.seed;
+    run.zero += 1e-4;  // another place among the levels
+    const FittedRun fitted = FitTo(Must(SimulateRecording(run)), options);
+    const Constancy constancy = TestConstancy(fitted.recording, fitted.fit, options);
+    if (!constancy.halves_p || constancy.trends.size() != 2) continue;
+    ++alarms.tested;
+    alarms.halves += *constancy.halves_p < 0.05 ? 1 : 0;
+    alarms.inertia += constancy.trends[0].p < 0.05 ? 1 : 0;
+    alarms.friction += constancy.trends[1].p < 0.05 ? 1 : 0;
+    alarms.certain += constancy.constant() ? 0 : 1;
+  }
+  return alarms;
+}
+
+// Of 40 with a probability of 0.05 more than 8 come once in 1500 times (binomial); 2 of 120 below 0.001 once in 150.
+void ExpectFewAlarms(const SyntheticOptions& run) {
+  SCOPED_TRACE(std::string(run.model.name));
+  const Alarms alarms = CountAlarms(run);
+  EXPECT_EQ(alarms.tested, kSeeds);
+  EXPECT_THAT(alarms.halves, Le(8));
+  EXPECT_THAT(alarms.inertia, Le(8));
+  EXPECT_THAT(alarms.friction, Le(8));
+  EXPECT_THAT(alarms.certain, Le(2));
+}
+
+SyntheticOptions RunOnCounts(std::string_view model, double noise) {
+  SyntheticOptions run = TextbookRun(model);
+  run.resolution = kCount;
+  run.noise = noise * kCount;
+  run.sample_rate = 50;
+  return run;
+}
+
+TEST(ConstancyErrors, AreRightOnCountsThatDrownInNoise) {
+  for (const char* model : {"viscous", "coulomb", "drag"}) ExpectFewAlarms(RunOnCounts(model, 2.5));
+}
+
+TEST(ConstancyErrors, AreRightOnCoarseCounts) { ExpectFewAlarms(RunOnCounts("viscous", 0.25)); }
+
+TEST(ConstancyErrors, AreRightInNoiseThatRemembers) {
+  SyntheticOptions run = RunOnCounts("viscous", 0.5);
+  run.resolution = 0;
+  run.noise_correlation = 0.9;
+  ExpectFewAlarms(run);
+}
+
+}  // namespace
+}  // namespace pendulum

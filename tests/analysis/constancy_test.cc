@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/constancy.h"
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/analysis/fitted_run.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Field;
+using testing::Gt;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Lt;
+using testing::SizeIs;
+
+SyntheticOptions NoisyTextbookRun(std::string_view model) {
+  SyntheticOptions run = TextbookRun(model);
+  run.noise = 0.002;
+  return run;
+}
+
+Constancy TestFit(const FittedRun& run, FitOptions options) {
+  options.rig = run.rig;
+  return TestConstancy(run.recording, run.fit, options);
+}
+
+Constancy TestRun(const SyntheticOptions& run, std::string_view model, const std::optional<Rig>& rig = {}) {
+  return TestFit(FitTo(run, model, rig), ModelOptions(model));
+}
+
+/// Two recordings one after the other; in the second the inertia is so many times as large.
+Recording JoinedAt(double second_inertia) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.duration = 12;
+  Recording first = Must(SimulateRecording(run));
+  // The state at 12 s, from the noise-free trajectory.
+  Start<double> start{StartKind::kRelease, run.release_time, run.release_angle, 0};
+  TraceOptions trace;
+  trace.end = 12;
+  const Trajectory motion = Must(MakeTrajectory(run.model, run.parameters, start, trace));
+  run.start = StartKind::kMoving;
+  run.start_time = 12;
+  run.initial_angle = motion.Angle(12);
+  run.initial_rate = motion.Rate(12);
+  run.parameters[0] *= second_inertia;
+  run.seed = 2;
+  const Recording second = Must(SimulateRecording(run));
+  Recording joined = first;
+  joined.time.resize(first.size() + second.size());
+  joined.value.resize(joined.time.size());
+  joined.time << first.time, second.time;
+  joined.value << first.value, second.value;
+  return joined;
+}
+
+TEST(Constancy, IsFoundWhereTheLawHolds) {
+  for (const char* model : {"linear", "viscous", "coulomb", "drag"}) {
+    const Constancy constancy = TestRun(NoisyTextbookRun(model), model, TextbookRig());
+    EXPECT_TRUE(constancy.constant()) << model << constancy.verdict;
+    EXPECT_THAT(constancy.reason, IsEmpty()) << model;
+    EXPECT_THAT(constancy.verdict, HasSubstr("inertia and friction are constants of the recording: halves agree"));
+    EXPECT_THAT(constancy.trends, SizeIs(2)) << model;
+  }
+}
+
+// I_O 0.079 kg m² is what the recording was made with; rows are in SI.
+TEST(Constancy, HasRowsInTheUnitsOfTheFit) {
+  const Constancy constancy = TestRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
+  ASSERT_THAT(constancy.halves, ElementsAre(Field(&HalvesRow::name, "inertia"), Field(&HalvesRow::name, "viscous")));
+  const HalvesRow& inertia = constancy.halves[0];
+  EXPECT_EQ(inertia.unit, "kg m^2");
+  EXPECT_THAT(inertia.first, DoubleNear(0.079, 5 * inertia.first_std_error));
+  EXPECT_THAT(inertia.second, DoubleNear(0.079, 5 * inertia.second_std_error));
+  EXPECT_EQ(constancy.halves_dof, 2);
+  double last_amplitude = 0.423;  // rad, the release
+  for (const AmplitudeRow& row : constancy.windows) {
+    EXPECT_THAT(row.inertia, DoubleNear(0.079, 5 * row.inertia_std_error));
+    EXPECT_THAT(row.friction, DoubleNear(0.003, 5 * row.friction_std_error));
+    EXPECT_THAT(row.to - row.from, Gt(2.9 * 1.315));  // three periods, less a sample
+    EXPECT_THAT(row.amplitude, Lt(last_amplitude));
+    last_amplitude = row.amplitude;
+  }
+}
+
+// Equal information: errors of the halves' inertia within a factor of 1.5 though the amplitude falls.
+TEST(Constancy, HasHalvesThatTellEquallyMuch) {
+  const Constancy constancy = TestRun(NoisyTextbookRun("viscous"), "viscous");
+  const HalvesRow& inertia = constancy.halves.at(0);
+  EXPECT_THAT(std::abs(std::log(inertia.first_std_error / inertia.second_std_error)), Lt(std::log(1.5)));
+}
+
+TEST(Constancy, MissesAnInertiaThatChangesHalfWay) {
+  const Recording joined = JoinedAt(1.01);
+  const Constancy constancy = TestFit(FitTo(joined, ModelOptions("viscous")), ModelOptions("viscous"));
+  EXPECT_FALSE(constancy.constant()) << constancy.verdict << constancy.reason;
+  EXPECT_THAT(constancy.verdict, HasSubstr("inertia"));
+  EXPECT_TRUE(TestFit(FitTo(JoinedAt(1), ModelOptions("viscous")), ModelOptions("viscous")).constant());
+}
+
+// Of dry friction viscous friction sees τ_c 4 / (π A ω): more, the smaller the swing.
+TEST(Constancy, MissesFrictionOfAnotherLaw) {
+  const Constancy constancy = TestRun(NoisyTextbookRun("coulomb"), "viscous");
+  ASSERT_THAT(constancy.trends, SizeIs(2));
+  EXPECT_THAT(constancy.trends[1].slope, Lt(0));
+  EXPECT_THAT(constancy.trends[1].p, Lt(kNotConstant));
+  EXPECT_THAT(constancy.verdict, HasSubstr("viscous rises by"));
+}
+
+// Linear gravity's period does not grow with amplitude, by 1 + A²/16: its inertia must, by A²/8.
+TEST(Constancy, MissesAPeriodThatDependsOnAmplitude) {
+  FitOptions options = ModelOptions("viscous");
+  options.gravity = Gravity::kLinear;
+  const Constancy constancy = TestFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options), options);
+  ASSERT_THAT(constancy.trends, SizeIs(2));
+  const double inertia = 0.079 / kTextbookTorque;
+  EXPECT_THAT(constancy.trends[0].slope, DoubleNear(inertia / 8, 0.1 * inertia / 8));
+  EXPECT_THAT(constancy.verdict, HasSubstr("inertia falls by"));
+}
+
+TEST(Constancy, IsTestedOnARateSensor) {
+  SyntheticOptions run = NoisyTextbookRun("coulomb");
+  run.quantity = Quantity::kRate;
+  run.noise = 0.01;
+  const Constancy constancy = TestRun(run, "coulomb");
+  EXPECT_TRUE(constancy.constant()) << constancy.verdict;
+  EXPECT_THAT(constancy.reason, IsEmpty());
+}
+
+TEST(Constancy, LeavesOutWhatIsFixed) {
+  const Recording recording = Must(SimulateRecording(NoisyTextbookRun("coulomb")));
+  FitOptions options = ModelOptions("coulomb");
+  options.fixed = {{"viscous", 0.003 / kTextbookTorque}, {"coulomb", 0.004 / kTextbookTorque}};
+  const Constancy constancy = TestFit(FitTo(recording, options), options);
+  EXPECT_THAT(constancy.halves, ElementsAre(Field(&HalvesRow::name, "inertia")));
+  EXPECT_THAT(constancy.trends, ElementsAre(Field(&AmplitudeTrend::name, "inertia")));
+  for (const AmplitudeRow& row : constancy.windows) EXPECT_TRUE(std::isnan(row.friction));
+  options.fixed.emplace("inertia", 0.079 / kTextbookTorque);
+  const Constancy nothing = TestFit(FitTo(recording, options), options);
+  EXPECT_THAT(nothing.reason, HasSubstr("inertia and friction are held"));
+  EXPECT_FALSE(nothing.halves_p);
+}
+
+// A release that is fixed belongs to the whole, not to its parts.
+TEST(Constancy, KnowsAFixedRelease) {
+  FitOptions options = ModelOptions("viscous");
+  options.fixed = {{"release_angle", 0.423}};
+  const Constancy constancy = TestFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options), options);
+  EXPECT_TRUE(constancy.halves_p);
+  EXPECT_THAT(constancy.reason, IsEmpty());
+}
+
+TEST(Constancy, SaysWhatIsTooShort) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.duration = 12;
+  const Constancy halves_only = TestRun(run, "viscous");
+  EXPECT_TRUE(halves_only.halves_p);
+  EXPECT_THAT(halves_only.reason, HasSubstr("too few for windows of three periods"));
+  run.duration = 6;
+  const Constancy nothing = TestRun(run, "viscous");
+  EXPECT_FALSE(nothing.halves_p);
+  EXPECT_THAT(nothing.trends, IsEmpty());
+  EXPECT_THAT(nothing.reason, HasSubstr("too few for halves"));
+  EXPECT_THAT(nothing.verdict, HasSubstr("not tested"));
+}
+
+TEST(Constancy, IsNotTestedWhereTheFitDidNotConverge) {
+  FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
+  run.fit.termination = Termination::kNotConverged;
+  EXPECT_THAT(TestFit(run, ModelOptions("viscous")).reason, HasSubstr("did not converge"));
+}
+
+TEST(Constancy, IsNotTestedWhereTurningPointsCannotBeSeen) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  FittedRun fitted = FitTo(run, "viscous", {});
+  run.sample_rate = 3;  // 4 in a period
+  fitted.recording = Must(SimulateRecording(run));
+  EXPECT_THAT(TestFit(fitted, ModelOptions("viscous")).reason, HasSubstr("sampled too slowly"));
+}
+
+// Stopped at about 41 s; all half swings are before that.
+TEST(Constancy, IsTestedOnTheMotionBeforeTheRest) {
+  SyntheticOptions run = NoisyTextbookRun("coulomb");
+  run.duration = 60;
+  run.sample_rate = 50;
+  const Constancy constancy = TestRun(run, "coulomb");
+  EXPECT_TRUE(constancy.halves_p) << constancy.reason;
+  ASSERT_THAT(constancy.windows, SizeIs(8));
+  EXPECT_THAT(constancy.windows.back().to, Lt(42));
+}
+
+// A file whose seconds are 1.02 true ones tells the same.
+TEST(Constancy, DoesNotDependOnTheClock) {
+  FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
+  const Constancy plain = TestFit(run, ModelOptions("viscous"));
+  run.recording.time /= 1.02;
+  run.recording.clock_scale = 1.02;
+  const Constancy scaled = TestFit(FitTo(run.recording, ModelOptions("viscous")), ModelOptions("viscous"));
+  EXPECT_THAT(*scaled.halves_p, DoubleNear(*plain.halves_p, 0.02));
+  EXPECT_THAT(scaled.trends.at(0).p, DoubleNear(plain.trends.at(0).p, 0.02));
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/fit_models.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+FreeSwing Whole(const Recording& recording) {
+  FreeSwing swing;
+  swing.from = recording.time[0];
+  swing.to = recording.time[recording.size() - 1];
+  swing.from_given = swing.to_given = true;
+  return swing;
+}
+
+FittedModels FitAll(const Recording& recording, const std::vector<std::string>& models,
+                    const FitOptions& options = {}) {
+  return Must(FitModels(recording, Whole(recording), options, models));
+}
+
+TEST(FitModels, KeepsTheOrderAskedFor) {
+  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"drag", "viscous", "coulomb"});
+  ASSERT_THAT(fitted.fits, SizeIs(3));
+  EXPECT_EQ(fitted.fits[0].model.name, "drag");
+  EXPECT_EQ(fitted.fits[1].model.name, "viscous");
+  EXPECT_EQ(fitted.fits[2].model.name, "coulomb");
+}
+
+TEST(FitModels, OfOneModelIsFitRecording) {
+  const Recording recording = Must(SimulateRecording(NoisyRun()));
+  const FitReport alone = Fit(recording, ModelOptions("coulomb"));
+  const FittedModels fitted = FitAll(recording, {"coulomb"});
+  ASSERT_THAT(fitted.fits, SizeIs(1));
+  EXPECT_EQ(fitted.fits[0].Find("inertia")->estimate, alone.Find("inertia")->estimate);
+}
+
+// Viscous friction alone leaves residuals of more than a count, coulomb's are a quarter: one family for both.
+TEST(FitModels, GivesAllTheNoiseFamilyOfTheSmallestResiduals) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.duration = 60;
+  run.noise = 0.25 * kCount;
+  run.resolution = kCount;
+  const Recording recording = Must(SimulateRecording(run));
+  EXPECT_EQ(Fit(recording, ModelOptions("viscous")).noise.family, NoiseFamily::kGaussian);
+  const FittedModels fitted = FitAll(recording, {"viscous", "coulomb"});
+  for (const FitReport& fit : fitted.fits) EXPECT_EQ(fit.noise.family, NoiseFamily::kQuantized) << fit.model.name;
+}
+
+TEST(FitModels, BeginsAllAlike) {
+  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb", "drag"});
+  for (const FitReport& fit : fitted.fits) {
+    EXPECT_EQ(fit.start, StartKind::kRelease) << fit.model.name;
+    EXPECT_EQ(fit.residual.size(), fitted.used.size()) << fit.model.name;
+  }
+}
+
+TEST(FitModels, LeavesOutWhatOnlyOthersHaveAndSaysSo) {
+  FitOptions options;
+  options.fixed = {{"coulomb", 0.002}};
+  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
+  const auto warns = [](const FitReport& fit) {
+    return std::ranges::find(fit.warnings, "ignored_parameter", &Warning::code) != fit.warnings.end();
+  };
+  EXPECT_TRUE(warns(fitted.fits[0]));
+  EXPECT_FALSE(warns(fitted.fits[1]));
+  EXPECT_TRUE(fitted.fits[1].Find("coulomb")->fixed);
+}
+
+TEST(FitModels, RefusesANameThatNoModelHas) {
+  FitOptions options;
+  options.fixed = {{"lubrication", 1}};
+  const Recording recording = Must(SimulateRecording(NoisyRun()));
+  const auto fitted = FitModels(recording, Whole(recording), options, {"viscous", "coulomb"});
+  ASSERT_FALSE(fitted);
+  EXPECT_EQ(fitted.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(fitted.error().message, HasSubstr("lubrication"));
+}
+
+TEST(ForModel, KeepsWhatTheModelHas) {
+  FitOptions options;
+  options.fixed = {{"drag", 0}, {"viscous", 0.1}};
+  options.priors = {{"coulomb", {1, 2}}};
+  const OptionsForModel viscous = ForModel(options, "viscous", {"viscous", "drag"});
+  EXPECT_EQ(viscous.options.model, "viscous");
+  EXPECT_THAT(viscous.ignored, ElementsAre("coulomb", "drag"));
+  EXPECT_EQ(viscous.options.fixed.size(), 1);
+  EXPECT_THAT(viscous.options.priors, IsEmpty());
+  EXPECT_THAT(ForModel(options, "drag", {"viscous", "drag"}).ignored, IsEmpty());
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/model_comparison.h"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/analysis/recommendation_cases.h"
+#include "tests/fitting/correlated_noise.h"
+
+namespace pendulum {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+FreeSwing Whole(const Recording& recording) {
+  FreeSwing swing;
+  swing.from = recording.time[0];
+  swing.to = recording.time[recording.size() - 1];
+  swing.from_given = swing.to_given = true;
+  return swing;
+}
+
+struct Compared {
+  FittedModels fitted;
+  Comparison comparison;
+};
+
+Compared Compare(const Recording& recording, const std::vector<std::string>& models, const CompareOptions& how = {}) {
+  FitOptions options;
+  options.interval = IntervalMethod::kCovariance;
+  FittedModels fitted = Must(FitModels(recording, Whole(recording), options, models));
+  Comparison comparison = CompareModels(fitted, options, how);
+  return {std::move(fitted), std::move(comparison)};
+}
+
+constexpr CompareOptions kCriteriaOnly = {.predict = false};
+
+/// Gaussian noise of that standard deviation on no levels.
+Recording GaussianRecording(std::string_view model, std::uint64_t seed = 1) {
+  return Must(SimulateRecording(NoisyRun(model, seed)));
+}
+
+// AIC = 2 k - 2 log L, BIC = k ln N - 2 log L with k parameters, σ among them; log L of Gaussian residuals with the
+// likeliest σ is -N/2 (ln(2π RSS/N) + 1).
+TEST(CompareModels, HasTheTextbooksCriteria) {
+  const auto [fitted, comparison] = Compare(GaussianRecording("coulomb"), {"viscous", "coulomb"}, kCriteriaOnly);
+  ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);
+  ASSERT_THAT(comparison.rows, SizeIs(2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ComparisonRow& row = comparison.rows[i];
+    const double n = static_cast<double>(fitted.used.size());
+    const double rss = fitted.fits[i].residual.squaredNorm();
+    const double log_likelihood = -0.5 * n * (std::log(2 * kPi * rss / n) + 1);
+    const int k = i == 0 ? 6 : 7;  // inertia, friction, release_angle, release_time, zero_angle, σ
+    EXPECT_EQ(row.parameters, k);
+    EXPECT_NEAR(*row.log_likelihood, log_likelihood, 1e-6);
+    EXPECT_NEAR(*row.aic, 2 * k - 2 * log_likelihood, 1e-6);
+    EXPECT_NEAR(*row.aicc, 2 * k - 2 * log_likelihood + 2.0 * k * (k + 1) / (n - k - 1), 1e-6);
+    EXPECT_NEAR(*row.bic, k * std::log(n) - 2 * log_likelihood, 1e-6);
+  }
+}
+
+TEST(CompareModels, HasWeightsThatAddUpToOneAndDifferencesToTheBest) {
+  const auto [fitted, comparison] =
+      Compare(GaussianRecording("coulomb"), {"viscous", "coulomb", "drag"}, kCriteriaOnly);
+  double sum = 0;
+  double least = kUnbounded;
+  for (const ComparisonRow& row : comparison.rows) {
+    sum += *row.akaike_weight;
+    least = std::min(least, *row.delta_bic);
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_EQ(least, 0);
+}
+
+// The richer law contains the simpler: it cannot fit worse.
+TEST(CompareModels, NestsLikelihoods) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto [fitted, comparison] =
+        Compare(GaussianRecording("coulomb", seed), {"viscous", "coulomb", "drag", "asymmetric"}, kCriteriaOnly);
+    const auto& rows = comparison.rows;
+    EXPECT_GE(*rows[1].log_likelihood, *rows[0].log_likelihood - 1e-6);
+    EXPECT_GE(*rows[2].log_likelihood, *rows[1].log_likelihood - 1e-6);
+    EXPECT_GE(*rows[3].log_likelihood, *rows[1].log_likelihood - 1e-4);
+    EXPECT_THAT(comparison.tests, SizeIs(4));  // viscous in coulomb and drag, coulomb in drag and asymmetric
+  }
+}
+
+TEST(CompareModels, PredictsBetterWithTheRightLaw) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 20;
+  const auto [fitted, comparison] = Compare(Must(SimulateRecording(run)), {"viscous", "coulomb"});
+  const auto& rows = comparison.rows;
+  EXPECT_EQ(comparison.recommended, "coulomb");
+  EXPECT_GT(rows[0].forward.rms, 1.5 * rows[1].forward.rms);
+  EXPECT_THAT(rows[1].cross_validation.standardized, DoubleNear(1, 0.1));
+}
+
+/// The same with AR(1) noise of that standard deviation [rad], on levels of the given resolution.
+Recording CorrelatedRecording(double sigma, double resolution, std::uint64_t seed) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.noise = 0;
+  Recording recording = Must(SimulateRecording(run));
+  recording.value += sigma * FirstOrderNoise(recording.size(), 0.9, 0, seed);
+  if (resolution > 0) {
+    recording.value = resolution * (recording.value.array() / resolution).round();
+    recording.resolution = resolution;
+  }
+  return recording;
+}
+
+TEST(CompareModels, TakesMemoryIntoAccount) {
+  const auto [fitted, comparison] =
+      Compare(CorrelatedRecording(0.004, 0, 5), {"viscous", "coulomb", "drag"}, kCriteriaOnly);
+  EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
+  EXPECT_LT(comparison.effective_samples, 0.5 * static_cast<double>(fitted.used.size()));
+  EXPECT_THAT(comparison.criterion, HasSubstr("remember"));
+  // An AR(1) of 0.9 has innovations of sqrt(1 - 0.81) of its standard deviation: ln L is larger by -N/2 ln(0.19).
+  const double n = static_cast<double>(fitted.used.size());
+  const double gained = *comparison.rows[1].log_likelihood - fitted.fits[1].statistics.log_likelihood;
+  EXPECT_NEAR(gained, -0.5 * n * std::log(0.19), 0.1 * n);
+}
+
+// Memory taken for none makes the criterion see laws in it; with it, viscous and dry friction stand.
+TEST(CompareModels, RecommendsTheTrueLawUnderNoiseThatRemembers) {
+  int right = 0;
+  constexpr int kSeeds = 10;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const auto compared = Compare(CorrelatedRecording(0.002, 0, static_cast<std::uint64_t>(seed)),
+                                  {"viscous", "coulomb", "drag"}, kCriteriaOnly);
+    if (compared.comparison.recommended == "coulomb") ++right;
+  }
+  EXPECT_GE(right, kSeeds - 1);
+}
+
+TEST(CompareModels, HasNoCriterionForQuietNoiseThatRemembers) {
+  const auto [fitted, comparison] =
+      Compare(CorrelatedRecording(0.3 * kCount, kCount, 5), {"viscous", "coulomb"}, kCriteriaOnly);
+  EXPECT_EQ(comparison.likelihood, Likelihood::kNone);
+  EXPECT_THAT(comparison.recommended, IsEmpty());
+  EXPECT_THAT(comparison.criterion, HasSubstr("below half a count"));
+  for (const ComparisonRow& row : comparison.rows) EXPECT_FALSE(row.bic || row.akaike_weight) << row.model;
+}
+
+TEST(CompareModels, JudgesOnlyWhatConverged) {
+  Compared made = Compare(GaussianRecording("coulomb"), {"viscous", "coulomb"}, kCriteriaOnly);
+  made.fitted.fits[1].termination = Termination::kNotConverged;
+  made.fitted.fits[1].reason = "made so";
+  const Comparison again = CompareModels(made.fitted, {}, kCriteriaOnly);
+  EXPECT_EQ(again.recommended, "viscous");
+  EXPECT_FALSE(again.rows[1].judged || again.rows[1].bic);
+  EXPECT_THAT(again.rows[1].reason, HasSubstr("made so"));
+  made.fitted.fits[0].termination = Termination::kFailed;
+  const Comparison none = CompareModels(made.fitted, {}, kCriteriaOnly);
+  EXPECT_THAT(none.recommended, IsEmpty());
+  EXPECT_EQ(none.likelihood, Likelihood::kNone);
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// How often each friction law is recommended for recordings simulated with a known one, as a Markdown table:
+//   GLOG_minloglevel=3 recommendation_study [COUNT]
+#include <cstdlib>
+#include <iostream>
+
+#include "pendulum/base/format.h"
+#include "tests/analysis/recommendation_cases.h"
+
+namespace pendulum {
+namespace {
+
+void PrintCase(const TrueLaw& law, double duration, double noise, int count) {
+  const Recommendations counts = CountRecommendations(LawRun(law, duration, noise), count, 1);
+  std::cout << "| " << law.model << " | " << NumberText(duration) << " | " << NumberText(noise) << " |";
+  for (const std::string_view name : FrictionModels::kNames) {
+    const auto found = counts.find(std::string(name));
+    std::cout << " " << (found == counts.end() ? 0 : found->second) << " |";
+  }
+  const auto none = counts.find("");
+  std::cout << " " << (none == counts.end() ? 0 : none->second) << " |" << std::endl;
+}
+
+void PrintStudy(int count) {
+  std::cout << "| law | seconds | noise, counts |";
+  for (const std::string_view name : FrictionModels::kNames) std::cout << " " << name << " |";
+  std::cout << " none |\n|---|---|---|";
+  for (std::size_t i = 0; i <= FrictionModels::kNames.size(); ++i) std::cout << "---|";
+  std::cout << "\n";
+  for (const TrueLaw& law : kTrueLaws) {
+    for (const double noise : {0.25, 1.0, 2.5}) PrintCase(law, 20, noise, count);
+  }
+  // What tells Stribeck friction is the slow end of the swing.
+  for (const double noise : {0.25, 1.0, 2.5}) PrintCase(kTrueLaws.back(), 60, noise, count);
+}
+
+}  // namespace
+}  // namespace pendulum
+
+int main(int argc, char** argv) {
+  constexpr int kCount = 200;
+  pendulum::PrintStudy(argc > 1 ? std::atoi(argv[1]) : kCount);
+  return 0;
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/recommendation.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Case {
+  std::string model;
+  double bic;
+  double forward_rms;
+};
+
+struct Compared {
+  FittedModels fitted;
+  Comparison comparison;
+};
+
+/// Models as CompareModels leaves them, with these criteria.
+Compared Make(const std::vector<Case>& cases) {
+  Compared made;
+  double smallest = cases.front().bic;
+  for (const Case& c : cases) smallest = std::min(smallest, c.bic);
+  for (const Case& c : cases) {
+    FitReport fit;
+    fit.model = *FindMotionModel(c.model);
+    fit.termination = Termination::kConverged;
+    made.fitted.fits.push_back(fit);
+    ComparisonRow row;
+    row.model = c.model;
+    row.judged = true;
+    row.bic = c.bic;
+    row.delta_bic = c.bic - smallest;
+    row.forward.rms = c.forward_rms;
+    row.forward.samples = 100;
+    made.comparison.rows.push_back(row);
+  }
+  return made;
+}
+
+Comparison Recommended(const std::vector<Case>& cases) {
+  Compared made = Make(cases);
+  Recommend(made.fitted, made.comparison);
+  return made.comparison;
+}
+
+// Simplest within 2 of the smallest BIC: Kass & Raftery, JASA 90:773 (1995), call less "not worth a bare mention".
+TEST(Recommend, TakesTheSimplestWithinTwoOfTheSmallestBic) {
+  EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "coulomb");
+  EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 52.1, 1}, {"drag", 50, 1}}).recommended, "drag");
+  EXPECT_EQ(Recommended({{"viscous", 51, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "viscous");
+}
+
+TEST(Recommend, TakesTheSmallerBicOfTwoEquallySimple) {
+  EXPECT_EQ(Recommended({{"asymmetric", 51, 1}, {"drag", 50, 1}}).recommended, "drag");
+  EXPECT_EQ(Recommended({{"asymmetric", 50, 1}, {"drag", 51, 1}}).recommended, "asymmetric");
+}
+
+TEST(Recommend, GivesItsReasonInWords) {
+  EXPECT_EQ(Recommended({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}}).reason,
+            "drag: BIC lower by 812 than with coulomb, and predicts the last 40 % 2 times as well");
+  EXPECT_THAT(Recommended({{"coulomb", 90, 0.0020}, {"drag", 50, 0.0021}}).reason, HasSubstr("equally well"));
+  EXPECT_THAT(Recommended({{"coulomb", 90, 0.001}, {"drag", 50, 0.003}}).reason, HasSubstr("3 times worse"));
+}
+
+TEST(Recommend, SaysWhichOthersAreAsGood) {
+  EXPECT_THAT(Recommended({{"viscous", 90, 1}, {"coulomb", 51, 1}, {"drag", 50, 1}}).reason,
+              AllOf(HasSubstr("the simplest of those that the readings do not tell apart (drag, too"),
+                    HasSubstr("BIC lower by 39 than with viscous")));
+}
+
+TEST(Recommend, SaysWhatIsMissing) {
+  Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
+  made.comparison.rows[1].lack_of_fit = true;
+  made.comparison.rows[1].lag1_correlation = 0.6;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_THAT(made.comparison.reason,
+              HasSubstr("but more than noise is left (lag-1 correlation 0.6): something else is missing"));
+}
+
+TEST(Recommend, RecommendsNothingWithoutACriterion) {
+  Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
+  for (ComparisonRow& row : made.comparison.rows) row.bic = row.delta_bic = std::nullopt;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "");
+  EXPECT_THAT(made.comparison.reason, Not(testing::IsEmpty()));
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/score_supremum.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::MatrixXd;
+using testing::DoubleNear;
+
+/// Three standard deviations of a share p of 19999 draws.
+double Scatter(double p) { return 3 * std::sqrt(p * (1 - p) / 19'999); }
+
+// One shape: half χ²(1), whose 5 % point is 2.7055.
+TEST(SupremumTail, OfOneShapeIsThatOfHalfAChiSquare) {
+  const MatrixXd shapes = MatrixXd::Random(50, 1);
+  EXPECT_THAT(SupremumTail(MatrixXd(50, 0), shapes, 2.705543, 1), DoubleNear(0.05, Scatter(0.05)));
+}
+
+// Shapes at right angles are independent: 1 - Φ(√u)^G.
+TEST(SupremumTail, OfIndependentShapesIsTheTailOfTheirMaximum) {
+  const double expected = 1 - std::pow(0.5 * std::erfc(-2 / std::sqrt(2.0)), 5);
+  EXPECT_THAT(SupremumTail(MatrixXd(9, 0), MatrixXd::Identity(9, 5), 4, 2), DoubleNear(expected, Scatter(expected)));
+}
+
+// Two shapes, (1, 0) and (cos a, sin a), see a plane normal vector: P(max >= e) of the closed form by Owen's T is
+// checked here at its limits, a -> 0 one shape, and the nuisance (1, 0, ...) leaves of each what is at right angles to
+// it.
+TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
+  MatrixXd nuisance = MatrixXd::Zero(4, 1);
+  nuisance(0, 0) = 7;
+  MatrixXd shapes = MatrixXd::Zero(4, 2);
+  shapes.col(0) << 3, 1, 0, 0;
+  shapes.col(1) << -5, 2, 0, 0;  // the same direction beside the nuisance
+  EXPECT_THAT(SupremumTail(nuisance, shapes, 2.705543, 3), DoubleNear(0.05, Scatter(0.05)));
+}
+
+TEST(SupremumTail, IsOneWhereNothingIsLeft) {
+  const MatrixXd nuisance = MatrixXd::Random(20, 3);
+  EXPECT_EQ(SupremumTail(nuisance, nuisance.leftCols(2), 5, 1), 1);
+  EXPECT_EQ(SupremumTail(nuisance, MatrixXd::Random(20, 2), 0, 1), 1);
+}
+
+TEST(SupremumTail, DoesNotDependOnUnits) {
+  const MatrixXd nuisance = MatrixXd::Random(30, 2);
+  MatrixXd shapes = MatrixXd::Random(30, 4);
+  const double p = SupremumTail(nuisance, shapes, 3, 5);
+  shapes.col(2) *= 1e-9;
+  EXPECT_NEAR(SupremumTail(1e6 * nuisance, shapes, 3, 5), p, 1e-3);
+}
+
+}  // namespace
+}  // namespace pendulum

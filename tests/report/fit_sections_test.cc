@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/fit_sections.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/report/section_text.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(TermsTogether, LeavesBlanksOnlyBeforeSigns) {
+  EXPECT_EQ(TermsTogether("a th' + b sin th = 0"), "a\u00A0th' +\u00A0b\u00A0sin\u00A0th =\u00A00");
+}
+
+TEST(ParameterSection, IsTheTableOfEstimatesAlone) {
+  EXPECT_EQ(ToText(Sections{ParameterSection(ExampleFit(), true)}), R"([[Parameters of coulomb]]
+    name              value ± std error  unit       95 % interval
+    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]
+    viscous          0.0030 ± 0.0005     N m s/rad  [0.0020, 0.0040]
+    coulomb               0 (at bound)   N m        [0, 0.000125]
+    release_angle   0.42300 ± 0.00020    rad        [0.42260, 0.42340]
+                     24.236 ± 0.011      deg        [24.213, 24.259]
+    zero_angle         0.01 (fixed)      rad
+                   0.572958              deg
+)");
+}
+
+TEST(ParameterSection, SaysFirstThatThereIsNoResult) {
+  FitReport fit = ExampleFit();
+  fit.termination = Termination::kNotConverged;
+  fit.reason = "100 iterations were not enough";
+  EXPECT_THAT(
+      ToText(Sections{ParameterSection(fit, false)}, {.colour = true}),
+      HasSubstr("[[Parameters]]\x1B[0m\n    \x1B[1;31mnot_converged: 100 iterations were not enough.\x1B[0m\n"));
+}
+
+// The rounding is that of the estimate's error 0.00025; 0.0795 deg: 0.423 rad × 57.2958 × 1.01 = 24.4785.
+TEST(FitSections, PutSystematicErrorsAndClosedFormsIntoATableOfTheirOwn) {
+  FitReport fit = ExampleFit();
+  fit.parameters[0].closed_form = 0.0795;
+  fit.parameters[3].closed_form = 1.01 * 0.423;
+  EXPECT_THAT(ToText(FitSections(fit, std::nullopt, nullptr)), HasSubstr(R"(
+    name           symbol  ± systematic  closed form  unit
+    inertia        I_O     ± 0.0010          0.07950  kg m^2
+    viscous        b
+    coulomb        τ_c
+    release_angle  θ_r                       0.42723  rad
+                                              24.478  deg
+    zero_angle     z
+)"));
+}
+
+}  // namespace
+}  // namespace pendulum

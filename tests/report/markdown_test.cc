@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/markdown.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/report/text.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsSubsetOf;
+using testing::StartsWith;
+
+std::string MarkdownOf(Block block) { return ToMarkdown(Sections{{"T", "", {std::move(block)}}}); }
+
+// GitHub-flavoured Markdown, version 0.29, sections 4.10, 6.1, 6.4, 6.6 and 6.10: what is active.
+TEST(MarkdownText, EscapesWhatIsActive) {
+  EXPECT_EQ(MarkdownText("a|b*c`d<e&f~g$h\\i"), "a\\|b\\*c\\`d\\<e\\&f\\~g\\$h\\\\i");
+  EXPECT_EQ(MarkdownText("[x](javascript:y) ![z][w] [v]: u"), "[x\\](javascript:y) ![z\\][w] [v\\]: u");
+  EXPECT_EQ(MarkdownText("_a_ release_angle τ_c _"), "\\_a\\_ release_angle τ_c \\_");
+  EXPECT_EQ(MarkdownText("a\nb\x1B[1m"), "a?b?[1m");
+}
+
+TEST(MarkdownText, LeavesNumbersAndIntervalsAlone) {
+  for (const char* text : {"[0.0785, 0.0795]", "-0.5", "N m s^2/rad^2", "0.0790 ± 0.0003", "χ² (p 0.14)"}) {
+    EXPECT_EQ(MarkdownText(text), text);
+  }
+}
+
+TEST(ToMarkdown, LetsNoParagraphBeginAHeadingOrAList) {
+  EXPECT_EQ(MarkdownOf(Words{"# x"}), "## T\n\n\\# x\n");
+  EXPECT_EQ(MarkdownOf(Words{"12. x"}), "## T\n\n12\\. x\n");
+  EXPECT_EQ(MarkdownOf(Words{"1 of 2 agree"}), "## T\n\n1 of 2 agree\n");
+  EXPECT_EQ(MarkdownOf(Items{{"- x", "y"}}), "## T\n\n- \\- x\n- y\n");
+}
+
+TEST(ToMarkdown, PutsValueAndErrorIntoOneCell) {
+  Table table{{{"name"}, {"empty"}, {"value", true}, {"± error", false, 1}, {"agrees"}},
+              {{"a|b", "", "12", "± 3", "NO"}, {"c", "", "5", "", "yes"}}};
+  table.caution = "NO";
+  EXPECT_EQ(MarkdownOf(table),
+            "## T\n\n"
+            "| name | value ± error | agrees |\n"
+            "| --- | --: | --- |\n"
+            "| a\\|b | 12 ± 3 | **NO** |\n"
+            "| c | 5 | yes |\n");
+}
+
+TEST(ToMarkdown, GivesFactsFormulasAndWhatIsLeftOut) {
+  EXPECT_EQ(MarkdownOf(Facts{{"model", "b |th'|"}, {"status", "failed", Emphasis::kAlarm}}),
+            "## T\n\n| | |\n| --- | --- |\n| model | b \\|th'\\| |\n| status | **failed** |\n");
+  EXPECT_EQ(MarkdownOf(Formula{"b\u00A0th' = 0"}), "## T\n\n```text\nb th' = 0\n```\n");
+  Table table{{{"n"}}, {{"1"}, {"9"}}};
+  table.rows_before = 1;
+  table.left_out = "... 7 more";
+  EXPECT_EQ(MarkdownOf(table), "## T\n\n| n |\n| --- |\n| 1 |\n| ... 7 more |\n| 9 |\n");
+}
+
+TEST(ToMarkdown, BeginsWithVerdictAndParameters) {
+  EXPECT_THAT(ToMarkdown(ExampleComparedReport()), StartsWith(R"(# Pendulum: swing.csv
+
+## Verdict
+
+- Model coulomb, converged: the last step changed no parameter by more than 0.001 standard errors
+- It is the only one that converged.
+- inertia falls by 1.9 % from the largest to the smallest swings (p = 1e-09)
+
+## Result
+
+| name | value ± std error | unit | 95 % interval |
+| --- | --: | --- | --- |
+| inertia | 0.07900 ± 0.00025 | kg m^2 | [0.07850, 0.07950] |
+| viscous | 0.0030 ± 0.0005 | N m s/rad | [0.0020, 0.0040] |
+| coulomb | 0 (at bound) | N m | [0, 0.000125] |
+| release_angle | 0.42300 ± 0.00020 | rad | [0.42260, 0.42340] |
+| | 24.236 ± 0.011 | deg | [24.213, 24.259] |
+| zero_angle | 0.01 (fixed) | rad | |
+| | 0.572958 | deg | |
+
+## Warnings
+
+- there is a gap of 0.5 s after 7 s
+)"));
+}
+
+TEST(ToMarkdown, SaysFirstThatAFitDidNotConverge) {
+  EXPECT_THAT(ToMarkdown(ExampleRateReport()),
+              StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge: its numbers are no "
+                         "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));
+}
+
+TEST(ToMarkdown, GoesWithoutAFit) {
+  RunReport report = ExampleReport();
+  report.fits.clear();
+  report.checks.clear();
+  EXPECT_THAT(ToMarkdown(report), HasSubstr("No fit was asked for: closed forms only."));
+}
+
+TEST(ToMarkdown, IsNotMisledByTheNameOfAFile) {
+  RunReport report = ExampleReport();
+  report.data.path = "a|<script>\n# [x](http://y)";
+  const std::string text = ToMarkdown(report);
+  EXPECT_THAT(text, StartsWith("# Pendulum: a\\|\\<script>?# [x\\](http://y)\n"));
+  EXPECT_THAT(text, HasSubstr("| file | a\\|\\<script>?# [x\\](http://y) |\n"));
+}
+
+std::vector<std::string> TitlesOf(const std::string& text, const std::string& before, const std::string& behind) {
+  std::vector<std::string> titles;
+  for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before, at + 1)) {
+    titles.push_back(text.substr(at + before.size(), text.find(behind, at) - at - before.size()));
+  }
+  return titles;
+}
+
+TEST(ToMarkdown, HasEverySectionOfTheText) {
+  for (const RunReport& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport()}) {
+    EXPECT_THAT(TitlesOf(ToText(report), "[[", "]]"), IsSubsetOf(TitlesOf(ToMarkdown(report), "\n## ", "\n\n")));
+  }
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/page.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/report/json.h"
+#include "pendulum/report/series.h"
+#include "tests/report/example_report.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// What stands in the script element of that id.
+Json Embedded(const std::string& html, const std::string& id) {
+  const std::size_t element = html.find("id=\"" + id + "\"");
+  const std::size_t begin = html.find('>', element) + 1;
+  return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+Recording ExampleSamples() {
+  Recording used;
+  used.time = Eigen::VectorXd::LinSpaced(8, 0, 0.7);
+  used.value = Eigen::VectorXd::LinSpaced(8, 0.1, -0.123456789012);
+  return used;
+}
+
+TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
+  const RunReport report = ExampleReport();
+  const std::string html = ToHtml(ExampleSamples(), report, "fit_pendulum --data run.csv");
+  EXPECT_THAT(html, StartsWith("<!doctype html>"));
+  EXPECT_EQ(Embedded(html, "result"), ToJson(report));
+  EXPECT_EQ(Embedded(html, "series").at("time_s").size(), 8);
+  EXPECT_EQ(Embedded(html, "command").at("command"), "fit_pendulum --data run.csv");
+  EXPECT_THAT(html, Not(HasSubstr("@RESULT@")));
+}
+
+TEST(ToHtml, LetsNoNameEndItsScript) {
+  RunReport report = ExampleReport();
+  report.data.path = "</script><script>alert(1)</script>@SERIES@.csv";
+  const std::string html = ToHtml(ExampleSamples(), report, "<!--");
+  EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
+  EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.data.path);
+  EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
+}
+
+// No address of a server, and no way to load one.
+TEST(ToHtml, FetchesNothing) {
+  const std::string html = ToHtml(ExampleSamples(), ExampleReport(), "");
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(html, Not(HasSubstr(" src=\"http")));
+  EXPECT_THAT(html, Not(HasSubstr("<link")));
+  EXPECT_TRUE(Embedded(html, "command").is_null());
+}
+
+TEST(SeriesJson, OfThePageHasSevenDigitsAndNoResiduals) {
+  const RunReport report = ExampleReport();
+  const Json all = SeriesJson(ExampleSamples(), report);
+  const Json page = SeriesJson(ExampleSamples(), report, SeriesDetail::kPage);
+  EXPECT_EQ(all.at("measured").at(7), -0.123456789012);
+  EXPECT_EQ(page.at("measured").at(7), -0.1234568);
+  for (const auto& [name, model] : page.at("models").items()) EXPECT_TRUE(model.at("residual").is_null()) << name;
+}
+
+}  // namespace
+}  // namespace pendulum

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/terminal_plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+/// cos(2π f t) of amplitude 0.4 rad, N samples over 20 s, and a fit that is 0.01 rad above it.
+struct Drawn {
+  Recording used;
+  FitReport fit;
+};
+
+Drawn Swing(double frequency, int samples) {
+  Drawn drawn;
+  drawn.used.time = Eigen::VectorXd::LinSpaced(samples, 2, 22);
+  drawn.used.value = 0.4 * (2 * kPi * frequency * drawn.used.time.array()).cos();
+  drawn.fit.model = {"coulomb", "coulomb", Gravity::kSine};
+  drawn.fit.fitted = drawn.used.value.array() + 0.01;
+  drawn.fit.residual = drawn.used.value - drawn.fit.fitted;
+  return drawn;
+}
+
+/// What gnuplot makes of the script, line by line; reads and writes files of its own, as a shell does.
+std::vector<std::string> Draw(const Drawn& drawn) {
+  const std::string script = testing::TempDir() + "terminal_plot_test.gp";
+  std::ofstream(script) << TerminalPlot(drawn.used, drawn.fit);
+  std::FILE* output = ::popen(("gnuplot -d " + script + " 2>&1").c_str(), "r");
+  EXPECT_NE(output, nullptr);
+  std::string picture;
+  std::array<char, 4096> block{};
+  while (std::fgets(block.data(), block.size(), output) != nullptr) picture += block.data();
+  EXPECT_EQ(::pclose(output), 0) << picture;
+  std::vector<std::string> lines;
+  std::istringstream text(PictureText(picture));
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string Joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// How many characters of that kind stand in the frame of the upper plot.
+long CountAbove(const std::vector<std::string>& lines, char mark) {
+  long count = 0;
+  for (std::size_t i = 2; i < 13; ++i) count += std::ranges::count(lines.at(i).substr(9), mark);
+  return count;
+}
+
+TEST(TerminalPlot, IsAsciiOfATerminal) {
+  const std::vector<std::string> lines = Draw(Swing(0.76, 2000));
+  EXPECT_THAT(lines, SizeIs(testing::Le(24)));
+  EXPECT_THAT(lines, Each(SizeIs(testing::Le(79))));
+  for (const char c : Joined(lines)) EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
+}
+
+TEST(PictureText, HasNeitherFormFeedsNorBlanksAtEnds) {
+  EXPECT_EQ(PictureText("\f   \n a b  \n\n c\fd\n"), " a b\n c\nd\n");
+  EXPECT_EQ(PictureText(""), "");
+}
+
+TEST(TerminalPlot, HasMeasuredDotsFittedStarsAndResidualsInDegrees) {
+  const std::string text = Joined(Draw(Swing(0.76, 2000)));
+  EXPECT_THAT(text, HasSubstr("coulomb: measured .  fitted *  [deg]"));
+  EXPECT_THAT(text, HasSubstr("residual [deg]"));
+  EXPECT_THAT(text, HasSubstr("time [s]"));
+  EXPECT_GT(CountAbove(Draw(Swing(0.76, 2000)), '.'), 67);
+  EXPECT_GT(CountAbove(Draw(Swing(0.76, 2000)), '*'), 67);
+}
+
+// 100 swings a second of which every column has hundreds: each reaches from one end to the other.
+TEST(TerminalPlot, LosesNoSwingHoweverMany) {
+  const std::vector<std::string> lines = Draw(Swing(100, 200'000));
+  EXPECT_GT(CountAbove(lines, '.'), 67 * 7);
+  EXPECT_LT(TerminalPlot(Swing(100, 200'000).used, Swing(100, 200'000).fit).size(), 40'000);
+}
+
+TEST(TerminalPlot, KeepsALoneOutlierAmongManySamples) {
+  Drawn drawn = Swing(0.76, 200'000);
+  drawn.used.value[77'777] = 3;  // rad = 171.9 deg
+  EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), HasSubstr(" 171.887\n"));
+}
+
+TEST(TerminalPlot, GoesWithoutAFit) {
+  Drawn drawn = Swing(0.76, 50);
+  drawn.fit.fitted.resize(0);
+  drawn.fit.residual.resize(0);
+  drawn.used.value[7] = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::string> lines = Draw(drawn);
+  EXPECT_THAT(Joined(lines), HasSubstr("measured"));
+  EXPECT_EQ(CountAbove(lines, '*'), 0);
+  EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), Not(HasSubstr("nan")));
+}
+
+TEST(TerminalPlot, DrawsWhatDoesNotMove) {
+  Drawn drawn = Swing(0, 50);
+  drawn.used.value.setZero();
+  drawn.fit.fitted = drawn.fit.residual = Eigen::VectorXd::Zero(50);
+  EXPECT_THAT(Joined(Draw(drawn)), HasSubstr("time [s]"));
+}
+
+TEST(TerminalPlot, IsInTheUnitOfReadingsThatAreNoAngle) {
+  Drawn drawn = Swing(0.76, 500);
+  drawn.used.unit = "counts";
+  EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), HasSubstr("[counts]"));
+}
+
+}  // namespace
+}  // namespace pendulum

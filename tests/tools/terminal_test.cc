@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/terminal.h"
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace pendulum {
+namespace {
+
+/// An environment variable as it is while this lives, then as it was; nullptr: not set.
+class WithVariable {
+ public:
+  WithVariable(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    Set(value);
+  }
+  WithVariable(const WithVariable&) = delete;
+  WithVariable& operator=(const WithVariable&) = delete;
+  ~WithVariable() { Set(old_ ? old_->c_str() : nullptr); }
+
+ private:
+  void Set(const char* value) const {
+    if (value == nullptr) {
+      ::unsetenv(name_);
+    } else {
+      ::setenv(name_, value, 1);
+    }
+  }
+
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+/// A descriptor, closed in the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { ::close(value_); }
+  int value() const { return value_; }
+
+ private:
+  int value_;
+};
+
+/// The terminal's end of a pair of pseudo-terminals; its other end is open as long as `controller` is.
+int OpenTerminal(const Descriptor& controller) {
+  EXPECT_EQ(::grantpt(controller.value()), 0);
+  EXPECT_EQ(::unlockpt(controller.value()), 0);
+  return ::open(::ptsname(controller.value()), O_RDWR | O_NOCTTY);
+}
+
+class OfATerminal : public testing::Test {
+ protected:
+  WithVariable terminal_{"TERM", "xterm"};
+  WithVariable no_color_{"NO_COLOR", nullptr};
+  Descriptor controller_{::posix_openpt(O_RDWR | O_NOCTTY)};
+  Descriptor end_{OpenTerminal(controller_)};
+};
+
+TEST_F(OfATerminal, IsWanted) {
+  ASSERT_GE(end_.value(), 0);
+  EXPECT_TRUE(WantsColour(end_.value()));
+}
+
+TEST_F(OfATerminal, IsNotWantedWithNoColorUnlessThatIsEmpty) {
+  const WithVariable zero("NO_COLOR", "0");  // whatever it says
+  EXPECT_FALSE(WantsColour(end_.value()));
+  const WithVariable empty("NO_COLOR", "");
+  EXPECT_TRUE(WantsColour(end_.value()));
+}
+
+TEST_F(OfATerminal, IsNotWantedOfOneThatKnowsNone) {
+  for (const char* kind : {"dumb", "", static_cast<const char*>(nullptr)}) {
+    const WithVariable terminal("TERM", kind);
+    EXPECT_FALSE(WantsColour(end_.value()));
+  }
+}
+
+TEST_F(OfATerminal, IsNotWantedElsewhere) {
+  const Descriptor null(::open("/dev/null", O_WRONLY));
+  EXPECT_FALSE(WantsColour(null.value()));
+  EXPECT_FALSE(WantsColour(-1));
+}
+
+}  // namespace
+}  // namespace pendulum
