@@ -121,7 +121,7 @@ class Climb {
   Slope At(const Eigen::VectorXd& place) const { return SlopeAt(family_, place, time_, residual_, 0); }
 
   Eigen::VectorXd Highest(Eigen::VectorXd place) const {
-    constexpr int kMostSteps = 60;
+    constexpr int kMostSteps = 30;
     constexpr double kEnough = 1e-7;  // gain in log-likelihood
     constexpr double kLongest = 1;    // step
     Slope here = SlopeAt(family_, place, time_, residual_, kDifference);
@@ -284,7 +284,7 @@ CorrelatedLikelihood White(const CorrelatedResiduals& data, Eigen::VectorXd shif
 
 CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const Autocorrelation& like,
                                              const CorrelatedResiduals& data, Eigen::VectorXd shift) {
-  constexpr int kMostRounds = 10;
+  constexpr int kMostRounds = 6;
   constexpr double kEnough = 1e-3;  // gain in log-likelihood by the shift; the memory's that follows is less
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
   const Climb climb(family, data.time, left);

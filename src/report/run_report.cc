@@ -16,6 +16,14 @@ void AddOnce(const std::vector<Warning>& warnings, std::vector<Warning>& all) {
   }
 }
 
+bool SaidByAll(const std::vector<FitReport>& fits, const Warning& warning) {
+  return std::ranges::all_of(fits, [&](const FitReport& fit) {
+    return std::ranges::any_of(fit.warnings, [&](const Warning& other) {
+      return other.code == warning.code && other.message == warning.message;
+    });
+  });
+}
+
 }  // namespace
 
 DataSummary SummarizeData(const Recording& recording, const Recording& used) {
@@ -63,7 +71,13 @@ std::size_t RunReport::MainFit() const {
 std::vector<Warning> AllWarnings(const RunReport& report) {
   std::vector<Warning> all;
   AddOnce(report.warnings, all);
-  for (const FitReport& fit : report.fits) AddOnce(fit.warnings, all);
+  for (const FitReport& fit : report.fits) {
+    std::vector<Warning> named = fit.warnings;
+    for (Warning& warning : named) {
+      if (!SaidByAll(report.fits, warning)) warning.message = std::string(fit.model.name) + ": " + warning.message;
+    }
+    AddOnce(named, all);
+  }
   return all;
 }
 

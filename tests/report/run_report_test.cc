@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/run_report.h"
 
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,8 +40,9 @@ TEST(AllWarnings, SaysEachOnceDataFirst) {
   RunReport report = ExampleReport();
   report.fits.push_back(report.fits.front());
   report.fits.back().warnings.push_back({"gap", "another gap"});
-  EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap"), Field(&Warning::code, "lack_of_fit"),
-                                               Field(&Warning::message, "another gap")));
+  EXPECT_THAT(AllWarnings(report),
+              ElementsAre(Field(&Warning::code, "gap"), Field(&Warning::code, "lack_of_fit"),
+                          Field(&Warning::message, std::string(report.fits[1].model.name) + ": another gap")));
 }
 
 TEST(RunReport, HasTheCheckOfAFitOrNone) {

@@ -76,7 +76,7 @@ struct RunReport {
   bool IsShownInFull(std::size_t fit) const { return !comparison || fit == MainFit(); }
 };
 
-/// The warnings of the recording, then those of the fits, each said once.
+/// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about.
 std::vector<Warning> AllWarnings(const RunReport& report);
 
 /// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
