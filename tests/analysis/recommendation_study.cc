@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How often each friction law is recommended for recordings simulated with a known one, as a Markdown table:
-//   GLOG_minloglevel=3 recommendation_study [COUNT]
+//   GLOG_minloglevel=3 recommendation_study [COUNT [LAW]]
 #include <cstdlib>
 #include <iostream>
 
@@ -21,15 +21,18 @@ void PrintCase(const TrueLaw& law, double duration, double noise, int count) {
   std::cout << " " << (none == counts.end() ? 0 : none->second) << " |" << std::endl;
 }
 
-void PrintStudy(int count) {
+/// Of all laws, or of the one named.
+void PrintStudy(int count, std::string_view only) {
   std::cout << "| law | seconds | noise, counts |";
   for (const std::string_view name : FrictionModels::kNames) std::cout << " " << name << " |";
   std::cout << " none |\n|---|---|---|";
   for (std::size_t i = 0; i <= FrictionModels::kNames.size(); ++i) std::cout << "---|";
   std::cout << "\n";
   for (const TrueLaw& law : kTrueLaws) {
+    if (!only.empty() && law.model != only) continue;
     for (const double noise : {0.25, 1.0, 2.5}) PrintCase(law, 20, noise, count);
   }
+  if (!only.empty() && only != "stribeck") return;
   // What tells Stribeck friction is the slow end of the swing.
   for (const double noise : {0.25, 1.0, 2.5}) PrintCase(kTrueLaws.back(), 60, noise, count);
 }
@@ -39,6 +42,6 @@ void PrintStudy(int count) {
 
 int main(int argc, char** argv) {
   constexpr int kCount = 200;
-  pendulum::PrintStudy(argc > 1 ? std::atoi(argv[1]) : kCount);
+  pendulum::PrintStudy(argc > 1 ? std::atoi(argv[1]) : kCount, argc > 2 ? argv[2] : "");
   return 0;
 }
