@@ -60,8 +60,8 @@ struct FitPendulumOptions {
   std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
   std::string report;     ///< Path of the page that shows all of it; "-" is standard output; empty for none.
   std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
-  bool terminal_plot = false;     ///< Draws the recording on standard output.
-  bool closed_form_only = false;  ///< No fit is made; of `fit`, the model counts.
+  bool terminal_plot = false;       ///< Draws the recording on standard output.
+  bool closed_form_only = false;    ///< No fit is made; of `fit`, the model counts.
   std::vector<std::string> models;  ///< In the order asked for; several are compared.
   FitOptions fit;                   ///< Its model is the first of them.
 

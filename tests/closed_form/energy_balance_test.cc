@@ -40,7 +40,8 @@ HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
 TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
   for (const double amplitude : {0.3, 1.5, 2.6}) {
     const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
-    const std::vector<double> friction = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
+    const std::vector<double> friction =
+        FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
     EXPECT_NEAR(friction[0], 0, 1e-8) << amplitude;
     EXPECT_NEAR(friction[1], 0.01, 1e-8) << amplitude;
   }
@@ -107,7 +108,8 @@ TEST(FrictionFrom, CountsNoLossAcrossAGap) {
 TEST(FrictionFrom, GivesEveryRegisteredModelItsParameters) {
   const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
   for (const MotionModel& model : MotionModels()) {
-    EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5).front()).size() + 1, PhysicalParameters(model).size()) << model.name;
+    EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5).front()).size() + 1, PhysicalParameters(model).size())
+        << model.name;
   }
 }
 

@@ -41,7 +41,11 @@ inline std::vector<double> TextbookParameters(const MotionModel& model) {
     const auto typical = TypicalFriction<F>(0.002);
     for (std::size_t i = 0; i < typical.size(); ++i) {
       const std::string_view name = F::kParameters[i].name;
-      const double torque = name == "viscous" ? 0.003 : name == "coulomb" ? 0.004 : name == "drag" ? 0.0005 : name == "stiction" ? 0.008 : 0.0;
+      const double torque = name == "viscous"    ? 0.003
+                            : name == "coulomb"  ? 0.004
+                            : name == "drag"     ? 0.0005
+                            : name == "stiction" ? 0.008
+                                                 : 0.0;
       parameters.push_back(torque > 0 ? torque / kTextbookTorque : typical[i]);
     }
   });

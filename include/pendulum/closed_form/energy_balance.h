@@ -11,10 +11,11 @@
 namespace pendulum {
 
 /// The energy lost between turning points, as a linear least squares for the parameters of a friction law that is
-/// linear in them but for a reference rate, at any amplitude (MODEL.md eq. (22)). After Feeny & Liang, J. Sound Vib. 195:149 (1996) and sequels.
+/// linear in them but for a reference rate, at any amplitude (MODEL.md eq. (22)). After Feeny & Liang, J. Sound Vib.
+/// 195:149 (1996) and sequels.
 struct EnergyBalance {
-  Eigen::MatrixXd normal;  ///< K x K, normal equations over the accumulated losses, K friction parameters.
-  Eigen::VectorXd right;   ///< K
+  Eigen::MatrixXd normal;     ///< K x K, normal equations over the accumulated losses, K friction parameters.
+  Eigen::VectorXd right;      ///< K
   double reference_rate = 0;  ///< rad/s, at which the law is linear in the other parameters; 0 where it has none.
 };
 

@@ -12,11 +12,11 @@ namespace pendulum {
 
 /// Residuals of a fit as y = J δ + z + e about its estimates: z Gaussian with memory, e the rounding's white noise.
 struct CorrelatedResiduals {
-  Eigen::VectorXd time;       ///< N x 1, s, increasing
-  Eigen::VectorXd residual;   ///< N x 1, rad or rad/s
-  Eigen::MatrixXd jacobian;   ///< N x F, derivatives of the readings by the parameters that may move, any units
-  Eigen::VectorXd lowest;     ///< F, the least shift δ that bounds allow (<= 0); -infinity where there is none
-  Eigen::VectorXd highest;    ///< F, likewise the largest (>= 0)
+  Eigen::VectorXd time;          ///< N x 1, s, increasing
+  Eigen::VectorXd residual;      ///< N x 1, rad or rad/s
+  Eigen::MatrixXd jacobian;      ///< N x F, derivatives of the readings by the parameters that may move, any units
+  Eigen::VectorXd lowest;        ///< F, the least shift δ that bounds allow (<= 0); -infinity where there is none
+  Eigen::VectorXd highest;       ///< F, likewise the largest (>= 0)
   double rounding_variance = 0;  ///< of e: resolution² / 12
 };
 
@@ -29,10 +29,10 @@ struct CorrelatedLikelihood {
   int parameters = 0;         ///< of memory and scale
 };
 
-/// Exact Gaussian likelihood by a Kalman filter (A. C. Harvey, Forecasting, structural time series models and the Kalman
-/// filter, 1989, section 3.4; R. H. Jones, Technometrics 22:389, 1980, for gaps), maximised over memory and scale, and by
-/// generalised least squares over δ in turn. `like` gives the kind and order of the memory, and where to begin. Nothing
-/// when no number comes out. Cost: a few hundred passes over the samples.
+/// Exact Gaussian likelihood by a Kalman filter (A. C. Harvey, Forecasting, structural time series models and the
+/// Kalman filter, 1989, section 3.4; R. H. Jones, Technometrics 22:389, 1980, for gaps), maximised over memory and
+/// scale, and by generalised least squares over δ in turn. `like` gives the kind and order of the memory, and where to
+/// begin. Nothing when no number comes out. Cost: a few hundred passes over the samples.
 std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const CorrelatedResiduals& data,
                                                                  const Autocorrelation& like);
 
