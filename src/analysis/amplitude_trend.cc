@@ -19,13 +19,13 @@ using Eigen::VectorXd;
 constexpr std::size_t kMostWindows = 8;
 constexpr std::size_t kFewestWindows = 3;
 
-/// The friction parameter with the smallest relative standard error; nullptr: none has one.
+/// The friction torque with the smallest relative standard error; nullptr: none has one.
 const ParameterEstimate* BestFriction(const FitReport& fit) {
   const ParameterEstimate* best = nullptr;
   const auto relative = [](const ParameterEstimate& p) { return *p.std_error / std::abs(p.estimate); };
   for (std::size_t i = 1; i < PhysicalParameters(fit.model).size(); ++i) {
     const ParameterEstimate& parameter = fit.parameters[i];
-    if (!parameter.std_error || !(parameter.estimate != 0)) continue;
+    if (!parameter.std_error || parameter.estimate == 0 || !parameter.info.scales_with_gravity()) continue;
     if (best == nullptr || relative(parameter) < relative(*best)) best = &parameter;
   }
   return best;
@@ -123,15 +123,16 @@ MatrixXd InfluenceOn(Index k, const Recording& used, const FitReport& fit, const
 /// What the parameters of the windows took from the residuals' variance.
 double WindowInflation(const Recording& used, const Windows& windows) {
   double lost = 0;
-  Index free = 0;
+  Index free = 0, samples = 0;
   for (std::size_t w = 0; w < windows.parts.size(); ++w) {
     const LinearFit& linear = windows.linear[w];
     const MatrixXd covariance = ScoreCovariance(windows.noise, windows.memory, windows.TermsIn(windows.parts[w]),
                                                 used.clock_scale * windows.parts[w].part.time, linear.influence);
     lost += linear.inverse.ldlt().solve(covariance).trace();
     free += linear.influence.cols();
+    samples += windows.parts[w].part.size();
   }
-  return Inflation(windows.noise, used.size(), free, lost);
+  return Inflation(windows.noise, samples, free, lost);
 }
 
 /// The trend of the values with amplitude², by least squares weighted with 1 / variance; its error is exact for their

@@ -140,9 +140,11 @@ std::string Join(const std::string& first, const std::string& second, const std:
   return first.empty() || second.empty() ? first + second : first + between + second;
 }
 
-std::string Estimate(double value, double std_error) {
-  constexpr int kDigits = 4;
-  return NumberText(value, kDigits) + " ± " + NumberText(std_error, 2);
+std::string Estimate(double value, double error) {
+  const auto power = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
+  const bool is_number = value != 0 && error > 0 && std::isfinite(error);
+  const int digits = is_number ? std::clamp(power(value) - power(error) + 2, 2, 15) : 3;
+  return NumberText(value, digits) + " ± " + NumberText(error, 2);
 }
 
 /// What differs between the halves: the parameter that does so most.
@@ -153,7 +155,7 @@ std::string DescribeHalves(const Constancy& result) {
   const std::string what =
       alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
   return what + " between the halves: " + Estimate(row->first, row->first_std_error) + " then " +
-         Estimate(row->second, row->second_std_error) + " " + row->unit + " (p = " + ProbabilityText(*result.halves_p) +
+         Estimate(row->second, row->second_std_error) + " " + row->unit + " (p " + ProbabilityText(*result.halves_p) +
          ")";
 }
 
@@ -163,7 +165,7 @@ std::string DescribeTrend(const AmplitudeTrend& trend) {
                               ? "the period depends on amplitude in another way than the model's"
                               : "friction depends on amplitude in another way than the model's, or on time";
   return trend.name + change + NumberText(100 * std::abs(trend.span), 2) +
-         " % from the largest to the smallest swings (p = " + ProbabilityText(trend.p) + "): " + why;
+         " % from the largest to the smallest swings (p " + ProbabilityText(trend.p) + "): " + why;
 }
 
 std::string Describe(const Constancy& result) {
@@ -175,9 +177,9 @@ std::string Describe(const Constancy& result) {
   if (!result.halves_p && result.trends.empty()) return "not tested: " + result.reason;
   std::string names;
   for (const auto& trend : result.trends)
-    names = Join(names, trend.name + " (p = " + ProbabilityText(trend.p) + ")", " or ");
+    names = Join(names, trend.name + " (p " + ProbabilityText(trend.p) + ")", " or ");
   return "inertia and friction are constants of the recording: " +
-         Join(result.halves_p ? "halves agree (p = " + ProbabilityText(*result.halves_p) + ")" : "",
+         Join(result.halves_p ? "halves agree (p " + ProbabilityText(*result.halves_p) + ")" : "",
               names.empty() ? "" : "no trend of " + names + " with amplitude", ", ");
 }
 
@@ -200,6 +202,9 @@ Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOp
     const std::string halves = CompareHalves(parts, ends, fit, options.rig, result);
     result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");
   }
+  std::erase_if(result.trends, [](const AmplitudeTrend& trend) { return !std::isfinite(trend.p); });
+  if (result.halves_p && !std::isfinite(*result.halves_p)) result.halves_p.reset();
+  if (!result.halves_p && result.trends.empty() && result.reason.empty()) result.reason = "no number came out";
   result.verdict = Describe(result);
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -12,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// All names that options may say something of, with any start.
+/// The names of inertia and friction; those of the start are every model's.
 std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   std::set<std::string, std::less<>> names;
   const Result<MotionModel> found = FindMotionModel(model);
@@ -27,9 +28,12 @@ std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t most = 0;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
-    if (!model || OrderOf(*model).larger >= 0 || model->gravity != Gravity::kSine) continue;
-    const std::size_t size = PhysicalParameters(*model).size();
-    if (size > most) most = size, richest = i;
+    if (!model || model->gravity != Gravity::kSine) continue;
+    // What a recording may leave without meaning is the last choice.
+    const std::size_t size = OrderOf(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
+    if (size <= most) continue;
+    most = size;
+    richest = i;
   }
   return richest;
 }
@@ -74,7 +78,7 @@ class SharedFits {
     for (std::size_t i = 0; i < models.size(); ++i) {
       if (i != lead_index) Fit(i, result_.fits[lead_index]);
     }
-    ShareNoise();
+    ShareNoise(lead_index);
   }
 
   FittedModels Take() && { return std::move(result_); }
@@ -88,13 +92,13 @@ class SharedFits {
   }
 
   /// Likelihoods are compared within a family only: that of the smallest residuals.
-  void ShareNoise() {
+  void ShareNoise(std::size_t lead_index) {
     const auto best = std::ranges::min_element(result_.fits, {}, [](const FitReport& fit) {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
     });
     const NoiseFamily family = best->noise.family;
     options_.noise = ChoiceOf(*best, options_);
-    const FitReport lead = *best;
+    const FitReport lead = result_.fits[lead_index];
     for (std::size_t i = 0; i < models_.size(); ++i) {
       FitReport& fit = result_.fits[i];
       if (fit.termination == Termination::kFailed || fit.noise.family == family) continue;
@@ -102,7 +106,8 @@ class SharedFits {
       Fit(i, lead);
       for (Warning& warning : said) {
         const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
-        const bool of_window = warning.code == "disturbed" || warning.code == "left_out";
+        const bool of_window =
+            warning.code == "disturbed" || warning.code == "left_out" || warning.code == "not_a_pendulum";
         if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
       }
     }
@@ -113,18 +118,24 @@ class SharedFits {
   FittedModels result_;
 };
 
-/// A swing whose frequency is looked for among aliases is looked for by every model.
+/// A swing whose frequency is looked for among aliases is looked for by every model, from one family of noise.
 Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
                              const std::vector<std::string>& models) {
-  FittedModels fitted;
+  FitOptions shared = options;
+  std::optional<FittedModels> fitted;
+  std::vector<Result<SwingFit>> fits;
   for (const std::string& model : models) {
-    Result<SwingFit> fit = FitSwing(recording, swing, ForModel(options, model, models).options);
-    if (!fit) return tl::unexpected(fit.error());
-    fitted.used = std::move(fit->used);
-    fitted.swing = std::move(fit->swing);
-    fitted.fits.push_back(std::move(fit->fit));
+    fits.push_back(FitSwing(recording, swing, ForModel(shared, model, models).options));
+    if (!fits.back() || fitted) continue;
+    fitted = FittedModels{fits.back()->used, fits.back()->swing, {}};
+    shared.noise = ChoiceOf(fits.back()->fit, options);
   }
-  return fitted;
+  if (!fitted) return tl::unexpected(fits.front().error());
+  const auto found = std::ranges::find_if(fits, [](const auto& fit) { return fit.has_value(); });
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    fitted->fits.push_back(fits[i] ? fits[i]->fit : FailedFit(models[i], (*found)->fit, fits[i].error()));
+  }
+  return *std::move(fitted);
 }
 
 Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,

@@ -43,7 +43,7 @@ ComparisonRow DescribeFit(const FitReport& fit) {
   return row;
 }
 
-/// The judged fit of the smallest residuals; whether any others have memory does not matter, for wrong laws leave some.
+/// The judged fit of the smallest AICc; whether others have memory does not matter, for wrong laws leave some.
 const FitReport* BestFit(const std::vector<FitReport>& fits) {
   const FitReport* best = nullptr;
   for (const FitReport& fit : fits) {
@@ -71,7 +71,7 @@ std::optional<CorrelatedResiduals> ResidualsOf(const FittedModels& fitted, const
   Eigen::MatrixXd jacobian;
   const auto readings = motion.Readings(motion.instants(), &jacobian);
   if (!readings) return std::nullopt;
-  CorrelatedResiduals data{fitted.used.time, fit.residual, {}, {}, {}, 0};
+  CorrelatedResiduals data{motion.instants(), fit.residual, {}, {}, {}, 0};
   std::vector<Index> columns;
   std::vector<double> lowest, highest;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -116,6 +116,23 @@ Autocorrelation SharedMemory(const FitReport& best) {
   return memory;
 }
 
+/// Residuals as small as the trajectory's own error are numbers', not a sensor's.
+bool IsRounding(const FitReport& best) { return best.statistics.rms_residual <= best.trace_error; }
+
+bool IsNormal(const FitReport& best) {
+  return best.noise.family == NoiseFamily::kGaussian || best.noise.family == NoiseFamily::kQuantized;
+}
+
+std::string WhyNone(const FitReport& best, const std::string& memory) {
+  const std::string residuals =
+      "the residuals of " + std::string(best.model.name) + ", the model nearest to the readings, ";
+  if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
+  const std::string why = best.noise.censored > 0 ? "readings at an end of the sensor's range"
+                          : IsNormal(best)        ? "noise below half a count"
+                                                  : "a robust loss";
+  return residuals + "remember (" + memory + "), and no likelihood is known for that with " + why;
+}
+
 /// What the criteria rest on, in words.
 std::string Describe(const Comparison& comparison, const FitReport& best) {
   const std::string memory = SharedMemory(best).Name();
@@ -125,17 +142,16 @@ std::string Describe(const Comparison& comparison, const FitReport& best) {
     case Likelihood::kCorrelated:
       return "Gaussian likelihood of residuals that remember, " + memory + " as those of " +
              std::string(best.model.name) + ", with the variance of rounding added";
-    case Likelihood::kNone:
-      return "none: the residuals of " + std::string(best.model.name) +
-             ", the model nearest to the readings, remember " + "(" + memory +
-             ") and their noise is below half a count, for which no likelihood is known";
+    case Likelihood::kNone: return "none: " + WhyNone(best, memory);
   }
   return "";
 }
 
 Likelihood ChooseLikelihood(const FitReport& best, double resolution) {
+  if (IsRounding(best)) return Likelihood::kNone;
   if (best.noise.memory.kind == Autocorrelation::Kind::kWhite) return Likelihood::kIndependent;
-  return best.noise.sigma >= kSmallestSigma * resolution ? Likelihood::kCorrelated : Likelihood::kNone;
+  const bool is_loud = best.noise.sigma >= kSmallestSigma * resolution;
+  return IsNormal(best) && is_loud && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kNone;
 }
 
 /// AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978).
@@ -212,7 +228,7 @@ Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, 
   comparison.criterion = Describe(comparison, *best);
   SetLikelihoods(fitted, *best, options, comparison);
   if (how.predict) SetPredictions(fitted, options, comparison);
-  comparison.tests = TestNested(fitted, comparison.rows, options);
+  comparison.tests = TestNested(fitted, comparison.rows, options, comparison.likelihood);
   Recommend(fitted, comparison);
   return comparison;
 }

@@ -112,9 +112,21 @@ void TestUnidentified(const FittedModels& fitted, const FitReport& simpler, cons
   test.null = "simulated, for " + test.simpler + " has no " + std::string(rate);
 }
 
+/// Whether the user has said something of a parameter that the simpler law lacks: then it is no special case.
+bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
+  return std::ranges::any_of(nesting.added, [&](const ParameterInfo& info) {
+    return options.fixed.contains(info.name) || options.bounds.contains(info.name) ||
+           options.priors.contains(info.name);
+  });
+}
+
 void SetProbability(const FittedModels& fitted, const FitReport& simpler, const FitReport& richer,
-                    const Nesting& nesting, const FitOptions& options, NestedTest& test) {
-  if (nesting.unidentified.empty() && nesting.bounded <= 2) {
+                    const Nesting& nesting, const FitOptions& options, Likelihood likelihood, NestedTest& test) {
+  if (IsRestricted(nesting, options)) {
+    test.reason = "--fix, --bounds or --prior name what is added";
+  } else if (!nesting.unidentified.empty() && likelihood == Likelihood::kCorrelated) {
+    test.reason = "its distribution is simulated for independent residuals only";
+  } else if (nesting.unidentified.empty() && nesting.bounded <= 2) {
     const double correlation = nesting.bounded == 2 ? CorrelationOf(fitted, richer, options, nesting.added) : 0;
     const ChiBarWeights weights = WeightsAtBound(nesting.bounded, nesting.free, correlation);
     test.null = DescribeMixture(weights);
@@ -122,7 +134,6 @@ void SetProbability(const FittedModels& fitted, const FitReport& simpler, const 
   } else if (nesting.unidentified.size() == 1 && nesting.bounded == 1 && nesting.free == 0) {
     TestUnidentified(fitted, simpler, richer, nesting, options, test);
   } else {
-    test.null = "no known distribution";
     test.reason = "more than one parameter has no meaning in the simpler law, or none is at a bound there";
   }
 }
@@ -130,7 +141,7 @@ void SetProbability(const FittedModels& fitted, const FitReport& simpler, const 
 }  // namespace
 
 std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector<ComparisonRow>& rows,
-                                   const FitOptions& options) {
+                                   const FitOptions& options, Likelihood likelihood) {
   std::vector<NestedTest> tests;
   for (std::size_t s = 0; s < rows.size(); ++s) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -146,7 +157,7 @@ std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector
       test.richer = rows[r].model;
       for (const ParameterInfo& info : nesting->added) test.added.emplace_back(info.name);
       test.statistic = std::max(0.0, 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood));
-      SetProbability(fitted, simpler, richer, *nesting, options, test);
+      SetProbability(fitted, simpler, richer, *nesting, options, likelihood, test);
       tests.push_back(std::move(test));
     }
   }

@@ -16,7 +16,40 @@ class Judge {
  public:
   Judge(const FittedModels& fitted, const Comparison& comparison) : fitted_(fitted), rows_(comparison.rows) {}
 
-  bool IsNear(std::size_t i) const { return rows_[i].delta_bic && *rows_[i].delta_bic <= kWithinBic; }
+  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: the law must predict
+  /// too.
+  bool IsRefuted(std::size_t i) const {
+    constexpr double kMuchWorse = 1.5;
+    if (!rows_[i].lack_of_fit) return false;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (!rows_[k].bic || Terms(k) >= Terms(i) || rows_[k].forward.samples == 0) continue;
+      const bool fails = rows_[i].forward.samples == 0;
+      if (fails || rows_[i].forward.rms > kMuchWorse * rows_[k].forward.rms) return true;
+    }
+    return false;
+  }
+
+  double SmallestBic() const {
+    double smallest = kUnbounded;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i].bic && !IsRefuted(i)) smallest = std::min(smallest, *rows_[i].bic);
+    }
+    return smallest;
+  }
+
+  bool IsNear(std::size_t i) const {
+    return rows_[i].bic && !IsRefuted(i) && *rows_[i].bic <= SmallestBic() + kWithinBic;
+  }
+
+  /// Models of a smaller BIC that predict worse, with names between commas.
+  std::string Refuted(std::size_t chosen) const {
+    std::string names;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!rows_[i].bic || !IsRefuted(i) || *rows_[i].bic >= *rows_[chosen].bic) continue;
+      names += (names.empty() ? "" : " and ") + rows_[i].model;
+    }
+    return names;
+  }
 
   std::size_t Terms(std::size_t i) const { return PhysicalParameters(fitted_.fits[i].model).size(); }
 
@@ -36,17 +69,23 @@ class Judge {
   std::size_t RunnerUp() const {
     std::size_t next = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (!rows_[i].bic || IsNear(i)) continue;
+      if (!rows_[i].bic || IsNear(i) || IsRefuted(i)) continue;
       if (next == rows_.size() || *rows_[i].bic < *rows_[next].bic) next = i;
     }
     return next;
+  }
+
+  bool IsSame(std::size_t i, std::size_t k) const {
+    constexpr double kSame = 1e-3;
+    return std::abs(rows_[i].log_likelihood.value_or(0) - rows_[k].log_likelihood.value_or(kUnbounded)) < kSame;
   }
 
   /// Models as near as the chosen one, with names between commas.
   std::string Undecided(std::size_t chosen) const {
     std::string names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (i == chosen || !IsNear(i)) continue;
+      // A law whose further terms came out as 0 is the chosen one.
+      if (i == chosen || !IsNear(i) || IsSame(i, chosen)) continue;
       names += (names.empty() ? "" : " and ") + rows_[i].model;
     }
     return names;
@@ -106,6 +145,10 @@ void Recommend(const FittedModels& fitted, Comparison& comparison) {
                          " than with " + other.model + PredictionText(row, other);
   } else if (undecided.empty()) {
     comparison.reason += "the only one that converged";
+  }
+  if (const std::string refuted = judge.Refuted(chosen); !refuted.empty()) {
+    comparison.reason += "; " + refuted + (refuted.find(' ') == std::string::npos ? " has" : " have") +
+                         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted much worse";
   }
   comparison.reason += Doubts(row, fitted.fits[chosen]);
 }

@@ -21,7 +21,7 @@ Eigen::MatrixXd Unexplained(const Eigen::MatrixXd& nuisance, const Eigen::Matrix
   Eigen::MatrixXd left = shapes;
   if (nuisance.cols() > 0) {
     Eigen::MatrixXd basis = nuisance;
-    basis.colwise().normalize();
+    for (Index k = 0; k < basis.cols(); ++k) basis.col(k) /= std::max(basis.col(k).norm(), 1e-300);
     left -= basis * basis.colPivHouseholderQr().solve(shapes);
   }
   std::vector<Index> columns;

@@ -288,7 +288,9 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
   constexpr double kEnough = 1e-3;  // gain in log-likelihood by the shift; the memory's that follows is less
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
   const Climb climb(family, data.time, left);
-  Eigen::VectorXd place = climb.Highest(LikeliestStart(family, like, data.time, left));
+  Eigen::VectorXd place = LikeliestStart(family, like, data.time, left);
+  if (place.size() == 0) return {std::numeric_limits<double>::quiet_NaN(), {}, 0, shift, 0};
+  place = climb.Highest(place);
   double log_likelihood = climb.At(place).log_likelihood;
   for (int round = 0; round < kMostRounds && data.jacobian.cols() > 0; ++round) {
     const Eigen::VectorXd next = ShiftUnder(FilteredAt(family, place), data);

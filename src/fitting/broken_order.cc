@@ -19,6 +19,25 @@ void KeepKnown(const std::vector<ParameterInfo>& infos, Map& map) {
   });
 }
 
+/// The start values of the richer law without what the simpler does not have.
+StartValues StartOf(const MotionModel& simpler, const FitProblem& problem) {
+  StartValues start = problem.start;
+  const std::vector<ParameterInfo> kept = PhysicalParameters(simpler);
+  const std::vector<ParameterInfo> all = PhysicalParameters(problem.model);
+  std::vector<double> parameters;
+  std::vector<int> terms;  // of friction
+  for (std::size_t i = 0; i < start.parameters.size(); ++i) {
+    const bool left_out = i < all.size() && std::ranges::find(kept, all[i].name, &ParameterInfo::name) == kept.end();
+    if (left_out) continue;
+    parameters.push_back(start.parameters[i]);
+    if (i > 0 && i < all.size()) terms.push_back(static_cast<int>(i) - 1);
+  }
+  start.parameters = std::move(parameters);
+  start.energy_balance = {start.energy_balance.normal(terms, terms), start.energy_balance.right(terms), 0};
+  start.other_balances.clear();
+  return start;
+}
+
 /// The parameters of the richer law: those of the simpler fit, the larger of the pair equal to the smaller, the others
 /// as the data gave them at first.
 std::vector<ParameterEstimate> Embed(const FitReport& simpler, const FitProblem& problem, const OrderedPair& order) {
@@ -63,9 +82,10 @@ std::string BrokenOrder(const FitProblem& problem, const std::vector<double>& pa
 Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                    const std::string& reason) {
   const std::optional<MotionModel> simpler = RichestWithin(problem.model);
+  if (!simpler) return Error(StatusCode::kInternal, "an ordered law has no simpler one within it");
   FitOptions narrowed = options;
-  narrowed.model = simpler ? simpler->name : problem.model.name;
-  narrowed.start_values.reset();
+  narrowed.model = simpler->name;
+  if (options.start_values) narrowed.start_values = StartOf(*simpler, problem);
   const std::vector<ParameterInfo> known =
       FitParameters(*FindMotionModel(narrowed.model), problem.start.start, recording.quantity, true);
   KeepKnown(known, narrowed.fixed);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "pendulum/base/physics.h"
@@ -95,11 +96,16 @@ bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
          (start.short_hold || !Explains(*attempt.problem, attempt.solution));
 }
 
-/// From the data's other reference rates, as long as none leads to parameters that are the law's own.
+bool IsBetter(const Attempt& a, const Attempt& b) {
+  return a.solution.usable && (!b.solution.usable || a.solution.log_likelihood > b.solution.log_likelihood);
+}
+
+/// From the data's other reference rates: the likeliest of those that lead to parameters that are the law's own.
 void FallBack(const Recording& recording, const FitOptions& options, Result<Attempt>& attempt) {
   constexpr int kMostTraces = 400;
-  const StartValues start = attempt->problem->start;
   if (options.start_values) return;
+  const StartValues start = attempt->problem->start;
+  std::optional<Attempt> best;
   for (const EnergyBalance& balance : start.other_balances) {
     FitOptions other = options;
     other.start_values = start;
@@ -109,13 +115,9 @@ void FallBack(const Recording& recording, const FitOptions& options, Result<Atte
     Result<Attempt> trial = TryFit(recording, other);
     if (!trial || !trial->solution.usable || !BrokenOrder(*trial->problem, trial->solution.parameters).empty())
       continue;
-    attempt = std::move(trial);
-    return;
+    if (!best || IsBetter(*trial, *best)) best = *std::move(trial);
   }
-}
-
-bool IsBetter(const Attempt& a, const Attempt& b) {
-  return a.solution.usable && (!b.solution.usable || a.solution.log_likelihood > b.solution.log_likelihood);
+  if (best) attempt = *std::move(best);
 }
 
 }  // namespace
@@ -163,7 +165,14 @@ Result<FitReport> FitRecording(const Recording& recording, const FitOptions& opt
   if (const std::string broken = BrokenOrder(*attempt->problem, attempt->solution.parameters); !broken.empty()) {
     return ReportSimplerLaw(recording, options, *attempt->problem, broken);
   }
-  return Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+  FitReport report = Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+  // Where estimates are means of a posterior, they may lie where the likeliest do not.
+  std::vector<double> estimates;
+  for (std::size_t i = 0; i < report.parameters.size(); ++i) {
+    estimates.push_back(attempt->problem->Internal(i, report.parameters[i].estimate));
+  }
+  const std::string broken = estimates.empty() ? "" : BrokenOrder(*attempt->problem, estimates);
+  return broken.empty() ? report : ReportSimplerLaw(recording, options, *attempt->problem, broken);
 }
 
 }  // namespace pendulum

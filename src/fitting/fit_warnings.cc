@@ -142,7 +142,7 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
     if (parameter.info.name != kReleaseTime.name) {
-      const bool none = parameter.estimate == 0;  // what is left is a simpler law
+      const bool none = parameter.estimate == 0 && parameter.info.lower == 0;  // what is left is a simpler law
       const bool own = parameter.estimate == parameter.info.lower || parameter.estimate == parameter.info.upper;
       (none ? friction : own ? extreme : bounded).push_back(parameter.info);
       continue;

@@ -194,6 +194,7 @@ ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem
   }
   if (profile.is_exhausted() || profile.found_lower()) return interval;
   interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));
+  if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();  // no curve, but the ends hold
   interval.threshold = profile.threshold();
   return interval;
 }

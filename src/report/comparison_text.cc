@@ -210,7 +210,8 @@ Sections ConstancySections(const RunReport& report, std::size_t fit) {
   section.Say(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
   if (constancy->halves_p.value_or(1) < kNotConstant) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
-  section.Say(constancy->reason.empty() ? "" : "Not tested: " + Sentence(constancy->reason));
+  const bool said = constancy->verdict.find(constancy->reason) != std::string::npos;
+  if (!said) section.Say("Not tested: " + Sentence(constancy->reason));
   return {std::move(section)};
 }
 

@@ -54,11 +54,11 @@ double LargestOf(const std::vector<Span>& spans) {
 /// Points of a column as lines of a script: both ends and, `filled`, what lies between them row by row.
 std::string PointsOf(double time, const Span& span, double row, bool filled) {
   if (span.is_empty()) return "";
-  const int steps = filled ? static_cast<int>(std::ceil((span.high - span.low) / row)) : 1;
+  const int steps = !filled ? 1 : row > 0 ? static_cast<int>(std::ceil((span.high - span.low) / row)) : 0;
   std::string points;
   for (int i = 0; i <= steps; ++i) {
     const double value = steps == 0 ? span.low : span.low + (span.high - span.low) * i / steps;
-    points += NumberText(time, 9) + " " + NumberText(value, 6) + "\n";
+    points += NumberText(time, 15) + " " + NumberText(value, 6) + "\n";
   }
   return points;
 }
@@ -89,7 +89,7 @@ std::string TerminalOf(int lines) {
 
 std::string Layout(const Recording& used) {
   return "set encoding utf8\nunset key\nset lmargin 9\nset rmargin 1\nset tics out nomirror\nset xrange [" +
-         NumberText(used.time[0], 9) + ":" + NumberText(used.time[used.size() - 1], 9) + "]\n";
+         NumberText(used.time[0], 15) + ":" + NumberText(used.time[used.size() - 1], 15) + "]\n";
 }
 
 }  // namespace

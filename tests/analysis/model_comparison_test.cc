@@ -146,7 +146,7 @@ TEST(CompareModels, HasNoCriterionForQuietNoiseThatRemembers) {
       Compare(CorrelatedRecording(0.3 * kCount, kCount, 5), {"viscous", "coulomb"}, kCriteriaOnly);
   EXPECT_EQ(comparison.likelihood, Likelihood::kNone);
   EXPECT_THAT(comparison.recommended, IsEmpty());
-  EXPECT_THAT(comparison.criterion, HasSubstr("below half a count"));
+  EXPECT_THAT(comparison.criterion, HasSubstr("noise below half a count"));
   for (const ComparisonRow& row : comparison.rows) EXPECT_FALSE(row.bic || row.akaike_weight) << row.model;
 }
 

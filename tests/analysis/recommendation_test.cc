@@ -87,6 +87,25 @@ TEST(Recommend, SaysWhatIsMissing) {
               HasSubstr("but more than noise is left (lag-1 correlation 0.6): something else is missing"));
 }
 
+// Where more than noise is left the smaller BIC alone does not do: the law must predict what it was not fitted to.
+TEST(Recommend, RefusesALawThatPredictsMuchWorseWhereMoreThanNoiseIsLeft) {
+  Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 1.5}});
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "stribeck");
+  for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "drag");
+  EXPECT_THAT(made.comparison.reason, HasSubstr("stribeck has a smaller BIC, but what is left is no noise"));
+}
+
+TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {
+  Compared made = Make({{"viscous", 90, 1}, {"coulomb", 50, 1}, {"drag", 50, 1}});
+  made.comparison.rows[1].log_likelihood = made.comparison.rows[2].log_likelihood = -20;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "coulomb");
+  EXPECT_THAT(made.comparison.reason, Not(HasSubstr("drag")));
+}
+
 TEST(Recommend, RecommendsNothingWithoutACriterion) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   for (ComparisonRow& row : made.comparison.rows) row.bic = row.delta_bic = std::nullopt;

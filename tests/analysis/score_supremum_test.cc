@@ -2,6 +2,7 @@
 #include "pendulum/analysis/score_supremum.h"
 
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,12 +15,20 @@ namespace {
 using Eigen::MatrixXd;
 using testing::DoubleNear;
 
+MatrixXd Seeded(Eigen::Index rows, Eigen::Index columns) {
+  std::mt19937_64 generator(20261122);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  MatrixXd matrix(rows, columns);
+  for (double& x : matrix.reshaped()) x = uniform(generator);
+  return matrix;
+}
+
 /// Three standard deviations of a share p of 19999 draws.
 double Scatter(double p) { return 3 * std::sqrt(p * (1 - p) / 19'999); }
 
 // One shape: half χ²(1), whose 5 % point is 2.7055.
 TEST(SupremumTail, OfOneShapeIsThatOfHalfAChiSquare) {
-  const MatrixXd shapes = MatrixXd::Random(50, 1);
+  const MatrixXd shapes = Seeded(50, 1);
   EXPECT_THAT(SupremumTail(MatrixXd(50, 0), shapes, 2.705543, 1), DoubleNear(0.05, Scatter(0.05)));
 }
 
@@ -29,9 +38,7 @@ TEST(SupremumTail, OfIndependentShapesIsTheTailOfTheirMaximum) {
   EXPECT_THAT(SupremumTail(MatrixXd(9, 0), MatrixXd::Identity(9, 5), 4, 2), DoubleNear(expected, Scatter(expected)));
 }
 
-// Two shapes, (1, 0) and (cos a, sin a), see a plane normal vector: P(max >= e) of the closed form by Owen's T is
-// checked here at its limits, a -> 0 one shape, and the nuisance (1, 0, ...) leaves of each what is at right angles to
-// it.
+// Beside the nuisance (1, 0, ...) both shapes are (0, 1, ...): one shape.
 TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
   MatrixXd nuisance = MatrixXd::Zero(4, 1);
   nuisance(0, 0) = 7;
@@ -42,14 +49,15 @@ TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
 }
 
 TEST(SupremumTail, IsOneWhereNothingIsLeft) {
-  const MatrixXd nuisance = MatrixXd::Random(20, 3);
+  const MatrixXd nuisance = Seeded(20, 3);
   EXPECT_EQ(SupremumTail(nuisance, nuisance.leftCols(2), 5, 1), 1);
-  EXPECT_EQ(SupremumTail(nuisance, MatrixXd::Random(20, 2), 0, 1), 1);
+  EXPECT_EQ(SupremumTail(nuisance, Seeded(20, 5).rightCols(2), 0, 1), 1);
 }
 
 TEST(SupremumTail, DoesNotDependOnUnits) {
-  const MatrixXd nuisance = MatrixXd::Random(30, 2);
-  MatrixXd shapes = MatrixXd::Random(30, 4);
+  const MatrixXd all = Seeded(30, 6);
+  const MatrixXd nuisance = all.leftCols(2);
+  MatrixXd shapes = all.rightCols(4);
   const double p = SupremumTail(nuisance, shapes, 3, 5);
   shapes.col(2) *= 1e-9;
   EXPECT_NEAR(SupremumTail(1e6 * nuisance, shapes, 3, 5), p, 1e-3);

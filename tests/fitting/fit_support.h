@@ -15,6 +15,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/fit.h"
 #include "pendulum/model/friction/registry.h"
+#include "pendulum/model/nesting.h"
 #include "pendulum/trajectory/synthetic.h"
 #include "tests/model/typical_friction.h"
 
@@ -50,6 +51,14 @@ inline std::vector<double> TextbookParameters(const MotionModel& model) {
     }
   });
   return parameters;
+}
+
+/// Whether a short run hardly tells all of a law's parameters: friction of slow motion alone, or a share by which its
+/// directions differ, which is nearly a shift of the zero. Fits then end at bounds, or not identifiable.
+inline bool IsHardlyTold(const MotionModel& model) {
+  return OrderOf(model).larger >= 0 || std::ranges::any_of(PhysicalParameters(model), [](const ParameterInfo& info) {
+           return std::isfinite(info.upper);
+         });
 }
 
 /// The textbook rig held at 0.423 rad for 1.9 s, 20 s at 100 Hz; the sensor's zero is 0.012 rad off. No noise.

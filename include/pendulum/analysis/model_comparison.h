@@ -59,7 +59,7 @@ struct CompareOptions {
 };
 
 /// Judges fits of several models to the same samples: the simplest that converged and is within kWithinBic of the
-/// smallest BIC is recommended (MODEL.md section 7). `options` are those of FitModels.
+/// smallest BIC is recommended (MODEL.md eq. (50)). `options` are those of FitModels.
 Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, const CompareOptions& how = {});
 
 inline constexpr double kWithinBic = 2;

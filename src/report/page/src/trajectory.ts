@@ -71,7 +71,8 @@ function step(m: Motion, angle: number, rate: number, direction: number, h: numb
 /** Where the pendulum goes from rest: the sign of its acceleration, 0 if friction holds it. */
 function directionFromRest(m: Motion, angle: number): number {
   const force = pull(m, angle);
-  return Math.abs(force) <= m.stiction ? 0 : -Math.sign(force);
+  const direction = -Math.sign(force);
+  return Math.abs(force) <= m.stiction + direction * m.constant ? 0 : direction;
 }
 
 /** Over one interval; a reversal within is located by halving and starts anew from rest. */
