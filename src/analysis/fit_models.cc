@@ -70,8 +70,8 @@ void ShareVerdict(const FitReport& lead, FitReport& fit) {
 /// The fits of one run of FitModels.
 class SharedFits {
  public:
-  SharedFits(SwingFit lead, std::size_t lead_index, const FitOptions& options, const std::vector<std::string>& models)
-      : options_(options), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
+  SharedFits(SwingFit lead, std::size_t lead_index, FitOptions options, const std::vector<std::string>& models)
+      : options_(std::move(options)), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
     options_.start = ChoiceOf(lead.fit.start);
     result_.fits.resize(models.size());
     result_.fits[lead_index] = std::move(lead.fit);
@@ -151,9 +151,9 @@ void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& mo
   for (FitReport& fit : fitted.fits) {
     const std::string model(fit.model.name);
     for (const std::string& name : ForModel(options, model, models).ignored) {
-      fit.warnings.push_back({"ignored_parameter", "model " + model + " has no " + name +
-                                                       "; what was said of it is "
-                                                       "left out there"});
+      std::string message = "model ";
+      message.append(model).append(" has no ").append(name).append("; what was said of it is left out there");
+      fit.warnings.push_back({"ignored_parameter", std::move(message)});
     }
   }
 }

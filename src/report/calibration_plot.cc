@@ -38,7 +38,7 @@ unset multiplot
 )";
 
 /// Named data of a script.
-std::string Block(std::string_view name, const std::string& lines) {
+std::string PlotData(std::string_view name, const std::string& lines) {
   return std::string(name) + " << EndOfData\n" + lines + "EndOfData\n";
 }
 
@@ -66,7 +66,7 @@ std::string Curve(const CalibrationTable& table, const CalibrationFit& fit) {
 }  // namespace
 
 std::string CalibrationPlot(const CalibrationTable& table, const CalibrationFit& fit) {
-  std::string script = Block("$points", Points(table, fit)) + Block("$curve", Curve(table, fit));
+  std::string script = PlotData("$points", Points(table, fit)) + PlotData("$curve", Curve(table, fit));
   script += kLayout;
   script += "set ylabel 'angle [" + table.angle_unit + "]' offset -1\n";
   script += kUpper;

@@ -17,7 +17,7 @@ constexpr int kRatioDecimals = 2;
 constexpr int kTableWidth = 120;
 
 /// A table before it is laid out.
-struct Table {
+struct CoverageTable {
   std::vector<Column> columns;
   std::vector<Cells> rows;  ///< One cell per column.
 };
@@ -38,17 +38,17 @@ std::string RangeText(double lower, double upper) {
   return "[" + FixedText(lower, kCoverageDecimals) + ", " + FixedText(upper, kCoverageDecimals) + "]";
 }
 
-Table ParameterTable(std::span<const CoverageStudy> studies) {
-  Table table{{{"scenario"},
-               {"parameter"},
-               {"coverage", true},
-               {"[95 %]"},
-               {"rms error"},
-               {"error/bound", true},
-               {"std error/error", true},
-               {"no interval", true},
-               {"verdict"}},
-              {}};
+CoverageTable ParameterTable(std::span<const CoverageStudy> studies) {
+  CoverageTable table{{{"scenario"},
+                       {"parameter"},
+                       {"coverage", true},
+                       {"[95 %]"},
+                       {"rms error"},
+                       {"error/bound", true},
+                       {"std error/error", true},
+                       {"no interval", true},
+                       {"verdict"}},
+                      {}};
   for (const CoverageStudy& study : studies) {
     for (const CoverageRow& row : study.rows) {
       table.rows.push_back({study.scenario.name, row.parameter, FixedText(row.coverage, kCoverageDecimals),
@@ -66,8 +66,8 @@ int Misses(const CoverageStudy& study) {
   return misses;
 }
 
-Table ScenarioTable(std::span<const CoverageStudy> studies) {
-  Table table{
+CoverageTable ScenarioTable(std::span<const CoverageStudy> studies) {
+  CoverageTable table{
       {{"scenario"}, {"recordings", true}, {"converged", true}, {"no fit", true}, {"misses", true}, {"what it is"}},
       {}};
   for (const CoverageStudy& study : studies) {
@@ -83,7 +83,7 @@ std::string MarkdownLine(const Cells& cells) {
   return line + "\n";
 }
 
-std::string MarkdownTable(const Table& table) {
+std::string MarkdownTable(const CoverageTable& table) {
   Cells headers, rules;
   for (const Column& column : table.columns) {
     headers.push_back(column.header);
@@ -123,8 +123,8 @@ std::string Rules(std::span<const CoverageStudy> studies) {
 }  // namespace
 
 std::string CoverageText(std::span<const CoverageStudy> studies) {
-  const Table parameters = ParameterTable(studies);
-  const Table scenarios = ScenarioTable(studies);
+  const CoverageTable parameters = ParameterTable(studies);
+  const CoverageTable scenarios = ScenarioTable(studies);
   return AlignedTable(parameters.columns, parameters.rows, 0) + "\n" +
          AlignedTable(scenarios.columns, scenarios.rows, 0);
 }
@@ -136,7 +136,7 @@ std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string
 }
 
 std::string CoverageScenarioList(std::span<const CoverageScenario> scenarios) {
-  Table table{{{"scenario"}, {"what it is"}}, {}};
+  CoverageTable table{{{"scenario"}, {"what it is"}}, {}};
   for (const CoverageScenario& scenario : scenarios) table.rows.push_back({scenario.name, scenario.description});
   return AlignedTable(table.columns, table.rows, 0);
 }

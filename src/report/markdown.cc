@@ -41,7 +41,7 @@ bool BeginsActively(std::string_view text) {
 
 /// A paragraph or an item: what stands at its beginning is no markup either.
 std::string LineText(std::string_view text) {
-  const std::string escaped = MarkdownText(text);
+  std::string escaped = MarkdownText(text);
   if (!BeginsActively(escaped)) return escaped;
   const std::size_t digits = std::min(escaped.find_first_not_of("0123456789"), escaped.size());
   return escaped.substr(0, digits) + "\\" + escaped.substr(digits);
@@ -114,7 +114,7 @@ std::string TableText(const Table& table) {
 
 // --- blocks ----------------------------------------------------------------------------------------------------------
 
-struct Renderer {
+struct MarkdownRenderer {
   std::string operator()(const Words& words) const { return Emphasized(LineText(words.text), words.emphasis) + "\n\n"; }
   std::string operator()(const Facts& facts) const {
     std::string text = "| | |\n| --- | --- |\n";
@@ -182,7 +182,7 @@ std::string ToMarkdown(const Sections& sections) {
   for (const Section& section : sections) {
     text += "## " + MarkdownText(section.title) + "\n\n";
     if (!section.remark.empty()) text += "(" + MarkdownText(section.remark) + ")\n\n";
-    for (const Block& block : section.blocks) text += std::visit(Renderer(), block);
+    for (const Block& block : section.blocks) text += std::visit(MarkdownRenderer(), block);
   }
   if (text.ends_with("\n\n")) text.pop_back();
   return text;

@@ -15,26 +15,30 @@ constexpr std::string_view kYellow = "\x1B[33m";
 constexpr std::string_view kRed = "\x1B[1;31m";
 constexpr std::string_view kPlain = "\x1B[0m";
 
-std::string Blanks(int count) { return std::string(static_cast<std::size_t>(std::max(count, 0)), ' '); }
+std::string IndentOf(int count) {
+  std::string blanks;
+  blanks.resize(static_cast<std::size_t>(std::max(count, 0)), ' ');
+  return blanks;
+}
 
 /// Renders block by block.
-class Renderer {
+class TextRenderer {
  public:
-  explicit Renderer(TextStyle style) : style_(style) {}
+  explicit TextRenderer(TextStyle style) : style_(style) {}
 
   std::string Title(const Section& section) const {
     const std::string title = Painted("[[" + section.title + "]]", kBold);
     return title + (section.remark.empty() ? "" : " (" + section.remark + ")") + "\n";
   }
 
-  std::string operator()(const Words& words) const { return Filled(words.text, Blanks(kTextIndent), words.emphasis); }
+  std::string operator()(const Words& words) const { return Filled(words.text, IndentOf(kTextIndent), words.emphasis); }
 
   std::string operator()(const Facts& facts) const {
     int longest = 0;
     for (const Fact& fact : facts) longest = std::max(longest, DisplayWidth(fact.name));
     std::string text;
     for (const Fact& fact : facts) {
-      const std::string name = Blanks(kTextIndent) + fact.name + Blanks(longest - DisplayWidth(fact.name) + 2);
+      const std::string name = IndentOf(kTextIndent) + fact.name + IndentOf(longest - DisplayWidth(fact.name) + 2);
       text += Filled(fact.text, name, fact.emphasis);
     }
     return text;
@@ -49,11 +53,11 @@ class Renderer {
     }
     if (table.left_out.empty()) return TableWithin(table.columns, rows, kTextIndent, kTextWidth);
     const std::string text = AlignedTable(table.columns, rows, kTextIndent);
-    return WithLineAfter(1 + table.rows_before, Blanks(kTextIndent) + table.left_out + "\n", text);
+    return WithLineAfter(1 + table.rows_before, IndentOf(kTextIndent) + table.left_out + "\n", text);
   }
 
   std::string operator()(const Formula& formula) const {
-    return Filled(formula.text, Blanks(kTextIndent), Emphasis::kNone);
+    return Filled(formula.text, IndentOf(kTextIndent), Emphasis::kNone);
   }
 
   std::string operator()(const Items& items) const {
@@ -76,12 +80,12 @@ class Renderer {
   std::string Filled(const std::string& text, const std::string& first, Emphasis emphasis) const {
     const int indent = DisplayWidth(first);
     const bool fits = indent + DisplayWidth(text) <= kTextWidth;
-    const std::string lines = fits ? Blanks(indent) + text + "\n" : Paragraph(text, Blanks(indent), kTextWidth);
+    const std::string lines = fits ? IndentOf(indent) + text + "\n" : Paragraph(text, IndentOf(indent), kTextWidth);
     std::string filled;
     for (std::size_t begin = 0; begin < lines.size();) {
       const std::size_t end = lines.find('\n', begin);
       const std::string line = lines.substr(begin + static_cast<std::size_t>(indent), end - begin - indent);
-      filled += (begin == 0 ? first : Blanks(indent)) + Emphasized(WithBlanks(line), emphasis) + "\n";
+      filled += (begin == 0 ? first : IndentOf(indent)) + Emphasized(WithBlanks(line), emphasis) + "\n";
       begin = end + 1;
     }
     return filled;
@@ -99,7 +103,7 @@ class Renderer {
 }  // namespace
 
 std::string ToText(const Sections& sections, TextStyle style) {
-  const Renderer renderer(style);
+  const TextRenderer renderer(style);
   std::string text;
   for (const Section& section : sections) {
     text += renderer.Title(section);

@@ -64,8 +64,8 @@ std::string PointsOf(double time, const Span& span, double row, bool filled) {
 }
 
 /// Named data of a script; gnuplot does not plot data without a point, so that there is always one outside.
-std::string Block(const std::string& name, const Recording& used, const std::vector<Span>& spans, double row,
-                  bool filled) {
+std::string DataBlock(const std::string& name, const Recording& used, const std::vector<Span>& spans, double row,
+                      bool filled) {
   const double from = used.time[0];
   const double step = (used.time[used.size() - 1] - from) / (kColumns - 1);
   std::string lines;
@@ -102,8 +102,9 @@ std::string TerminalPlot(const Recording& used, const FitReport& fit) {
   const std::vector<Span> residual = SpansOf(used, fit.residual, shown.factor);
   const double largest = std::max(LargestOf(measured), LargestOf(fitted));
   const double upper_row = 2 * largest / kUpperRows, lower_row = 2 * LargestOf(residual) / kLowerRows;
-  return Block("$measured", used, measured, upper_row, true) + Block("$fitted", used, fitted, upper_row, false) +
-         Block("$residual", used, residual, lower_row, true) + Layout(used) + TerminalOf(kUpperLines) +
+  return DataBlock("$measured", used, measured, upper_row, true) +
+         DataBlock("$fitted", used, fitted, upper_row, false) +
+         DataBlock("$residual", used, residual, lower_row, true) + Layout(used) + TerminalOf(kUpperLines) +
          RangeOf(largest, kUpperRows) + "set tmargin 1\nset bmargin 1\nset format x ''\nset title '" +
          std::string(fit.model.name) + ": measured .  fitted *  " + unit.substr(1) + "'\n" +
          "plot $measured with points pt '.', $fitted with points pt '*'\n" + TerminalOf(kLowerLines) +
