@@ -30,6 +30,7 @@ LeadingDigits LeadingDigitsOf(double x) {
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const std::size_t e = text.find('e');
   LeadingDigits leading;
+  if (e == std::string_view::npos) return leading;  // no finite number
   int count = 0;
   for (const char c : text.substr(0, e)) {
     if (c == '.' || count == 3) continue;

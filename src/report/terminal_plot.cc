@@ -95,7 +95,8 @@ std::string Layout(const Recording& used) {
 }  // namespace
 
 std::string TerminalPlot(const Recording& used, const FitReport& fit) {
-  const Conversion shown = Degrees(used.value_unit()).value_or(Conversion{used.value_unit()});
+  const std::string own = used.value_unit();
+  const Conversion shown = Degrees(own).value_or(Conversion{own});
   const std::string unit = " [" + std::string(shown.unit) + "]";
   const std::vector<Span> measured = SpansOf(used, used.value, shown.factor);
   const std::vector<Span> fitted = SpansOf(used, fit.fitted, shown.factor);
