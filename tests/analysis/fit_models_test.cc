@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/whole_swing.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {
@@ -18,14 +19,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-FreeSwing Whole(const Recording& recording) {
-  FreeSwing swing;
-  swing.from = recording.time[0];
-  swing.to = recording.time[recording.size() - 1];
-  swing.from_given = swing.to_given = true;
-  return swing;
-}
 
 FittedModels FitAll(const Recording& recording, const std::vector<std::string>& models,
                     const FitOptions& options = {}) {

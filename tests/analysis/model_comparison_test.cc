@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analysis/recommendation_cases.h"
+#include "tests/analysis/whole_swing.h"
 #include "tests/fitting/correlated_noise.h"
 
 namespace pendulum {
@@ -19,14 +20,6 @@ using testing::DoubleNear;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-FreeSwing Whole(const Recording& recording) {
-  FreeSwing swing;
-  swing.from = recording.time[0];
-  swing.to = recording.time[recording.size() - 1];
-  swing.from_given = swing.to_given = true;
-  return swing;
-}
 
 struct Compared {
   FittedModels fitted;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analysis/recommendation_cases.h"
+#include "tests/analysis/whole_swing.h"
 
 namespace pendulum {
 namespace {
@@ -16,14 +17,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-FreeSwing Whole(const Recording& recording) {
-  FreeSwing swing;
-  swing.from = recording.time[0];
-  swing.to = recording.time[recording.size() - 1];
-  swing.from_given = swing.to_given = true;
-  return swing;
-}
 
 std::vector<NestedTest> TestsOf(const Recording& recording, const std::vector<std::string>& models) {
   FitOptions options;

@@ -12,6 +12,7 @@
 #include "pendulum/analysis/model_comparison.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/model/friction/registry.h"
+#include "tests/analysis/whole_swing.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {
@@ -52,11 +53,7 @@ inline Recommendations CountRecommendations(SyntheticOptions run, int count, std
     FitOptions options;
     options.interval = IntervalMethod::kCovariance;
     const Recording recording = *SimulateRecording(own);
-    FreeSwing whole;
-    whole.from = recording.time[0];
-    whole.to = recording.time[recording.size() - 1];
-    whole.from_given = whole.to_given = true;
-    const auto fitted = FitModels(recording, whole, options, models);
+    const auto fitted = FitModels(recording, Whole(recording), options, models);
     if (!fitted) return;
     recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, {.predict = false}).recommended;
   });
