@@ -151,8 +151,9 @@ def check_listed(root, path):
         return
     inner = path.relative_to("include/pendulum" if path.parts[0] == "include" else path.parts[0])
     if path.parts[0] == "tests":
-        function = "pendulum_add_process_test" if path.suffix == ".py" else "pendulum_add_test"
-        listed = {test[0] for test in cmake_calls(root, "tests", function)}
+        scripts = {script[0] for script in cmake_calls(root, "tests", "pendulum_add_process_test")}
+        programs = cmake_calls(root, "tests", "pendulum_add_tests")
+        listed = scripts | {f"{program[0]}/{test}" for program in programs for test in program[1:]}
         is_listed = not path.stem.endswith("_test") or str(inner.with_suffix("")).removesuffix("_test") in listed
     elif path.stem.endswith("_main"):
         is_listed = [path.stem.removesuffix("_main")] in cmake_calls(root, "src", "pendulum_add_tool")
@@ -190,9 +191,9 @@ BAD_TREE = {
     "src/tools/good_main.cc": ("#include <glog/logging.h>\nvoid f() { throw 1; }\n", None),
     "src/CMakeLists.txt": ("pendulum_add_floor(base HEADERS good.h SOURCES good.cc LINKS pendulum::model)\n"
                            "add_library(pendulum_tools tools/flags.cc)\npendulum_add_tool(good)\n", "floor base does not stand on model"),
-    "tests/CMakeLists.txt": ("pendulum_add_test(base/good)\npendulum_add_test(base/private)\n"
-                             "pendulum_add_test(trajectory/jet LINKS Ceres::ceres)\n"
-                             "# pendulum_add_test(model/unlisted)\n", None),
+    "tests/CMakeLists.txt": ("pendulum_add_tests(base TESTS good LONG_TESTS private)\n"
+                             "pendulum_add_tests(trajectory TESTS jet LINKS Ceres::ceres)\n"
+                             "# pendulum_add_tests(model TESTS unlisted)\n", None),
     "include/pendulum/attic/x.h": ("", "there is no floor attic"),
     "include/pendulum/recording/up.h": ("#include <pendulum/fitting/fit.h>\n",
                                         "floor recording does not stand on fitting"),

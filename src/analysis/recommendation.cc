@@ -16,15 +16,15 @@ class Judge {
  public:
   Judge(const FittedModels& fitted, const Comparison& comparison) : fitted_(fitted), rows_(comparison.rows) {}
 
-  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: the law must predict
-  /// too.
+  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: the law must also
+  /// predict better than each with fewer terms.
   bool IsRefuted(std::size_t i) const {
-    constexpr double kMuchWorse = 1.5;
+    constexpr double kBetter = 0.95;
     if (!rows_[i].lack_of_fit) return false;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].bic || Terms(k) >= Terms(i) || rows_[k].forward.samples == 0) continue;
       const bool fails = rows_[i].forward.samples == 0;
-      if (fails || rows_[i].forward.rms > kMuchWorse * rows_[k].forward.rms) return true;
+      if (fails || rows_[i].forward.rms > kBetter * rows_[k].forward.rms) return true;
     }
     return false;
   }
@@ -41,7 +41,14 @@ class Judge {
     return rows_[i].bic && !IsRefuted(i) && *rows_[i].bic <= SmallestBic() + kWithinBic;
   }
 
-  /// Models of a smaller BIC that predict worse, with names between commas.
+  /// The model of the smallest AICc where that is neither near nor refuted; empty elsewhere.
+  std::string ByAicc() const {
+    const auto weight = [](const ComparisonRow& row) { return row.akaike_weight.value_or(-1); };
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(rows_, {}, weight) - rows_.begin());
+    return !rows_[best].akaike_weight || IsNear(best) || IsRefuted(best) ? "" : rows_[best].model;
+  }
+
+  /// Models of a smaller BIC that predict no better, with names between commas.
   std::string Refuted(std::size_t chosen) const {
     std::string names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -148,8 +155,9 @@ void Recommend(const FittedModels& fitted, Comparison& comparison) {
   }
   if (const std::string refuted = judge.Refuted(chosen); !refuted.empty()) {
     comparison.reason += "; " + refuted + (refuted.find(' ') == std::string::npos ? " has" : " have") +
-                         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted much worse";
+                         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better";
   }
+  if (const std::string other = judge.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
   comparison.reason += Doubts(row, fitted.fits[chosen]);
 }
 

@@ -85,6 +85,7 @@ ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const Profi
 }
 
 void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
+  const SolveOptions& solve = fitted.problem.solve;
   std::vector<int> parameters = NotFixed(fitted.optimum);
   std::ranges::sort(parameters);
   for (const int i : parameters) {
@@ -92,6 +93,10 @@ void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
         ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i);
     SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
     report.parameters[static_cast<std::size_t>(i)].open_interval = interval.open;
+    if (interval.lower == solve.lower[static_cast<std::size_t>(i)] &&
+        interval.upper == solve.upper[static_cast<std::size_t>(i)]) {
+      report.parameters[static_cast<std::size_t>(i)].open_interval = "no value that it may have is excluded";
+    }
     if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(fitted.problem, i, interval));
   }
   report.interval_method = "profile likelihood";

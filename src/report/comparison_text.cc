@@ -52,12 +52,13 @@ Table CriteriaTable(const Comparison& comparison, const Conversion& shown) {
   table.caution = kLackOfFit;
   for (const ComparisonRow& row : comparison.rows) {
     const bool has_weight = row.akaike_weight && std::isfinite(*row.akaike_weight);
-    table.rows.push_back(
-        {row.model, std::to_string(row.parameters), SizeText(shown.factor * row.rms), FixedOrDash(row.delta_bic, 1),
-         has_weight ? NumberText(*row.akaike_weight, kWeightDigits) : "-", FixedText(row.lag1_correlation, 2),
-         row.lack_of_fit ? kLackOfFit
-         : row.judged    ? ""
-                         : "not judged"});
+    table.rows.push_back({row.model, row.judged ? std::to_string(row.parameters) : "-",
+                          SizeText(shown.factor * row.rms), FixedOrDash(row.delta_bic, 1),
+                          has_weight ? NumberText(*row.akaike_weight, kWeightDigits) : "-",
+                          FixedText(row.lag1_correlation, 2),
+                          row.lack_of_fit ? kLackOfFit
+                          : row.judged    ? ""
+                                          : "not judged"});
   }
   return table;
 }
@@ -70,11 +71,8 @@ Row PredictionCells(const Prediction& prediction, double factor) {
 
 Table PredictionTable(const Comparison& comparison, const Conversion& shown) {
   const std::string unit = " [" + std::string(shown.unit) + "]";
-  Table table{{{"model"},
-               {"left-out blocks" + unit, true},
-               {"standardized", true},
-               {"last part" + unit, true},
-               {"standardized", true}}};
+  Table table{
+      {{"model"}, {"blocks" + unit, true}, {"standardized", true}, {"last part" + unit, true}, {"standardized", true}}};
   for (const ComparisonRow& row : comparison.rows) {
     Row cells = {row.model};
     for (const Prediction& prediction : {row.cross_validation, row.forward}) {
@@ -190,6 +188,12 @@ Table WindowTable(const Constancy& constancy) {
   return table;
 }
 
+/// Whether a table shows friction below 0, which the fit's own bound does not allow.
+bool HasNegativeFriction(const Constancy& constancy) {
+  return std::ranges::any_of(constancy.halves, [](const HalvesRow& row) { return row.first < 0 || row.second < 0; }) ||
+         std::ranges::any_of(constancy.windows, [](const AmplitudeRow& row) { return row.friction < 0; });
+}
+
 bool HasTrend(const Constancy& constancy) {
   return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
 }
@@ -210,6 +214,9 @@ Sections ConstancySections(const RunReport& report, std::size_t fit) {
   section.Say(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
   if (constancy->halves_p.value_or(1) < kNotConstant) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
+  if (!constancy->constant() && HasNegativeFriction(*constancy)) {
+    section.Say("Parts are fitted without bounds: a part by itself may show friction below 0.");
+  }
   const bool said = constancy->verdict.find(constancy->reason) != std::string::npos;
   if (!said) section.Say("Not tested: " + Sentence(constancy->reason));
   return {std::move(section)};

@@ -224,8 +224,10 @@ Result<int> Work(const std::vector<std::string>& positional) {
   options->fit.progress = SayProgress;
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
-  auto checked = options->terminal_plot ? CheckGnuplot() : Result<void>();
-  if (checked) checked = CheckOutputs(options->Outputs(), setup->inputs);
+  if (const auto plots = options->terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
+    return Error(plots.error().code, "--terminal_plot: " + plots.error().message);
+  }
+  auto checked = CheckOutputs(options->Outputs(), setup->inputs);
   if (checked) checked = CheckNumberedOutputs(*options, *setup, setup->paths.size());
   if (!checked) return tl::unexpected(checked.error());
   const auto runs = FitAll(*options, *setup);

@@ -13,7 +13,7 @@
 #include "pendulum/closed_form/extrema.h"
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::amplitude_trend_test {
 namespace {
 
 using testing::AllOf;
@@ -215,4 +215,4 @@ TEST(CompareWindows, SaysWhichWindowHasNoFit) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::amplitude_trend_test

@@ -12,7 +12,7 @@
 
 #include "tests/analysis/checked_run.h"
 
-namespace pendulum {
+namespace pendulum::closed_form_check_errors_test {
 namespace {
 
 using testing::AllOf;
@@ -297,4 +297,4 @@ TEST(ClosedFormRow, IsNotThereForAFitThatFailed) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_form_check_errors_test

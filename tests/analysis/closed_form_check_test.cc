@@ -14,7 +14,7 @@
 #include "pendulum/closed_form/period.h"
 #include "tests/analysis/checked_run.h"
 
-namespace pendulum {
+namespace pendulum::closed_form_check_test {
 namespace {
 
 using testing::AllOf;
@@ -345,4 +345,4 @@ TEST(TextbookOverlay, IsEmptyWithoutTheLinearFormulas) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_form_check_test

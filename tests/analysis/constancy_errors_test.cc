@@ -8,7 +8,7 @@
 #include "pendulum/analysis/constancy.h"
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::constancy_errors_test {
 namespace {
 
 using testing::Le;
@@ -72,4 +72,4 @@ TEST(ConstancyErrors, AreRightInNoiseThatRemembers) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::constancy_errors_test

@@ -10,7 +10,7 @@
 
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::constancy_test {
 namespace {
 
 using testing::DoubleNear;
@@ -210,4 +210,4 @@ TEST(Constancy, DoesNotDependOnTheClock) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::constancy_test

@@ -13,7 +13,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/model/rig.h"
 
-namespace pendulum {
+namespace pendulum::coverage_scenarios_test {
 namespace {
 
 using testing::AllOf;
@@ -149,4 +149,4 @@ TEST(ScenarioRun, RepeatsItselfForASeed) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::coverage_scenarios_test

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::coverage_test {
 namespace {
 
 using testing::DoubleNear;
@@ -193,4 +193,4 @@ TEST(StudyCoverage, RefusesWhatCannotBeSimulated) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::coverage_test

@@ -13,7 +13,7 @@
 #include "pendulum/analysis/reading_information.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::cramer_rao_test {
 namespace {
 
 using testing::DoubleNear;
@@ -212,4 +212,4 @@ TEST(CramerRaoBounds, AreAbsentWhenTheMotionCannotBeTraced) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::cramer_rao_test

@@ -13,7 +13,7 @@
 #include "pendulum/closed_form/period.h"
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::difference_causes_test {
 namespace {
 
 using testing::DoubleNear;
@@ -268,4 +268,4 @@ TEST(ApplyInStages, GivesNothingWhereTheMotionCannotBeTraced) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::difference_causes_test

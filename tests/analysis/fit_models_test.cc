@@ -12,7 +12,7 @@
 #include "tests/analysis/whole_swing.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_models_test {
 namespace {
 
 using testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(ForModel, KeepsWhatTheModelHas) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_models_test

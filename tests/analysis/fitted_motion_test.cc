@@ -12,7 +12,7 @@
 #include "pendulum/closed_form/period.h"
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::fitted_motion_test {
 namespace {
 
 using testing::DoubleNear;
@@ -202,4 +202,4 @@ TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fitted_motion_test

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::likelihood_ratio_test {
 namespace {
 
 using testing::DoubleNear;
@@ -67,4 +67,4 @@ TEST(DescribeMixture, SaysItInWords) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::likelihood_ratio_test

@@ -13,7 +13,7 @@
 #include "tests/analysis/whole_swing.h"
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum {
+namespace pendulum::model_comparison_test {
 namespace {
 
 using testing::DoubleNear;
@@ -158,4 +158,4 @@ TEST(CompareModels, JudgesOnlyWhatConverged) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::model_comparison_test

@@ -11,7 +11,7 @@
 #include "tests/analysis/recommendation_cases.h"
 #include "tests/analysis/whole_swing.h"
 
-namespace pendulum {
+namespace pendulum::nested_tests_test {
 namespace {
 
 using testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(TestNested, TestsNothingThatIsNotNested) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::nested_tests_test

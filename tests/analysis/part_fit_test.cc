@@ -13,7 +13,7 @@
 
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::part_fit_test {
 namespace {
 
 using Eigen::Index;
@@ -395,4 +395,4 @@ TEST(TooShort, CountsHalfSwingsNotTheirEnds) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::part_fit_test

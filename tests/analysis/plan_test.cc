@@ -16,7 +16,7 @@
 #include "pendulum/closed_form/half_swing_map.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::plan_test {
 namespace {
 
 using testing::DoubleNear;
@@ -369,4 +369,4 @@ TEST(LinearInertiaBias, NeedsAWholePeriod) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::plan_test

@@ -15,7 +15,7 @@
 #include "pendulum/recording/window.h"
 #include "tests/analysis/fitted_run.h"
 
-namespace pendulum {
+namespace pendulum::prediction_test {
 namespace {
 
 using testing::AllOf;
@@ -379,4 +379,4 @@ TEST(Prediction, IsFiniteWithoutNoise) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::prediction_test

@@ -12,7 +12,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/trajectory/synthetic.h"
 
-namespace pendulum {
+namespace pendulum::reading_information_test {
 namespace {
 
 using testing::DoubleNear;
@@ -98,4 +98,4 @@ TEST(ReadingInformation, VanishesInTheMiddleOfALevelWithoutMuchNoiseAndFarBeyond
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::reading_information_test

@@ -5,7 +5,7 @@
 
 #include "tests/analysis/recommendation_cases.h"
 
-namespace pendulum {
+namespace pendulum::recommendation_errors_test {
 namespace {
 
 /// At a true share of 95 % chance makes more than 2 of 12 wrong in 2 of 100 runs.
@@ -25,4 +25,4 @@ INSTANTIATE_TEST_SUITE_P(Laws, Recommendation, testing::ValuesIn(kTrueLaws),
                          [](const auto& law) { return std::string(law.param.model); });
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::recommendation_errors_test

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::recommendation_test {
 namespace {
 
 using testing::AllOf;
@@ -88,14 +88,27 @@ TEST(Recommend, SaysWhatIsMissing) {
 }
 
 // Where more than noise is left the smaller BIC alone does not do: the law must predict what it was not fitted to.
-TEST(Recommend, RefusesALawThatPredictsMuchWorseWhereMoreThanNoiseIsLeft) {
-  Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 1.5}});
+TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
+  Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 0.69}});
   Recommend(made.fitted, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
   for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
   Recommend(made.fitted, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
   EXPECT_THAT(made.comparison.reason, HasSubstr("stribeck has a smaller BIC, but what is left is no noise"));
+  made.comparison.rows[1].forward.rms = 0.6;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "stribeck");
+}
+
+// BIC's penalty is ln n a parameter and AIC's 2: they may differ.
+TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
+  Compared made = Make({{"coulomb", 50, 1}, {"drag", 53, 1}});
+  made.comparison.rows[0].akaike_weight = 0.1;
+  made.comparison.rows[1].akaike_weight = 0.9;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "coulomb");
+  EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would take drag"));
 }
 
 TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {
@@ -115,4 +128,4 @@ TEST(Recommend, RecommendsNothingWithoutACriterion) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::recommendation_test

@@ -9,7 +9,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::score_supremum_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -64,4 +64,4 @@ TEST(SupremumTail, DoesNotDependOnUnits) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::score_supremum_test

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace pendulum {
+namespace pendulum::file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST_F(ReadFileTest, SaysThatThereIsNoFile) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::file_test

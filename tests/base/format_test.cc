@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::format_test {
 namespace {
 
 TEST(ProbabilityText, HasTwoDigitsAndNoZero) {
@@ -58,4 +58,4 @@ TEST(NameList, JoinsNamesForASentence) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::format_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::json_test {
 namespace {
 
 using testing::StartsWith;
@@ -58,4 +58,4 @@ TEST(ShownJson, ShowsNumbersAndStringsAndOnlyTheKindOfTheRest) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::json_test

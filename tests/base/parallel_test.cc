@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::parallel_test {
 namespace {
 
 TEST(ParallelFor, DoesEveryNumberOnce) {
@@ -42,4 +42,4 @@ TEST(ParallelFor, WithOneThreadIsALoop) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::parallel_test

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::status_test {
 namespace {
 
 // The table of exit codes that every tool documents.
@@ -40,4 +40,4 @@ TEST(Result, HoldsTheValueWhenThereIsNoError) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::status_test

@@ -9,7 +9,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::closed_forms_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(ClosedForms, GoOnWithoutADecrementWhereTurningPointsAreTooFew) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_forms_test

@@ -11,7 +11,7 @@
 #include "pendulum/closed_form/decrement.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::decrement_errors_test {
 namespace {
 
 constexpr int kSeeds = 200;
@@ -94,4 +94,4 @@ TEST(DecrementErrors, AreTrueWithDrag) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::decrement_errors_test

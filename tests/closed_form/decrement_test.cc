@@ -10,7 +10,7 @@
 
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::decrement_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST(CompareEnvelopes, NamesTheOneTermThatIsThere) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::decrement_test

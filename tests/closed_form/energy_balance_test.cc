@@ -11,7 +11,7 @@
 #include "pendulum/closed_form/period.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::energy_balance_test {
 namespace {
 
 using testing::Each;
@@ -126,4 +126,4 @@ TEST(FrictionFrom, LeavingOneOutIsTheBalanceOfTheSimplerLaw) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::energy_balance_test

@@ -9,7 +9,7 @@
 
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::extrema_test {
 namespace {
 
 using testing::DoubleNear;
@@ -172,4 +172,4 @@ TEST(SuccessiveDifferenceNoise, OfAStraightLineIsZeroHoweverItIsSampled) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::extrema_test

@@ -10,7 +10,7 @@
 
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::free_swing_test {
 namespace {
 
 using testing::AllOf;
@@ -384,4 +384,4 @@ TEST(FindFreeSwings, TakesCountsForNoAngle) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::free_swing_test

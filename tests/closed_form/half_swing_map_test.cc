@@ -11,7 +11,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::half_swing_map_test {
 namespace {
 
 constexpr double kFrequency = 4.8;  // rad/s
@@ -110,4 +110,4 @@ TEST(HalfSwingMap, IsNothingWhereFrictionStopsTheSwingShort) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::half_swing_map_test

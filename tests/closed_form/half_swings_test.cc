@@ -9,7 +9,7 @@
 
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::half_swings_test {
 namespace {
 
 using testing::DoubleNear;
@@ -131,4 +131,4 @@ TEST(TabulateHalfSwings, KeepsTheQuantity) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::half_swings_test

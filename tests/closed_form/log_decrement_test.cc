@@ -11,7 +11,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::log_decrement_test {
 namespace {
 
 constexpr double kDampingRatio = 0.01;
@@ -129,4 +129,4 @@ TEST(TabulateDecay, GivesEachPairAndTheSumOfAllBefore) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::log_decrement_test

@@ -11,7 +11,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::peaks_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST(LocatePeaks, NeedsThreeThatFollowEachOther) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::peaks_test

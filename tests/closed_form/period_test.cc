@@ -9,7 +9,7 @@
 
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum {
+namespace pendulum::period_test {
 namespace {
 
 using testing::DoubleNear;
@@ -95,4 +95,4 @@ TEST(NaturalFrequency, LosesNoCycleInAGap) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::period_test

@@ -9,7 +9,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::sampling_test {
 namespace {
 
 using testing::Contains;
@@ -159,4 +159,4 @@ TEST(SamplingWarnings, TellTheSeenFrequencyFromTheExpectedOneOnlyWhereItAliases)
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::sampling_test

@@ -10,7 +10,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/period.h"
 
-namespace pendulum {
+namespace pendulum::turns_test {
 namespace {
 
 using testing::Each;
@@ -119,4 +119,4 @@ TEST(JudgeHalfSwings, ForgivesTurningPointsThatAGapHides) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::turns_test

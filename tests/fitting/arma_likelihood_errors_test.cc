@@ -7,7 +7,7 @@
 
 #include "tests/fitting/correlated_residuals.h"
 
-namespace pendulum {
+namespace pendulum::arma_likelihood_errors_test {
 namespace {
 
 using testing::DoubleNear;
@@ -91,4 +91,4 @@ TEST(MaximizeCorrelatedLikelihood, GainsAsChiSquaredByAShiftThatIsKnown) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::arma_likelihood_errors_test

@@ -10,7 +10,7 @@
 
 #include "tests/fitting/correlated_residuals.h"
 
-namespace pendulum {
+namespace pendulum::arma_likelihood_test {
 namespace {
 
 using testing::DoubleNear;
@@ -261,4 +261,4 @@ TEST(MaximizeCorrelatedLikelihood, OfWhatIsNoNumberOrHasNoClockIsNothing) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::arma_likelihood_test

@@ -12,7 +12,7 @@
 
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum {
+namespace pendulum::autocorrelation_test {
 namespace {
 
 using testing::DoubleNear;
@@ -182,4 +182,4 @@ TEST(Autocorrelation, IsNamedAsInTheLiterature) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::autocorrelation_test

@@ -12,7 +12,7 @@
 #include "pendulum/fitting/fit_problem.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::basins_test {
 namespace {
 
 /// The textbook rig with dry friction at one count of noise: it stops after 48 s of 60.
@@ -77,4 +77,4 @@ TEST(RunToRest, ASecondBasinThatExplainsTheDataNearlyAsWellIsReported) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::basins_test

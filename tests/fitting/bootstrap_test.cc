@@ -8,7 +8,7 @@
 
 #include "tests/fitting/fitted.h"
 
-namespace pendulum {
+namespace pendulum::bootstrap_test {
 namespace {
 
 using testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(Bootstrap, ReportsItsProgress) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::bootstrap_test

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::box_least_squares_test {
 namespace {
 
 using testing::DoubleNear;
@@ -90,4 +90,4 @@ TEST(BoxLeastSquares, LeavesOutColumnsOfZeroAndTakesNone) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::box_least_squares_test

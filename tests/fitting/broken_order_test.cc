@@ -6,7 +6,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::broken_order_test {
 namespace {
 
 using testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST(ReportSimplerLaw, HasTheParametersOfTheRicherLawWithoutErrors) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::broken_order_test

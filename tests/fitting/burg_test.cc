@@ -9,7 +9,7 @@
 
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum {
+namespace pendulum::burg_test {
 namespace {
 
 using testing::DoubleNear;
@@ -61,4 +61,4 @@ TEST(FromReflection, GivesThePolynomialReckonedByHand) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::burg_test

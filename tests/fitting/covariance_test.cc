@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::covariance_test {
 namespace {
 
 using testing::ElementsAre;
@@ -104,4 +104,4 @@ TEST(InvertInformation, RefusesNotANumber) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::covariance_test

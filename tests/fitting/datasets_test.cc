@@ -11,7 +11,7 @@
 #include "pendulum/recording/read_recording.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::datasets_test {
 namespace {
 
 struct Dataset {
@@ -44,4 +44,4 @@ INSTANTIATE_TEST_SUITE_P(All, Datasets,
                          testing::PrintToStringParamName());
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::datasets_test

@@ -13,7 +13,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::derived_test {
 namespace {
 
 using testing::AllOf;
@@ -191,4 +191,4 @@ TEST(SetDerivedIntervals, AMissingEndLeavesOpenWhatItIsCarriedTo) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::derived_test

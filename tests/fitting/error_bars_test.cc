@@ -14,7 +14,7 @@
 #include "pendulum/fitting/fit_problem.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::error_bars_test {
 namespace {
 
 using testing::DoubleNear;
@@ -165,4 +165,4 @@ TEST(StandardErrors, AreThoseOfCeresFromTheSameResidualsOneByOne) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::error_bars_test

@@ -14,7 +14,7 @@
 
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum {
+namespace pendulum::estimate_autocorrelation_test {
 namespace {
 
 using testing::DoubleNear;
@@ -220,4 +220,4 @@ TEST(EstimateAutocorrelation, TakesColumnsThatDependOnEachOther) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::estimate_autocorrelation_test

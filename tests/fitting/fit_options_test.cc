@@ -12,7 +12,7 @@
 #include "pendulum/fitting/fit_problem.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_options_test {
 namespace {
 
 using testing::DoubleNear;
@@ -389,4 +389,4 @@ TEST(Prior, ThatTheRecordingContradictsIsWarnedOf) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_options_test

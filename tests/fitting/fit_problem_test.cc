@@ -11,7 +11,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_problem_test {
 namespace {
 
 using testing::AllOf;
@@ -225,4 +225,4 @@ TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_problem_test

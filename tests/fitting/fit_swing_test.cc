@@ -12,7 +12,7 @@
 #include "pendulum/base/format.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_swing_test {
 namespace {
 
 using testing::AllOf;
@@ -270,4 +270,4 @@ TEST(FitSwing, TakesTurnsOverTheTopOutOfTheZero) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_swing_test

@@ -12,7 +12,7 @@
 #include "pendulum/model/nesting.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_test {
 namespace {
 
 using testing::DoubleNear;
@@ -306,4 +306,4 @@ TEST(Termination, HasANameAndAnExitCode) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_test

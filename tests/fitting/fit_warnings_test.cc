@@ -12,7 +12,7 @@
 #include "pendulum/recording/window.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::fit_warnings_test {
 namespace {
 
 using testing::ElementsAre;
@@ -209,4 +209,4 @@ TEST(FitWarnings, TellNoDriftThatIsAParameterOfTheFit) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_warnings_test

@@ -10,7 +10,7 @@
 #include "pendulum/fitting/fit_problem.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::identifiability_test {
 namespace {
 
 using testing::HasSubstr;
@@ -42,4 +42,4 @@ TEST(MeasurementFor, OfFrictionAsksForOtherAmplitudes) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::identifiability_test

@@ -12,7 +12,7 @@
 
 #include "tests/fitting/fitted.h"
 
-namespace pendulum {
+namespace pendulum::intervals_test {
 namespace {
 
 using testing::Each;
@@ -202,4 +202,4 @@ TEST(Identifiability, HasWordsForEveryVerdictAndParameter) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::intervals_test

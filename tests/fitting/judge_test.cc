@@ -15,7 +15,7 @@
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::judge_test {
 namespace {
 
 using testing::Contains;
@@ -275,4 +275,4 @@ TEST(Judge, EverythingMayBeFixed) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::judge_test

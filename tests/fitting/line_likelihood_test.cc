@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::line_likelihood_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -103,4 +103,4 @@ TEST(LineLikelihood, SumsWhatTheNoiseModelSays) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::line_likelihood_test

@@ -16,7 +16,7 @@
 #include "pendulum/fitting/search.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::maximum_likelihood_test {
 namespace {
 
 using testing::DoubleNear;
@@ -299,4 +299,4 @@ TEST(MaximizeLikelihood, LeavesWhatCannotBeTracedAlone) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::maximum_likelihood_test

@@ -17,7 +17,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/covariance.h"
 
-namespace pendulum {
+namespace pendulum::nist_test {
 namespace {
 
 /// Lanczos1 has residuals of 1e-13 of responses of about 1: doubles leave three digits of them.
@@ -273,4 +273,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Case>& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::nist_test

@@ -18,7 +18,7 @@
 
 #include "pendulum/fitting/noise.h"
 
-namespace pendulum {
+namespace pendulum::noise_kernel_test {
 namespace {
 
 // ---- The kernel ----------------------------------------------------------------------------------------------------
@@ -213,4 +213,4 @@ TEST(LikeliestSigma, OfLevelsThatExplainEverySampleIsTheSmallest) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::noise_kernel_test

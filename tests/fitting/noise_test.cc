@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::noise_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -321,4 +321,4 @@ TEST(NoiseModel, ACensoredReadingOfARobustFamilyHasTheDerivativesOfItsLogarithm)
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::noise_test

@@ -11,7 +11,7 @@
 #include "pendulum/fitting/fit_swing.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::not_a_pendulum_test {
 namespace {
 
 using testing::AllOf;
@@ -194,4 +194,4 @@ TEST(FitSwing, APendulumWithAnotherFrictionLawIsAPendulum) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::not_a_pendulum_test

@@ -12,7 +12,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::not_a_swing_test {
 namespace {
 
 using Noise = std::function<double()>;
@@ -102,4 +102,4 @@ TEST(NotASwing, AnAmplitudeThatGrows) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::not_a_swing_test

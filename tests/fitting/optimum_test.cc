@@ -15,7 +15,7 @@
 
 #include "tests/fitting/fitted.h"
 
-namespace pendulum {
+namespace pendulum::optimum_test {
 namespace {
 
 // ---- Numeric derivatives -------------------------------------------------------------------------------------------
@@ -215,4 +215,4 @@ TEST(ComputeErrors, OfNoiseThatRemembersAreTheScatterOfEstimatesAndOfSigma) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::optimum_test

@@ -10,7 +10,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::phase_scan_test {
 namespace {
 
 using testing::AllOf;
@@ -151,4 +151,4 @@ TEST(ScanFrequencies, TakesARate) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::phase_scan_test

@@ -16,7 +16,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::posterior_test {
 namespace {
 
 using testing::HasSubstr;
@@ -358,4 +358,4 @@ TEST(SamplePosterior, SaysWhichParametersLeaveNoTrace) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::posterior_test

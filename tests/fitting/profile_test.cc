@@ -14,7 +14,7 @@
 
 #include "tests/fitting/fitted.h"
 
-namespace pendulum {
+namespace pendulum::profile_test {
 namespace {
 
 using testing::HasSubstr;
@@ -312,4 +312,4 @@ TEST(ProfileParameter, AtABoundEndsWhereAScanOfWholeFitsDoes) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::profile_test

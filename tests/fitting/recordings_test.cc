@@ -13,7 +13,7 @@
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/recording/window.h"
 
-namespace pendulum {
+namespace pendulum::recordings_test {
 namespace {
 
 constexpr double kEnd = std::numeric_limits<double>::quiet_NaN();
@@ -99,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(FromTheStart, HeldRecording,
                          testing::PrintToStringParamName());
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::recordings_test

@@ -15,7 +15,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::residual_diagnostics_test {
 namespace {
 
 using testing::DoubleNear;
@@ -352,4 +352,4 @@ TEST(SwingAlong, IsNotSaidOfTooLittleOrOfNothing) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::residual_diagnostics_test

@@ -11,7 +11,7 @@
 #include "pendulum/fitting/estimate_autocorrelation.h"
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum {
+namespace pendulum::sandwich_coverage_test {
 namespace {
 
 /// Which of a swing's three 95 % intervals contain 0, when noise alone was measured. The variance of the noise is RSS
@@ -68,4 +68,4 @@ TEST(SandwichIntervals, NearlyCoverUnderAMemoryOfFiftySamples) { ExpectWithin(Co
 TEST(SandwichIntervals, NearlyCoverInFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::sandwich_coverage_test

@@ -9,7 +9,7 @@
 
 #include "tests/fitting/solve_case.h"
 
-namespace pendulum {
+namespace pendulum::search_test {
 namespace {
 
 using testing::Ge;
@@ -105,4 +105,4 @@ TEST(Search, StaysWithinTheBoundsOnItsWayToTheNextNumberOfHalfSwings) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::search_test

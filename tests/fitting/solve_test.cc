@@ -10,7 +10,7 @@
 
 #include "tests/fitting/solve_case.h"
 
-namespace pendulum {
+namespace pendulum::solve_test {
 namespace {
 
 using testing::AllOf;
@@ -172,4 +172,4 @@ TEST(Continue, GoesOnFromWhereASolutionEndedAndAddsTheWork) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::solve_test

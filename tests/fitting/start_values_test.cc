@@ -9,7 +9,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::start_values_test {
 namespace {
 
 using testing::AllOf;
@@ -244,4 +244,4 @@ TEST(EstimateStartValues, RefuseARecordingWithoutASwing) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::start_values_test

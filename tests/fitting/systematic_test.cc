@@ -12,7 +12,7 @@
 
 #include "tests/fitting/fitted.h"
 
-namespace pendulum {
+namespace pendulum::systematic_test {
 namespace {
 
 using testing::ElementsAre;
@@ -261,4 +261,4 @@ TEST(SystematicCovariance, IsEmptyWhereNothingIsSaidOfErrors) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::systematic_test

@@ -14,7 +14,7 @@
 #include "pendulum/fitting/trajectory_cost.h"
 #include "tests/fitting/trajectory_cost_examples.h"
 
-namespace pendulum {
+namespace pendulum::trajectory_cost_jacobian_test {
 namespace {
 
 using testing::DoubleNear;
@@ -156,4 +156,4 @@ TEST(Readings, AreThoseOfTheUndampedLinearPendulum) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::trajectory_cost_jacobian_test

@@ -19,7 +19,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/fitting/trajectory_cost_examples.h"
 
-namespace pendulum {
+namespace pendulum::trajectory_cost_test {
 namespace {
 
 using testing::DoubleNear;
@@ -353,4 +353,4 @@ TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwingsWhenItEndsLongAfterTheS
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::trajectory_cost_test

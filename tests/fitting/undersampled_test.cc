@@ -11,7 +11,7 @@
 
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum {
+namespace pendulum::undersampled_test {
 namespace {
 
 using testing::AllOf;
@@ -253,4 +253,4 @@ TEST(ChooseSwings, TakesAnUndersampledRecordingWhole) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::undersampled_test

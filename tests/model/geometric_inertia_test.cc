@@ -10,7 +10,7 @@
 
 #include "pendulum/model/rig.h"
 
-namespace pendulum {
+namespace pendulum::geometric_inertia_test {
 namespace {
 
 using testing::DoubleNear;
@@ -169,4 +169,4 @@ TEST(GeometricInertias, ShareTheErrorOfTheTorqueOfARigThatNoFileDescribes) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::geometric_inertia_test

@@ -11,7 +11,7 @@
 
 #include "pendulum/model/friction/registry.h"
 
-namespace pendulum {
+namespace pendulum::motion_model_test {
 namespace {
 
 using testing::ElementsAre;
@@ -100,4 +100,4 @@ TEST(ParameterInfo, AngleTimeAndRateDoNotScaleWithGravity) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::motion_model_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::nesting_test {
 namespace {
 
 using testing::ElementsAre;
@@ -78,4 +78,4 @@ TEST(OrderOf, NamesStictionAndCoulomb) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::nesting_test

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::rig_test {
 namespace {
 
 using testing::AllOf;
@@ -230,4 +230,4 @@ TEST(ReadRig, RefusesADirectory) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::rig_test

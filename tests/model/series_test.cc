@@ -13,7 +13,7 @@
 
 #include "tests/model/coefficients.h"
 
-namespace pendulum {
+namespace pendulum::series_test {
 namespace {
 
 using testing::DoubleNear;
@@ -136,4 +136,4 @@ TEST(SineSeries, OfTimeItselfIsThatOfTheTextbook) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::series_test

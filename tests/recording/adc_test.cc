@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::adc_test {
 namespace {
 
 /// 5 V across 300 deg, read by 10 bits: 1024 counts in 300 deg.
@@ -76,4 +76,4 @@ TEST(AdcSensor, GivesBackTheAngleWithinHalfACount) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::adc_test

@@ -11,7 +11,7 @@
 #include "pendulum/recording/sensor.h"
 #include "tests/recording/calibration_examples.h"
 
-namespace pendulum {
+namespace pendulum::calibrate_test {
 namespace {
 
 using testing::DoubleNear;
@@ -277,4 +277,4 @@ TEST(TurningReading, FindsTheVertexOfAParabola) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::calibrate_test

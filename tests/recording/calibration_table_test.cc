@@ -11,7 +11,7 @@
 
 #include "tests/recording/calibration_examples.h"
 
-namespace pendulum {
+namespace pendulum::calibration_table_test {
 namespace {
 
 using testing::ElementsAre;
@@ -165,4 +165,4 @@ TEST(ReadCalibrationTable, NamesTheFileThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::calibration_table_test

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::clock_test {
 namespace {
 
 using testing::ElementsAre;
@@ -378,4 +378,4 @@ TEST(RepairClock, MakesAnyStampsIncreaseOrRefusesThem) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::clock_test

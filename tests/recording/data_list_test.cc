@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace pendulum {
+namespace pendulum::data_list_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST_F(ReadDataListTest, RefusesWhatIsNoList) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::data_list_test

@@ -10,7 +10,7 @@
 #include "pendulum/recording/read_recording.h"
 #include "tests/recording/rows.h"
 
-namespace pendulum {
+namespace pendulum::foreign_formats_test {
 namespace {
 
 using testing::HasSubstr;
@@ -289,4 +289,4 @@ TEST(ForeignFormats, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::foreign_formats_test

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace pendulum {
+namespace pendulum::line_reader_test {
 namespace {
 
 using testing::ElementsAre;
@@ -123,4 +123,4 @@ TEST_F(LineReaderTest, ReadsAPipeThatIsSlow) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::line_reader_test

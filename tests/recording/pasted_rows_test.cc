@@ -8,7 +8,7 @@
 #include "pendulum/recording/read_recording.h"
 #include "tests/recording/rows.h"
 
-namespace pendulum {
+namespace pendulum::pasted_rows_test {
 namespace {
 
 using testing::StartsWith;
@@ -113,4 +113,4 @@ TEST(PastedRows, RepairsOfTheClockNameTheLine) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::pasted_rows_test

@@ -15,7 +15,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::read_recording_test {
 namespace {
 
 using testing::AllOf;
@@ -390,4 +390,4 @@ TEST(ReadRecording, ReadsWhatPeopleRecorded) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::read_recording_test

@@ -10,7 +10,7 @@
 
 #include "pendulum/base/format.h"
 
-namespace pendulum {
+namespace pendulum::recording_test {
 namespace {
 
 using testing::HasSubstr;
@@ -98,4 +98,4 @@ TEST(MakeRecording, RefusesAResolutionThatIsNoSpacing) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::recording_test

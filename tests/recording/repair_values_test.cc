@@ -13,7 +13,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::repair_values_test {
 namespace {
 
 using testing::ElementsAre;
@@ -263,4 +263,4 @@ TEST(RepairValues, LeavesTheRangeThatTheFileTells) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::repair_values_test

@@ -9,7 +9,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::resolution_test {
 namespace {
 
 using Eigen::Index;
@@ -199,4 +199,4 @@ TEST(FindResolution, OfNoisePrintedCoarselyIsThePrintersStepOrNone) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::resolution_test

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::sensor_test {
 namespace {
 
 using testing::ElementsAre;
@@ -176,4 +176,4 @@ TEST(ReadCalibration, ReadsAFileAndSaysThatThereIsNone) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::sensor_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::window_test {
 namespace {
 
 constexpr double kOpen = std::numeric_limits<double>::quiet_NaN();
@@ -136,4 +136,4 @@ TEST(Excerpt, IsAsDenseAsAskedAndAsLongAsThatAllows) {
 TEST(Excerpt, IsTheWholeWhereThatIsDenseEnough) { EXPECT_EQ(Excerpt(Ramp(), 100, 2, false).time, Ramp().time); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::window_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::adc_plan_text_test {
 namespace {
 
 using testing::AllOf;
@@ -44,4 +44,4 @@ TEST(AdcPlanText, NamesTheDividerThatThereIs) {
 TEST(AdcPlanText, OfNoSensorIsEmpty) { EXPECT_EQ(AdcPlanText({}), ""); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::adc_plan_text_test

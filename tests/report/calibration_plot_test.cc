@@ -8,7 +8,7 @@
 
 #include "tests/recording/calibration_examples.h"
 
-namespace pendulum {
+namespace pendulum::calibration_plot_test {
 namespace {
 
 using testing::AllOf;
@@ -42,4 +42,4 @@ TEST(CalibrationPlot, SaysNothingThatAFileSays) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::calibration_plot_test

@@ -11,7 +11,7 @@
 
 #include "tests/recording/calibration_examples.h"
 
-namespace pendulum {
+namespace pendulum::calibration_text_test {
 namespace {
 
 using testing::AllOf;
@@ -135,4 +135,4 @@ TEST(CalibrationText, SaysWhereTheCurveTurnsInTheSensorsRange) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::calibration_text_test

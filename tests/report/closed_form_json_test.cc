@@ -8,7 +8,7 @@
 
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::closed_form_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,4 +101,4 @@ TEST(SamplingJson, TurnsWhatIsNotKnownIntoNull) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_form_json_test

@@ -9,7 +9,7 @@
 #include "pendulum/base/format.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::closed_form_quantities_test {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(StickingAngle, NeedsDryFrictionThatGravityCanOvercome) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_form_quantities_test

@@ -10,7 +10,7 @@
 #include "pendulum/report/section_text.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::closed_form_text_test {
 namespace {
 
 using testing::HasSubstr;
@@ -212,4 +212,4 @@ TEST(SamplingText, LeavesOutWhatIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::closed_form_text_test

@@ -8,7 +8,7 @@
 
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::comparison_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -120,4 +120,4 @@ TEST(ConstancyJson, IsNullWhereNothingWasTestedForAReason) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::comparison_json_test

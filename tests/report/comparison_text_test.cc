@@ -7,7 +7,7 @@
 #include "pendulum/report/section_text.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::comparison_text_test {
 namespace {
 
 using testing::HasSubstr;
@@ -23,15 +23,15 @@ TEST(ComparisonSections, RecommendFirst) {
     It is the only one that converged.
     model    parameters  rms [deg]  ΔBIC  AICc weight  lag 1
     coulomb           4      0.200   0.0            1   0.12
-    drag              5       28.6     -            -   0.12  lack of fit
+    drag              -       28.6     -            -   0.12  lack of fit
     BIC of independent residuals.
     Prediction of samples that were left out of the fit, block by block, and of
     the last part from the first: rms of measured - predicted, and of the same
     over its predicted standard deviation, which is 1 where model and errors are
     right.
-    model    left-out blocks [deg]  standardized  last part [deg]  standardized
-    coulomb                  0.201          1.01            0.229          1.12
-    drag                         -             -                -             -
+    model    blocks [deg]  standardized  last part [deg]  standardized
+    coulomb         0.201          1.01            0.229          1.12
+    drag                -             -                -             -
     drag is not judged: 100 iterations were not enough.
 [[Likelihood-ratio tests]] (small p: the simpler law lacks what is added)
     law                   adds     2 Δ log L  p      if not needed follows
@@ -112,4 +112,4 @@ TEST(ConstancySections, SayWhatWasNotTested) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::comparison_text_test

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::coverage_text_test {
 namespace {
 
 using testing::AllOf;
@@ -74,4 +74,4 @@ TEST(CoverageScenarioList, NamesEachScenarioAndSaysWhatItIs) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::coverage_text_test

@@ -7,7 +7,7 @@
 #include "pendulum/model/friction/registry.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::equation_test {
 namespace {
 
 using testing::HasSubstr;
@@ -51,4 +51,4 @@ TEST(FittedEquation, KeepsTheTermOfAParameterAtItsBoundAndTheSignOfANegativeOne)
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::equation_test

@@ -7,7 +7,7 @@
 #include "pendulum/report/section_text.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::fit_sections_test {
 namespace {
 
 using testing::HasSubstr;
@@ -55,4 +55,4 @@ TEST(FitSections, PutSystematicErrorsAndClosedFormsIntoATableOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_sections_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::json_parts_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -36,4 +36,4 @@ TEST(NumberOrNull, IsNullForWhatIsNoNumber) {
 TEST(KeyWithUnit, SpellsASlashAsAnUnderscore) { EXPECT_EQ(KeyWithUnit("sigma", "rad/s"), "sigma_rad_s"); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::json_parts_test

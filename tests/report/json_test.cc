@@ -14,7 +14,7 @@
 #include "pendulum/base/version.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -206,4 +206,4 @@ TEST(ToJsonText, ReplacesBytesThatAreNotUtf8) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::json_test

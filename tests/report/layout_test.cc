@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::layout_test {
 namespace {
 
 TEST(DisplayWidth, CountsCharactersNotBytes) {
@@ -70,4 +70,4 @@ TEST(Paragraph, BreaksNoLineAtANoBreakSpace) {
 TEST(Paragraph, MeasuresWidthInCharacters) { EXPECT_EQ(Paragraph("ττττ ωω", "", 7), "ττττ ωω\n"); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::layout_test

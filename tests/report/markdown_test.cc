@@ -10,7 +10,7 @@
 #include "pendulum/report/text.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::markdown_test {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(ToMarkdown, HasEverySectionOfTheText) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::markdown_test

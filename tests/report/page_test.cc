@@ -10,7 +10,7 @@
 #include "pendulum/report/series.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::page_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -70,4 +70,4 @@ TEST(SeriesJson, OfThePageHasSevenDigitsAndNoResiduals) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::page_test

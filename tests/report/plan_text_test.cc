@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::plan_text_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -155,4 +155,4 @@ TEST(PlanText, ShowsTheLevelsOfARateInDegreesPerSecond) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::plan_text_test

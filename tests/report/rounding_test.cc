@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::rounding_test {
 namespace {
 
 std::string Pdg(double value, double error) {
@@ -75,4 +75,4 @@ TEST(SignificantDigits, CountsFromTheFirstDigitThatIsNotZero) {
 TEST(FixedText, AgreesWithPrintf) { EXPECT_EQ(FixedText(-1.005e300, 0).substr(0, 5), "-1005"); }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::rounding_test

@@ -9,7 +9,7 @@
 #include "pendulum/recording/window.h"
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::run_report_test {
 namespace {
 
 using testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(IsShownInFull, IsTrueOfAllFitsThatAreNotCompared) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::run_report_test

@@ -6,7 +6,7 @@
 
 #include "pendulum/report/text_parts.h"
 
-namespace pendulum {
+namespace pendulum::section_text_test {
 namespace {
 
 using testing::HasSubstr;
@@ -65,4 +65,4 @@ TEST(SectionText, ColoursEveryLineByItself) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::section_text_test

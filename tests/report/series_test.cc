@@ -9,7 +9,7 @@
 
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::series_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -157,4 +157,4 @@ TEST(ToSeriesJsonText, IsOneLineOfTheSame) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::series_test

@@ -15,7 +15,7 @@
 
 #include "pendulum/base/physics.h"
 
-namespace pendulum {
+namespace pendulum::terminal_plot_test {
 namespace {
 
 using testing::Each;
@@ -127,4 +127,4 @@ TEST(TerminalPlot, IsInTheUnitOfReadingsThatAreNoAngle) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::terminal_plot_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::text_parts_test {
 namespace {
 
 // 0.0790 ± 0.0012: leading digits 120 keep two (PDG); other numbers have the same decimal.
@@ -59,4 +59,4 @@ TEST(Printable, HasNothingThatSteersATerminal) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::text_parts_test

@@ -11,7 +11,7 @@
 
 #include "tests/report/example_report.h"
 
-namespace pendulum {
+namespace pendulum::text_test {
 namespace {
 
 using testing::ElementsAre;
@@ -298,4 +298,4 @@ TEST(ToText, FitsATerminalOfEightyColumns) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::text_test

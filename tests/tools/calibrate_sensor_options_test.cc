@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::calibrate_sensor_options_test {
 namespace {
 
 using testing::HasSubstr;
@@ -153,4 +153,4 @@ TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfAPlan) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::calibrate_sensor_options_test

@@ -9,7 +9,7 @@
 
 #include "pendulum/model/friction/viscous.h"
 
-namespace pendulum {
+namespace pendulum::command_line_test {
 namespace {
 
 using testing::ElementsAre;
@@ -191,4 +191,4 @@ TEST(Split, GivesThePartsBetweenSeparators) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::command_line_test

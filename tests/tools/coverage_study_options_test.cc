@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::coverage_study_options_test {
 namespace {
 
 using testing::HasSubstr;
@@ -84,4 +84,4 @@ TEST(MakeCoverageStudyOptions, RefusesWrongFlagsAndNamesThem) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::coverage_study_options_test

@@ -11,7 +11,7 @@
 
 #include "pendulum/model/friction/registry.h"
 
-namespace pendulum {
+namespace pendulum::fit_pendulum_options_test {
 namespace {
 
 using testing::ElementsAre;
@@ -126,7 +126,7 @@ TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
 TEST(MakeFitPendulumOptions, NamesTheModelsThereAre) {
   FitPendulumFlags flags = WithData();
   flags.model = "columb";
-  EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames());
+  EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames() + ", or all");
 }
 
 TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
@@ -316,4 +316,4 @@ TEST(MakeFitPendulumOptions, RefusesToHoldAParameterThatAnotherFlagNames) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_pendulum_options_test

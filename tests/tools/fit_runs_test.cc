@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::fit_runs_test {
 namespace {
 
 using testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::fit_runs_test

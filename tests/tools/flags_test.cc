@@ -8,7 +8,7 @@
 DEFINE_string(shape, "round", "Shape of the bob.");
 DEFINE_double(width, 1, "Width, m.");
 
-namespace pendulum {
+namespace pendulum::flags_test {
 namespace {
 
 using testing::ElementsAre;
@@ -66,4 +66,4 @@ TEST_F(FlagsTest, ExitsWithTwoWhenGflagsRefuses) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::flags_test

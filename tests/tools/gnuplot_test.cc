@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::gnuplot_test {
 namespace {
 
 using testing::HasSubstr;
@@ -57,4 +57,4 @@ TEST(CheckGnuplot, NamesThePackageThatIsMissing) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::gnuplot_test

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace pendulum {
+namespace pendulum::output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -225,4 +225,4 @@ TEST(NumberedPath, LeavesStandardOutputAlone) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::output_test

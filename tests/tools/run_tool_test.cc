@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::run_tool_test {
 namespace {
 
 using Work = std::function<Result<int>(const std::vector<std::string>&)>;
@@ -52,4 +52,4 @@ TEST(RunTool, HandsOnWhatBelongsToNoFlagAndRefusesUnknownFlags) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::run_tool_test

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pendulum {
+namespace pendulum::simulate_pendulum_options_test {
 namespace {
 
 using testing::DoubleEq;
@@ -258,4 +258,4 @@ TEST(SimulateOptions, NumberTruthFilesAsTheRecordings) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::simulate_pendulum_options_test

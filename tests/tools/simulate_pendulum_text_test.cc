@@ -10,7 +10,7 @@
 
 #include "pendulum/recording/read_recording.h"
 
-namespace pendulum {
+namespace pendulum::simulate_pendulum_text_test {
 namespace {
 
 using testing::DoubleEq;
@@ -156,4 +156,4 @@ TEST(TruthJson, GivesARateItsOwnNames) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::simulate_pendulum_text_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace pendulum {
+namespace pendulum::terminal_test {
 namespace {
 
 /// An environment variable as it is while this lives, then as it was; nullptr: not set.
@@ -90,4 +90,4 @@ TEST_F(OfATerminal, IsNotWantedElsewhere) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::terminal_test

@@ -21,7 +21,7 @@
 #include "tests/model/typical_friction.h"
 #include "tests/model/undamped_pendulum.h"
 
-namespace pendulum {
+namespace pendulum::sensitivities_test {
 namespace {
 
 using testing::DoubleNear;
@@ -270,4 +270,4 @@ TEST(SineSeries, CarriesTheDerivativesOfTheCoupledRecurrenceInPlainDualArithmeti
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::sensitivities_test

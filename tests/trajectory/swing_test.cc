@@ -12,7 +12,7 @@
 #include "pendulum/model/friction/registry.h"
 #include "tests/model/coefficients.h"
 
-namespace pendulum {
+namespace pendulum::swing_test {
 namespace {
 
 using testing::DoubleNear;
@@ -218,4 +218,4 @@ TEST(Values, KeepsTheNumbersAndDropsTheDerivatives) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::swing_test

@@ -12,7 +12,7 @@
 #include "pendulum/trajectory/synthetic.h"
 #include "tests/trajectory/synthetic_support.h"
 
-namespace pendulum {
+namespace pendulum::synthetic_noise_test {
 namespace {
 
 using testing::DoubleNear;
@@ -120,4 +120,4 @@ TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::synthetic_noise_test

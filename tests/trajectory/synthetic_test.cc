@@ -15,7 +15,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/trajectory/synthetic_support.h"
 
-namespace pendulum {
+namespace pendulum::synthetic_test {
 namespace {
 
 using testing::AllOf;
@@ -305,4 +305,4 @@ TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::synthetic_test

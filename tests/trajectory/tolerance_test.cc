@@ -12,7 +12,7 @@
 #include "pendulum/trajectory/trajectory.h"
 #include "tests/model/undamped_pendulum.h"
 
-namespace pendulum {
+namespace pendulum::tolerance_test {
 namespace {
 
 using testing::Ge;
@@ -79,4 +79,4 @@ TEST(TraceTolerance, IsNeverBelowTheFloorOfRounding) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::tolerance_test

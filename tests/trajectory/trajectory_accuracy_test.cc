@@ -17,7 +17,7 @@
 #include "tests/model/typical_friction.h"
 #include "tests/model/undamped_pendulum.h"
 
-namespace pendulum {
+namespace pendulum::trajectory_accuracy_test {
 namespace {
 
 using testing::DoubleNear;
@@ -293,4 +293,4 @@ TEST(EveryLaw, NeverGainsEnergy) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::trajectory_accuracy_test

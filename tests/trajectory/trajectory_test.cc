@@ -13,7 +13,7 @@
 #include "pendulum/model/friction/registry.h"
 #include "tests/model/undamped_pendulum.h"
 
-namespace pendulum {
+namespace pendulum::trajectory_test {
 namespace {
 
 using testing::DoubleNear;
@@ -305,4 +305,4 @@ TEST(TraceTrajectory, RefusesNumbersThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::trajectory_test

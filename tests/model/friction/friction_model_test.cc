@@ -19,7 +19,7 @@
 #include "pendulum/model/friction/registry.h"
 #include "tests/model/typical_friction.h"
 
-namespace pendulum {
+namespace pendulum::friction_model_test {
 namespace {
 
 using testing::DoubleNear;
@@ -286,4 +286,4 @@ TEST(FrictionModels, ForEachCallsEveryLawInTheOrderOfTheList) {
 }
 
 }  // namespace
-}  // namespace pendulum
+}  // namespace pendulum::friction_model_test

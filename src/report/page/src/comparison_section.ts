@@ -27,14 +27,14 @@ function modelRow(report: Report, row: ComparisonRow): Cell[] {
   const fits = row.lack_of_fit ? 'lack of fit' : row.judged ? 'yes' : 'not judged';
   return [
     [i >= 0 && swatch(modelMark(rankOf(report.result, i))), row.model],
-    String(row.parameters),
+    row.judged ? String(row.parameters) : '–',
     rms ? significant(rms.value, 3) : '–',
     difference(row.delta_bic),
     row.akaike_weight === null ? '–' : row.akaike_weight < 1e-4 ? '< 0.0001' : fixed(row.akaike_weight, 4),
     predictionText(row.cross_validation),
     predictionText(row.forward_prediction),
     significant(row.lag1_correlation, 2),
-    [fits, row.reason !== undefined && el('small', {}, typeset(row.reason.replace(/_/g, ' ')))],
+    fits,
   ];
 }
 
@@ -65,20 +65,26 @@ function testTable({ tests }: Comparison): HTMLElement | null {
   if (tests.length === 0) return null;
   const columns: Column[] = [
     { head: 'Simpler → richer' },
+    { head: 'p', kind: 'number' },
     { head: 'Adds' },
     { head: 'Likelihood ratio', kind: 'number' },
     { head: 'Its distribution if the simpler holds' },
-    { head: 'p', kind: 'number' },
   ];
   const rows = tests.map((test): Cell[] => [
     `${test.simpler} → ${test.richer}`,
+    test.p === null ? [el('span', {}, '–'), el('small', {}, typeset(test.reason ?? ''))] : probabilityText(test.p),
     test.added.join(', '),
     significant(test.statistic, 4),
     test.null,
-    test.p === null ? [el('span', {}, '–'), el('small', {}, typeset(test.reason ?? ''))] : probabilityText(test.p),
   ]);
   return table('Likelihood-ratio tests of nested models', columns, rows);
 }
+
+/** Why a model has no criteria. */
+const unjudged = ({ rows }: Comparison): HTMLElement[] =>
+  rows
+    .filter((row) => !row.judged && row.reason !== undefined)
+    .map((row) => text(sentence(`${row.model} is not judged: ${row.reason?.replace(/_/g, ' ')}`), 'quiet'));
 
 const kMeaning =
   'Left-out samples: blocks predicted by a fit to the others. Later motion: the end predicted from the beginning. ' +
@@ -95,6 +101,7 @@ export function comparisonSection(report: Report): HTMLElement | null {
     'Models compared',
     el('p', {}, el('strong', {}, `${verdict}. `), sentence(comparison.reason)),
     modelTable(report, comparison),
+    ...unjudged(comparison),
     text(kMeaning, 'quiet'),
     testTable(comparison),
     text(sentence(comparison.criterion_reason), 'quiet'),

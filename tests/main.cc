@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a floor's tests: all, or those of the source file whose path ends as the argument does.
+
+#include <iostream>
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+/// As --gtest_filter takes it; empty when there are no tests in the file.
+std::string TestsIn(std::string_view file) {
+  const testing::UnitTest& all = *testing::UnitTest::GetInstance();
+  std::string filter;
+  for (int i = 0; i < all.total_test_suite_count(); ++i) {
+    const testing::TestSuite& suite = *all.GetTestSuite(i);
+    for (int k = 0; k < suite.total_test_count(); ++k) {
+      const testing::TestInfo& test = *suite.GetTestInfo(k);
+      if (!std::string_view(test.file()).ends_with(file)) continue;
+      filter.append(":").append(suite.name()).append(".").append(test.name());
+    }
+  }
+  return filter;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  testing::InitGoogleMock(&argc, argv);
+  if (argc > 1) {
+    const std::string filter = TestsIn(argv[1]);
+    if (filter.empty()) {
+      std::cerr << "there are no tests in a file " << argv[1] << "\n";
+      return 1;
+    }
+    GTEST_FLAG_SET(filter, filter);
+  }
+  return RUN_ALL_TESTS();
+}
