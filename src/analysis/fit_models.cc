@@ -38,15 +38,6 @@ std::size_t Richest(const std::vector<std::string>& models) {
   return richest;
 }
 
-NoiseChoice ChoiceOf(const FitReport& fit, const FitOptions& options) {
-  if (fit.noise.family == NoiseFamily::kGaussian) return NoiseChoice::kGaussian;
-  return fit.noise.family == NoiseFamily::kQuantized ? NoiseChoice::kQuantized : options.noise;
-}
-
-StartChoice ChoiceOf(StartKind start) {
-  return start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
-}
-
 FitReport FailedFit(const std::string& model, const FitReport& like, const Status& status) {
   FitReport fit;
   fit.model = *FindMotionModel(model);
@@ -72,7 +63,7 @@ class SharedFits {
  public:
   SharedFits(SwingFit lead, std::size_t lead_index, FitOptions options, const std::vector<std::string>& models)
       : options_(std::move(options)), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
-    options_.start = ChoiceOf(lead.fit.start);
+    options_.start = AskAlike(lead.fit, options_).start;
     result_.fits.resize(models.size());
     result_.fits[lead_index] = std::move(lead.fit);
     for (std::size_t i = 0; i < models.size(); ++i) {
@@ -97,7 +88,7 @@ class SharedFits {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
     });
     const NoiseFamily family = best->noise.family;
-    options_.noise = ChoiceOf(*best, options_);
+    options_.noise = AskAlike(*best, options_).noise;
     const FitReport lead = result_.fits[lead_index];
     for (std::size_t i = 0; i < models_.size(); ++i) {
       FitReport& fit = result_.fits[i];
@@ -128,7 +119,7 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
     fits.push_back(FitSwing(recording, swing, ForModel(shared, model, models).options));
     if (!fits.back() || fitted) continue;
     fitted = FittedModels{fits.back()->used, fits.back()->swing, {}};
-    shared.noise = ChoiceOf(fits.back()->fit, options);
+    shared.noise = AskAlike(fits.back()->fit, options).noise;
   }
   if (!fitted) return tl::unexpected(fits.front().error());
   const auto found = std::ranges::find_if(fits, [](const auto& fit) { return fit.has_value(); });

@@ -67,4 +67,16 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
   return readings;
 }
 
+std::optional<Trajectory> FittedMotion::Trace() const {
+  const std::size_t size = PhysicalParameters(model_).size();
+  const double* const at_start = &parameters_[size];
+  const bool is_held = start_ == StartKind::kRelease;
+  const Start<double> start{start_, is_held ? at_start[1] : 0, at_start[0], is_held ? 0 : at_start[1]};
+  TraceOptions options;
+  options.end = instants_[instants_.size() - 1];
+  Result<Trajectory> motion = MakeTrajectory(model_, {parameters_.data(), size}, start, options);
+  if (!motion) return std::nullopt;
+  return *std::move(motion);
+}
+
 }  // namespace pendulum

@@ -20,10 +20,6 @@ using Eigen::Index;
 /// Noise below this many counts, with memory, is neither Gaussian nor independent: no likelihood is known for it.
 constexpr double kSmallestSigma = 0.5;
 
-bool HasWarning(const FitReport& fit, std::string_view code) {
-  return std::ranges::find(fit.warnings, code, &Warning::code) != fit.warnings.end();
-}
-
 /// What is at the bound 0 leaves a simpler law; at another bound it has been used.
 bool Counts(const ParameterEstimate& parameter) {
   return !parameter.fixed && !(parameter.at_bound && parameter.estimate == 0);
@@ -39,7 +35,7 @@ ComparisonRow DescribeFit(const FitReport& fit) {
   row.rms = fit.statistics.rms_residual;
   row.lag1_correlation = fit.noise.lag1_correlation;
   row.ljung_box_p = fit.statistics.ljung_box_p;
-  row.lack_of_fit = HasWarning(fit, "lack_of_fit");
+  row.lack_of_fit = fit.Warns("lack_of_fit");
   return row;
 }
 

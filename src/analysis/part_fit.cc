@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/fitting/covariance.h"
 #include "pendulum/fitting/estimate_autocorrelation.h"
 #include "pendulum/fitting/fit_problem.h"
@@ -30,6 +31,7 @@ constexpr int kMostTraces = 200;
 
 /// What was asked of the whole, without what belongs to its start alone and what both halves would share.
 FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
+  options = AskAlike(fit, std::move(options));
   options.start = StartChoice::kMoving;
   options.start_values.reset();
   options.initial.clear();
@@ -39,31 +41,7 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   options.interval = IntervalMethod::kCovariance;
   options.progress = nullptr;
   options.max_traces = std::min(options.max_traces, kMostTraces);
-  if (options.loss == Loss::kNone) {
-    options.noise = fit.noise.family == NoiseFamily::kQuantized ? NoiseChoice::kQuantized : NoiseChoice::kGaussian;
-  }
   return options;
-}
-
-/// The motion of a fit over its recording; its parameters as in TrajectoryCost.
-std::optional<Trajectory> MotionOf(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig) {
-  const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
-  std::vector<double> parameters;
-  for (std::size_t i = 0; i < PhysicalParameters(fit.model).size(); ++i) {
-    const ParameterEstimate& parameter = fit.parameters[i];
-    parameters.push_back(parameter.estimate / (parameter.info.scales_with_gravity() ? gravity_torque : 1.0));
-  }
-  const ParameterEstimate* const start = &fit.parameters[parameters.size()];
-  Start<double> begin{fit.start, 0, start[0].estimate, start[1].estimate};
-  if (fit.start == StartKind::kRelease) {
-    begin.time = used.clock_scale * (start[1].estimate - used.time[0]);
-    begin.rate = 0;
-  }
-  TraceOptions trace;
-  trace.end = used.clock_scale * (used.time[used.size() - 1] - used.time[0]);
-  Result<Trajectory> motion = MakeTrajectory(fit.model, parameters, begin, trace);
-  if (!motion) return std::nullopt;
-  return *std::move(motion);
 }
 
 /// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its
@@ -131,7 +109,10 @@ std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& 
 }
 
 Parts::Parts(const Recording& used, const FitReport& fit, const FitOptions& options)
-    : used_(used), fit_(fit), options_(OptionsOfParts(fit, options)), motion_(MotionOf(used, fit, options.rig)) {
+    : used_(used),
+      fit_(fit),
+      options_(OptionsOfParts(fit, options)),
+      motion_(FittedMotion(used, fit, options.rig).Trace()) {
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   inertia_ = fit.parameters[0].estimate / gravity_torque;
   if (fit.noise.censored == 0) return;

@@ -57,13 +57,10 @@ StartValues StartAtEstimates(const FitProblem& problem, const FitReport& fit) {
 }
 
 FitOptions OptionsAtEstimates(const FitProblem& problem, const FitReport& fit, FitOptions options) {
-  options.start = fit.start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
+  options = AskAlike(fit, std::move(options));
   options.start_values = StartAtEstimates(problem, fit);
   options.initial.clear();
   if (problem.data.drifts) options.initial[std::string(problem.infos.back().name)] = fit.parameters.back().estimate;
-  const bool robust = fit.noise.family == NoiseFamily::kHuber || fit.noise.family == NoiseFamily::kStudent;
-  const bool quantized = fit.noise.family == NoiseFamily::kQuantized;
-  if (!robust) options.noise = quantized ? NoiseChoice::kQuantized : NoiseChoice::kGaussian;
   options.interval = IntervalMethod::kCovariance;
   options.progress = nullptr;
   return options;
@@ -73,7 +70,7 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
   if (IsUndersampled(used, options.rig)) {
     return Error(StatusCode::kFailedPrecondition, "the samples are too far apart to leave some of them out");
   }
-  options.start = fit.start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
+  options = AskAlike(fit, std::move(options));
   const Result<FitProblem> problem = MakeFitProblem(used, options);
   if (!problem) return tl::unexpected(problem.error());
   options = OptionsAtEstimates(*problem, fit, std::move(options));

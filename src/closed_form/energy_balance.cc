@@ -80,10 +80,6 @@ class LossEquations {
   std::vector<double> energies_;
 };
 
-}  // namespace
-
-namespace {
-
 template <FrictionModel F>
 EnergyBalance BalanceAt(const HalfSwingTable& table, double natural_frequency, double reference_rate) {
   LossEquations equations(kFrictionParameters<F>);

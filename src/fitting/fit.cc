@@ -140,6 +140,10 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
+bool FitReport::Warns(std::string_view code) const {
+  return std::ranges::find(warnings, code, &Warning::code) != warnings.end();
+}
+
 void WithdrawErrors(std::string_view why, FitReport& fit) {
   for (ParameterEstimate& parameter : fit.parameters) {
     parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
@@ -149,6 +153,13 @@ void WithdrawErrors(std::string_view why, FitReport& fit) {
   fit.profiles.clear();
   fit.covariance_names.clear();
   fit.covariance.resize(0, 0);
+}
+
+FitOptions AskAlike(const FitReport& fit, FitOptions options) {
+  options.start = fit.start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
+  if (fit.noise.family == NoiseFamily::kGaussian) options.noise = NoiseChoice::kGaussian;
+  if (fit.noise.family == NoiseFamily::kQuantized) options.noise = NoiseChoice::kQuantized;
+  return options;
 }
 
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {

@@ -156,10 +156,6 @@ void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swin
   if (!swing.to_given) TrimEnd(recording, options, true, swing);
 }
 
-bool HasWarning(const FitReport& fit, std::string_view code) {
-  return std::ranges::any_of(fit.warnings, [&](const Warning& warning) { return warning.code == code; });
-}
-
 /// Takes whole turns over the top out of the readings, so that the zero is the sensor's own; says how many.
 std::string TakeTurnsOut(Recording& used) {
   if (used.quantity != Quantity::kAngle || !used.is_calibrated()) return "";
@@ -304,8 +300,8 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
   Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
   if (!result) return result;
   const auto lacks = [&] {
-    return result->fit.termination != Termination::kConverged || HasWarning(result->fit, "lack_of_fit") ||
-           HasWarning(result->fit, "correlated_residuals");
+    return result->fit.termination != Termination::kConverged || result->fit.Warns("lack_of_fit") ||
+           result->fit.Warns("correlated_residuals");
   };
   if (!lacks()) {
     WarnOfLargerMotion(swing, result->fit);

@@ -116,16 +116,6 @@ std::string OpenIntervals(const FitReport& fit) {
   return text;
 }
 
-/// What a standard error beside a profile does not count.
-std::string HeldAtBound(const FitReport& fit) {
-  std::vector<std::string> names;
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.at_bound) names.emplace_back(parameter.info.name);
-  }
-  if (names.empty() || fit.profiles.empty()) return "";
-  return "Standard errors hold " + NameList(names) + " at the bound; intervals do not, and may be much wider.";
-}
-
 /// What the recording hardly tells, and what would.
 void SayIdentifiability(const FitReport& fit, Section& section) {
   for (const Identifiability& known : fit.identifiability) {
@@ -171,7 +161,6 @@ Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, con
   SayMissingErrors(fit, section);
   if (!fit.std_error_method.empty()) section.Say("Standard errors: " + fit.std_error_method + ".");
   if (!fit.interval_method.empty()) section.Say("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  section.Say(HeldAtBound(fit));
   SayIdentifiability(fit, section);
   return section.Say(check != nullptr ? "" : InertiaText(fit, rig));
 }

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/fit_swing.h"
 #include "tests/analysis/whole_swing.h"
 #include "tests/fitting/fit_support.h"
 
@@ -59,6 +60,33 @@ TEST(FitModels, BeginsAllAlike) {
     EXPECT_EQ(fit.start, StartKind::kRelease) << fit.model.name;
     EXPECT_EQ(fit.residual.size(), fitted.used.size()) << fit.model.name;
   }
+}
+
+// Sampled once a second, 0.76 Hz: a frequency between samples that every model has to find anew.
+TEST(FitModels, OfAnUndersampledSwingFindTheSameFrequency) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.sample_rate = 1;
+  run.duration = 60;
+  run.noise = 0.2 * kRadFromDeg;
+  run.resolution = kCount;
+  const Recording recording = Must(SimulateRecording(run));
+  FitOptions options;
+  options.rig = Rig{};
+  options.rig->gravity_torque = {kTextbookTorque, 0};
+  options.rig->inertia = RigValue{0.0761, 0};  // kg m^2, of the geometry: 4 % off
+  const ChosenSwings swings = Must(ChooseSwings(recording, {}, options.rig));
+  const FreeSwing& swing = swings.found.at(static_cast<std::size_t>(swings.chosen.at(0) - 1));
+  ASSERT_TRUE(swing.undersampled);
+  const FittedModels fitted = Must(FitModels(recording, swing, options, {"viscous", "coulomb", "drag"}));
+  ASSERT_THAT(fitted.fits, SizeIs(3));
+  const double truth = run.parameters[0] * kTextbookTorque;
+  for (const FitReport& fit : fitted.fits) {
+    ASSERT_EQ(fit.termination, Termination::kConverged) << fit.model.name << ": " << fit.reason;
+    EXPECT_NEAR(fit.Find("inertia")->estimate / truth, 1, 0.01) << fit.model.name;
+    EXPECT_EQ(fit.noise.family, fitted.fits[0].noise.family) << fit.model.name;
+  }
+  const ParameterEstimate& inertia = *fitted.fits[1].Find("inertia");
+  EXPECT_NEAR(inertia.estimate, truth, 4 * inertia.std_error.value_or(0));
 }
 
 TEST(FitModels, LeavesOutWhatOnlyOthersHaveAndSaysSo) {

@@ -201,5 +201,18 @@ TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
   EXPECT_FALSE(motion.Readings(motion.instants()));
 }
 
+TEST(FittedMotion, IsTracedOverTheRecordingAsItsReadingsAre) {
+  for (const SyntheticOptions& run : {TextbookRun("drag"), MovingRun("drag")}) {
+    const Recording recording = Must(SimulateRecording(run));
+    const FittedMotion motion(recording, TrueReport(run), std::nullopt);
+    const std::optional<Trajectory> trace = motion.Trace();
+    ASSERT_TRUE(trace.has_value());
+    const Eigen::VectorXd readings = motion.Readings(motion.instants()).value();
+    for (const Eigen::Index i : {Eigen::Index{0}, recording.size() / 2, recording.size() - 1}) {
+      EXPECT_NEAR(trace->Angle(motion.instants()[i]), readings[i] - run.zero, kTraceError);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pendulum::fitted_motion_test

@@ -294,6 +294,18 @@ TEST(FitRecording, NamesTheFileThatHasNoSwing) {
             "run.csv: the reading is constant: there is no swing in it; check the sensor, or choose another column");
 }
 
+TEST(AskAlike, AsksForStartAndNoiseButForNoFamilyOfARobustLoss) {
+  FitReport fit;
+  fit.start = StartKind::kMoving;
+  fit.noise.family = NoiseFamily::kQuantized;
+  EXPECT_EQ(AskAlike(fit, {}).start, StartChoice::kMoving);
+  EXPECT_EQ(AskAlike(fit, {}).noise, NoiseChoice::kQuantized);
+  fit.start = StartKind::kRelease;
+  fit.noise.family = NoiseFamily::kHuber;
+  EXPECT_EQ(AskAlike(fit, {}).start, StartChoice::kRelease);
+  EXPECT_EQ(AskAlike(fit, {}).noise, NoiseChoice::kAuto);
+}
+
 TEST(Termination, HasANameAndAnExitCode) {
   EXPECT_THAT((std::vector<std::string_view>{
                   TerminationName(Termination::kConverged), TerminationName(Termination::kNotConverged),

@@ -40,7 +40,7 @@ struct AmplitudeTrend {
 /// Whether a fit's parameters are constants of the recording.
 struct Constancy {
   std::vector<HalvesRow> halves;  ///< Inertia and friction, but for what is fixed.
-  double halves_statistic = 0;    ///< χ² of the joint difference of all rows, with their covariances
+  double halves_statistic = 0;  ///< χ² of the joint difference of all rows, with their covariances (MODEL.md eq. (55))
   int halves_dof = 0;
   std::optional<double> halves_p;  ///< Absent when there is no such test; `reason` says why.
   std::vector<AmplitudeRow> windows;

@@ -10,6 +10,7 @@
 #include "pendulum/fitting/fit.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
 
 namespace pendulum {
 
@@ -38,6 +39,9 @@ class FittedMotion {
   /// The readings at instants (N, s from the first sample, increasing), rad or rad/s; and unless null their N x P
   /// derivatives, in the units of the fit's report. Nothing when the motion cannot be traced.
   std::optional<Eigen::VectorXd> Readings(const Eigen::VectorXd& instants, Eigen::MatrixXd* jacobian = nullptr) const;
+
+  /// The motion over the recording; nothing when it cannot be traced.
+  std::optional<Trajectory> Trace() const;
 
  private:
   MotionModel model_;

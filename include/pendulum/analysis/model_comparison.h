@@ -24,8 +24,8 @@ struct ComparisonRow {
   bool judged = false;  ///< Converged, so that it has criteria (where there are any) and may be recommended.
   int parameters = 0;   ///< Free ones that are not at a bound, those of the noise among them.
   double rms = 0;       ///< rad or rad/s, of the residuals.
-  std::optional<double> log_likelihood, aic, aicc, bic;
-  std::optional<double> delta_bic;      ///< To the smallest.
+  std::optional<double> log_likelihood, aic, aicc, bic;  ///< Of densities in 1/rad, 1/(rad/s); probabilities of levels
+  std::optional<double> delta_bic;                       ///< To the smallest.
   std::optional<double> akaike_weight;  ///< exp(-ΔAICc / 2) over their sum (Burnham & Anderson 2002, section 2.9)
   Prediction cross_validation, forward;
   double lag1_correlation = 0;  ///< Of the quantile residuals.

@@ -16,6 +16,7 @@
 
 namespace pendulum {
 
+/// Whether a parameter is a zero's drift, zero_drift or bias_drift.
 bool IsDrift(std::string_view name);
 
 /// The probability of a standard normal variable farther from 0, to either side.
@@ -24,12 +25,13 @@ double TwoSidedP(double z);
 /// The next instant that is none of a part ending at `time`.
 double After(double time);
 
-/// What each of N readings says of its modelled value under a noise.
+/// What each of N readings says of its modelled value m [rad or rad/s] under a noise, l being its log-likelihood.
 struct ReadingTerms {
-  Eigen::VectorXd score;        ///< N, ∂l/∂m
-  Eigen::VectorXd information;  ///< N, -∂²l/∂m²; of a robust family their mean
+  Eigen::VectorXd score;        ///< N, ∂l/∂m, 1 / unit of m
+  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; of a robust family their mean
 };
 
+/// Of N values as measured and N as modelled, rad or rad/s.
 ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings);
 
 /// The covariance of W'score for residuals of that noise and memory (MODEL.md eq. (29)). time N, weights N x K.
@@ -47,8 +49,8 @@ double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index fre
 struct LinearFit {
   std::vector<Eigen::Index> free;  ///< F, neither held nor, `with_bounds`, at a bound.
   Eigen::MatrixXd jacobian;        ///< N x P, readings by the report's parameters.
-  Eigen::MatrixXd inverse;         ///< F x F, of the information.
-  Eigen::MatrixXd influence;       ///< N x F: estimates move by its transpose times the scores.
+  Eigen::MatrixXd inverse;         ///< F x F, of the information: products of the report's units.
+  Eigen::MatrixXd influence;       ///< N x F: estimates [report's units] move by its transpose times the scores.
 };
 
 /// Nothing where the motion cannot be traced or the readings do not tell the F parameters.
@@ -92,9 +94,9 @@ class Parts {
 
 inline constexpr std::size_t kFewestHalfSwings = 6;
 
-/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt, whose inertia and friction have about equal errors, for
-/// their variances go as 1 / (amplitude² duration³): indices into `ends` [s, file's clock], which has at least
-/// parts · kFewestHalfSwings + 1. No part has fewer than kFewestHalfSwings, three periods.
+/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (54)), whose inertia and friction have about
+/// equal errors, for their variances go as 1 / (amplitude² duration³): indices into `ends` [s, file's clock], which has
+/// at least parts · kFewestHalfSwings + 1. No part has fewer than kFewestHalfSwings, three periods.
 std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits);
 
 /// "7 half swings are too few for ...".

@@ -135,10 +135,15 @@ struct FitReport {
 
   /// The parameter of that name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
+
+  bool Warns(std::string_view code) const;
 };
 
 /// Takes out of a report the errors, intervals and covariance, which do not hold; the free parameters say `why`.
 void WithdrawErrors(std::string_view why, FitReport& fit);
+
+/// `options` that ask for the kind of start and the noise family that `fit` came out with; a robust loss has its own.
+FitOptions AskAlike(const FitReport& fit, FitOptions options);
 
 /// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
 /// initial_rate, zero_angle or rate_bias, and its drift if it `drifts`.

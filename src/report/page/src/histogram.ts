@@ -16,19 +16,14 @@ export interface Histogram {
 const kFewestBars = 7;
 const kMostBars = 61;
 
-/**
- * Bars of about 3.5 s N^(-1/3) (D. W. Scott, Biometrika 66:605, 1979), in whole levels of a sensor where `level` > 0, so
- * that none holds one level more than its neighbour.
- */
-export function histogram(values: Float64Array, level = 0): Histogram | null {
+/** Bars of about 3.5 s N^(-1/3) (D. W. Scott, Biometrika 66:605, 1979). */
+export function histogram(values: Float64Array): Histogram | null {
   const range = extent([values]);
   const { mean, deviation, count } = moments(values);
   if (!range || count < 2 || !(deviation > 0)) return null;
   const span = range[1] - range[0];
-  let width = Math.max((3.5 * deviation) / Math.cbrt(count), span / kMostBars);
-  width = Math.min(width, span / kFewestBars);
-  if (level > 0) width = Math.max(1, Math.round(width / level)) * level;
-  const start = Math.floor((range[0] - 0.5 * level) / width) * width;
+  const width = Math.min(Math.max((3.5 * deviation) / Math.cbrt(count), span / kMostBars), span / kFewestBars);
+  const start = Math.floor(range[0] / width) * width;
   const bars = Math.floor((range[1] - start) / width) + 1;
   const counts = new Array<number>(bars).fill(0);
   for (const value of values) {

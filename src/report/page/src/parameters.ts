@@ -130,9 +130,6 @@ function methods(fit: Fit): HTMLElement | null {
   const parts: string[] = [];
   if (fit.std_error_method) parts.push(`Standard errors: ${fit.std_error_method}.`);
   if (fit.interval_method) parts.push(`95 % intervals: ${fit.interval_method}.`);
-  const held = Object.entries(fit.parameters).flatMap(([name, { at_bound }]) => (at_bound ? [name] : []));
-  if (held.length > 0 && fit.interval_method?.startsWith('profile'))
-    parts.push(`Standard errors hold ${held.join(', ')} at the bound; intervals do not, and may be much wider.`);
   if (parts.length === 0) parts.push('There are no standard errors.');
   const overG = fit.parameters.inertia?.unit === 's^2';
   if (overG)
