@@ -29,7 +29,11 @@ std::string TestsIn(std::string_view file) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
-  if (argc > 1) {
+  if (argc > 2) {
+    std::cerr << "one file, or none for all\n";
+    return 1;
+  }
+  if (argc == 2) {
     const std::string filter = TestsIn(argv[1]);
     if (filter.empty()) {
       std::cerr << "there are no tests in a file " << argv[1] << "\n";

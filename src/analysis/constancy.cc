@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -92,12 +93,13 @@ std::optional<HalfEstimate> EstimateHalf(const PartFit& half, const NoiseModel& 
   return estimate;
 }
 
-/// dᵀ C⁻¹ d, with C scaled to unit diagonal.
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
 double SquaredLength(const VectorXd& difference, const MatrixXd& covariance) {
   const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const VectorXd scaled = scale.asDiagonal() * difference;
   const MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
-  return scaled.dot(correlation.ldlt().solve(scaled));
+  const auto factors = correlation.ldlt();
+  return factors.isPositive() ? scaled.dot(factors.solve(scaled)) : std::numeric_limits<double>::quiet_NaN();
 }
 
 void CompareEstimates(const HalfEstimate& first, const HalfEstimate& second, const FitReport& fit, Constancy& result) {
@@ -111,9 +113,10 @@ void CompareEstimates(const HalfEstimate& first, const HalfEstimate& second, con
   }
   if (difference.size() == 0) return;
   result.halves_dof = static_cast<int>(difference.size());
-  result.halves_statistic = std::max(SquaredLength(difference, covariance), 0.0);
-  result.halves_p =
-      boost::math::cdf(boost::math::complement(boost::math::chi_squared(result.halves_dof), result.halves_statistic));
+  const double statistic = SquaredLength(difference, covariance);
+  if (!std::isfinite(statistic)) return;
+  result.halves_statistic = statistic;
+  result.halves_p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(result.halves_dof), statistic));
 }
 
 /// Why there is no test; empty when there is.
@@ -131,7 +134,8 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
     estimates.push_back(*std::move(estimate));
   }
   CompareEstimates(estimates[0], estimates[1], fit, result);
-  return result.halves_p ? "" : "inertia and friction are held: there is nothing to compare";
+  if (result.halves.empty()) return "inertia and friction are held: there is nothing to compare";
+  return result.halves_p ? "" : "the halves' difference has no covariance that could be inverted";
 }
 
 // ---- Words ---------------------------------------------------------------------------------------------------------
@@ -202,9 +206,9 @@ Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOp
     const std::string halves = CompareHalves(parts, ends, fit, options.rig, result);
     result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");
   }
-  std::erase_if(result.trends, [](const AmplitudeTrend& trend) { return !std::isfinite(trend.p); });
-  if (result.halves_p && !std::isfinite(*result.halves_p)) result.halves_p.reset();
-  if (!result.halves_p && result.trends.empty() && result.reason.empty()) result.reason = "no number came out";
+  if (std::erase_if(result.trends, [](const AmplitudeTrend& trend) { return !std::isfinite(trend.p); }) > 0) {
+    result.reason = Join(result.reason, "a trend with amplitude has no error", "; ");
+  }
   result.verdict = Describe(result);
   return result;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -109,24 +108,30 @@ class SharedFits {
   FittedModels result_;
 };
 
-/// A swing whose frequency is looked for among aliases is looked for by every model, from one family of noise.
+/// A swing whose frequency is looked for among aliases is looked for by every model; those that took another family of
+/// noise than the one of the smallest residuals are fitted anew.
 Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
                              const std::vector<std::string>& models) {
-  FitOptions shared = options;
-  std::optional<FittedModels> fitted;
   std::vector<Result<SwingFit>> fits;
   for (const std::string& model : models) {
-    fits.push_back(FitSwing(recording, swing, ForModel(shared, model, models).options));
-    if (!fits.back() || fitted) continue;
-    fitted = FittedModels{fits.back()->used, fits.back()->swing, {}};
-    shared.noise = AskAlike(fits.back()->fit, options).noise;
+    fits.push_back(FitSwing(recording, swing, ForModel(options, model, models).options));
   }
-  if (!fitted) return tl::unexpected(fits.front().error());
-  const auto found = std::ranges::find_if(fits, [](const auto& fit) { return fit.has_value(); });
+  const auto best = std::ranges::min_element(fits, {}, [](const Result<SwingFit>& fit) {
+    const bool is_fitted = fit && fit->fit.termination != Termination::kFailed;
+    return is_fitted ? fit->fit.statistics.rms_residual : kUnbounded;
+  });
+  if (!*best) return tl::unexpected(fits.front().error());
+  const FitReport like = (*best)->fit;
+  FitOptions shared = options;
+  shared.noise = AskAlike(like, options).noise;
+  FittedModels fitted{(*best)->used, (*best)->swing, {}};
   for (std::size_t i = 0; i < models.size(); ++i) {
-    fitted->fits.push_back(fits[i] ? fits[i]->fit : FailedFit(models[i], (*found)->fit, fits[i].error()));
+    if (fits[i] && fits[i]->fit.noise.family != like.noise.family) {
+      fits[i] = FitSwing(recording, swing, ForModel(shared, models[i], models).options);
+    }
+    fitted.fits.push_back(fits[i] ? fits[i]->fit : FailedFit(models[i], like, fits[i].error()));
   }
-  return *std::move(fitted);
+  return fitted;
 }
 
 Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,

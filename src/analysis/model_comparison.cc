@@ -43,7 +43,7 @@ ComparisonRow DescribeFit(const FitReport& fit) {
 const FitReport* BestFit(const std::vector<FitReport>& fits) {
   const FitReport* best = nullptr;
   for (const FitReport& fit : fits) {
-    if (fit.termination != Termination::kConverged) continue;
+    if (fit.termination != Termination::kConverged || !std::isfinite(fit.statistics.aicc)) continue;
     if (best == nullptr || fit.statistics.aicc < best->statistics.aicc) best = &fit;
   }
   return best;

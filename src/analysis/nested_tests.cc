@@ -122,7 +122,10 @@ bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
 
 void SetProbability(const FittedModels& fitted, const FitReport& simpler, const FitReport& richer,
                     const Nesting& nesting, const FitOptions& options, Likelihood likelihood, NestedTest& test) {
-  if (IsRestricted(nesting, options)) {
+  constexpr double kRounding = 1e-3;  // of twice log L: where two searches end
+  if (test.statistic < -kRounding && nesting.unidentified.empty()) {
+    test.reason = "the richer law's fit is the worse one: its search ended elsewhere";
+  } else if (IsRestricted(nesting, options)) {
     test.reason = "--fix, --bounds or --prior name what is added";
   } else if (!nesting.unidentified.empty() && likelihood == Likelihood::kCorrelated) {
     test.reason = "its distribution is simulated for independent residuals only";
@@ -156,8 +159,9 @@ std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector
       test.simpler = rows[s].model;
       test.richer = rows[r].model;
       for (const ParameterInfo& info : nesting->added) test.added.emplace_back(info.name);
-      test.statistic = std::max(0.0, 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood));
+      test.statistic = 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood);
       SetProbability(fitted, simpler, richer, *nesting, options, likelihood, test);
+      test.statistic = std::max(test.statistic, 0.0);
       tests.push_back(std::move(test));
     }
   }

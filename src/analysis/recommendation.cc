@@ -5,26 +5,31 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "pendulum/base/format.h"
 
 namespace pendulum {
 namespace {
 
+/// A smaller difference of log-likelihood or BIC is none: terms that came out as 0.
+constexpr double kSame = 1e-3;
+
 /// The rows of one comparison, by their place.
 class Judge {
  public:
   Judge(const FittedModels& fitted, const Comparison& comparison) : fitted_(fitted), rows_(comparison.rows) {}
 
-  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: the law must also
-  /// predict better than each with fewer terms.
+  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: a law that does not
+  /// predict as well as it fits must predict better than each with fewer terms.
   bool IsRefuted(std::size_t i) const {
-    constexpr double kBetter = 0.95;
-    if (!rows_[i].lack_of_fit) return false;
+    constexpr double kAsWell = 1.25, kBetter = 0.95;
+    const ComparisonRow& row = rows_[i];
+    const bool predicts = row.forward.samples > 0;
+    if (!row.lack_of_fit || (predicts && row.forward.rms < kAsWell * row.rms)) return false;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].bic || Terms(k) >= Terms(i) || rows_[k].forward.samples == 0) continue;
-      const bool fails = rows_[i].forward.samples == 0;
-      if (fails || rows_[i].forward.rms > kBetter * rows_[k].forward.rms) return true;
+      if (!predicts || row.forward.rms > kBetter * rows_[k].forward.rms) return true;
     }
     return false;
   }
@@ -41,19 +46,22 @@ class Judge {
     return rows_[i].bic && !IsRefuted(i) && *rows_[i].bic <= SmallestBic() + kWithinBic;
   }
 
-  /// The model of the smallest AICc where that is neither near nor refuted; empty elsewhere.
+  /// The model of the smallest AICc of those not refuted, where it is not near; empty elsewhere.
   std::string ByAicc() const {
-    const auto weight = [](const ComparisonRow& row) { return row.akaike_weight.value_or(-1); };
-    const auto best = static_cast<std::size_t>(std::ranges::max_element(rows_, {}, weight) - rows_.begin());
-    return !rows_[best].akaike_weight || IsNear(best) || IsRefuted(best) ? "" : rows_[best].model;
+    std::size_t best = rows_.size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!rows_[i].akaike_weight || IsRefuted(i)) continue;
+      if (best == rows_.size() || *rows_[i].akaike_weight > *rows_[best].akaike_weight) best = i;
+    }
+    return best == rows_.size() || IsNear(best) ? "" : rows_[best].model;
   }
 
-  /// Models of a smaller BIC that predict no better, with names between commas.
-  std::string Refuted(std::size_t chosen) const {
-    std::string names;
+  /// Models of a smaller BIC that predict no better.
+  std::vector<std::string> Refuted(std::size_t chosen) const {
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (!rows_[i].bic || !IsRefuted(i) || *rows_[i].bic >= *rows_[chosen].bic) continue;
-      names += (names.empty() ? "" : " and ") + rows_[i].model;
+      if (!rows_[i].bic || !IsRefuted(i) || *rows_[i].bic > *rows_[chosen].bic - kSame) continue;
+      names.push_back(rows_[i].model);
     }
     return names;
   }
@@ -83,17 +91,16 @@ class Judge {
   }
 
   bool IsSame(std::size_t i, std::size_t k) const {
-    constexpr double kSame = 1e-3;
     return std::abs(rows_[i].log_likelihood.value_or(0) - rows_[k].log_likelihood.value_or(kUnbounded)) < kSame;
   }
 
-  /// Models as near as the chosen one, with names between commas.
-  std::string Undecided(std::size_t chosen) const {
-    std::string names;
+  /// Models as near as the chosen one.
+  std::vector<std::string> Undecided(std::size_t chosen) const {
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       // A law whose further terms came out as 0 is the chosen one.
       if (i == chosen || !IsNear(i) || IsSame(i, chosen)) continue;
-      names += (names.empty() ? "" : " and ") + rows_[i].model;
+      names.push_back(rows_[i].model);
     }
     return names;
   }
@@ -107,7 +114,7 @@ std::string BicText(double difference) {
   return difference < 100 ? NumberText(difference, 2) : std::to_string(std::lround(difference));
 }
 
-/// ", and predicts the last 40 % with 0.5 times its rms": where both predicted and differ by more than a tenth.
+/// ", and predicts the last 40 % 2 times as well", "equally well" within a tenth; empty unless both predicted.
 std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& other) {
   constexpr double kDiffers = 1.1;
   if (chosen.forward.samples == 0 || other.forward.samples == 0) return "";
@@ -141,21 +148,23 @@ void Recommend(const FittedModels& fitted, Comparison& comparison) {
   comparison.recommended = row.model;
   comparison.reason = row.model + ": ";
   const std::size_t next = judge.RunnerUp();
-  const std::string undecided = judge.Undecided(chosen);
+  const std::vector<std::string> undecided = judge.Undecided(chosen);
   if (!undecided.empty()) {
-    comparison.reason += "the simplest of those that the readings do not tell apart (" + undecided + ", too, within " +
-                         NumberText(kWithinBic) + " of the smallest BIC)";
+    comparison.reason += "the simplest of those that the readings do not tell apart (" + NameList(undecided) +
+                         ", too, within " + NumberText(kWithinBic) + " of the smallest BIC)";
   }
   if (next != comparison.rows.size()) {
     const ComparisonRow& other = comparison.rows[next];
     comparison.reason += (undecided.empty() ? "BIC lower by " : "; BIC lower by ") + BicText(*other.bic - *row.bic) +
                          " than with " + other.model + PredictionText(row, other);
   } else if (undecided.empty()) {
-    comparison.reason += "the only one that converged";
+    const auto judged = std::ranges::count_if(comparison.rows, &ComparisonRow::judged);
+    comparison.reason += judged == 1 ? "the only one that converged" : "no other is better";
   }
-  if (const std::string refuted = judge.Refuted(chosen); !refuted.empty()) {
-    comparison.reason += "; " + refuted + (refuted.find(' ') == std::string::npos ? " has" : " have") +
-                         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better";
+  if (const std::vector<std::string> refuted = judge.Refuted(chosen); !refuted.empty()) {
+    comparison.reason +=
+        "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +
+        " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better, or not at all";
   }
   if (const std::string other = judge.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
   comparison.reason += Doubts(row, fitted.fits[chosen]);

@@ -91,11 +91,12 @@ void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
   for (const int i : parameters) {
     const ProfileInterval interval =
         ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i);
-    SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
-    report.parameters[static_cast<std::size_t>(i)].open_interval = interval.open;
-    if (interval.lower == solve.lower[static_cast<std::size_t>(i)] &&
-        interval.upper == solve.upper[static_cast<std::size_t>(i)]) {
-      report.parameters[static_cast<std::size_t>(i)].open_interval = "no value that it may have is excluded";
+    const auto k = static_cast<std::size_t>(i);
+    report.parameters[k].open_interval = interval.open;
+    if (interval.lower == solve.lower[k] && interval.upper == solve.upper[k]) {
+      report.parameters[k].open_interval = "no value that it may have is excluded";
+    } else {
+      SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
     }
     if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(fitted.problem, i, interval));
   }

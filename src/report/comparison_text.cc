@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/model/friction/asymmetric.h"
 #include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
@@ -188,14 +189,20 @@ Table WindowTable(const Constancy& constancy) {
   return table;
 }
 
-/// Whether a table shows friction below 0, which the fit's own bound does not allow.
-bool HasNegativeFriction(const Constancy& constancy) {
-  return std::ranges::any_of(constancy.halves, [](const HalvesRow& row) { return row.first < 0 || row.second < 0; }) ||
-         std::ranges::any_of(constancy.windows, [](const AmplitudeRow& row) { return row.friction < 0; });
-}
-
 bool HasTrend(const Constancy& constancy) {
   return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
+}
+
+bool SaysHalves(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
+
+/// Whether a table shows friction below 0, which the fit's own bound does not allow.
+bool HasNegativeFriction(const Constancy& constancy) {
+  const auto in_half = [](const HalvesRow& row) {
+    return row.name != kAsymmetry.name && (row.first < 0 || row.second < 0);
+  };
+  const auto in_window = [](const AmplitudeRow& row) { return row.friction < 0; };
+  return (SaysHalves(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
+         (HasTrend(constancy) && std::ranges::any_of(constancy.windows, in_window));
 }
 
 }  // namespace
@@ -212,9 +219,9 @@ Sections ConstancySections(const RunReport& report, std::size_t fit) {
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
   section.Say(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
-  if (constancy->halves_p.value_or(1) < kNotConstant) section.Add(HalvesTable(*constancy));
+  if (SaysHalves(*constancy)) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
-  if (!constancy->constant() && HasNegativeFriction(*constancy)) {
+  if (HasNegativeFriction(*constancy)) {
     section.Say("Parts are fitted without bounds: a part by itself may show friction below 0.");
   }
   const bool said = constancy->verdict.find(constancy->reason) != std::string::npos;

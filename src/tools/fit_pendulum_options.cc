@@ -58,7 +58,7 @@ Result<std::vector<MotionModel>> ParseModels(const std::string& names) {
     const auto found = FindMotionModel(name);
     if (!found) return BadFlag(std::string("--model: ").append(found.error().message).append(", or all"));
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
-      return BadFlag("--model '" + names + "' names " + name + " twice");
+      return BadFlag(std::string("--model '").append(names).append("' names ").append(name).append(" twice"));
     }
     models.push_back(*found);
   }

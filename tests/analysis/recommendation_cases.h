@@ -44,7 +44,8 @@ inline SyntheticOptions LawRun(const TrueLaw& law, double duration, double noise
 /// How often each law is recommended, of all registered; the name is empty where none is.
 using Recommendations = std::map<std::string, int>;
 
-inline Recommendations CountRecommendations(SyntheticOptions run, int count, std::uint64_t first_seed) {
+inline Recommendations CountRecommendations(SyntheticOptions run, int count, std::uint64_t first_seed,
+                                            const CompareOptions& how = {}) {
   const std::vector<std::string> models(FrictionModels::kNames.begin(), FrictionModels::kNames.end());
   std::vector<std::string> recommended(static_cast<std::size_t>(count));
   ParallelFor(count, 0, [&](int i) {
@@ -55,7 +56,7 @@ inline Recommendations CountRecommendations(SyntheticOptions run, int count, std
     const Recording recording = *SimulateRecording(own);
     const auto fitted = FitModels(recording, Whole(recording), options, models);
     if (!fitted) return;
-    recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, {.predict = false}).recommended;
+    recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, how).recommended;
   });
   Recommendations counts;
   for (const std::string& name : recommended) ++counts[name];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/analysis/recommendation.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -95,8 +96,15 @@ TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
   for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
   Recommend(made.fitted, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
-  EXPECT_THAT(made.comparison.reason, HasSubstr("stribeck has a smaller BIC, but what is left is no noise"));
+  EXPECT_EQ(made.comparison.reason,
+            "drag: no other is better; stribeck has a smaller BIC, but what is left is no noise, and "
+            "the last 40 % is predicted no better, or not at all; but more than noise is left (lag-1 correlation 0): "
+            "something else is missing");
   made.comparison.rows[1].forward.rms = 0.6;
+  Recommend(made.fitted, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "stribeck");
+  made.comparison.rows[1].forward.rms = 0.69;
+  made.comparison.rows[1].rms = 0.6;  // slow noise: it predicts about as well as it fits
   Recommend(made.fitted, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
 }

@@ -15,14 +15,14 @@ namespace pendulum {
 enum class Likelihood {
   kIndependent,  ///< That of the fits: residuals without memory.
   kCorrelated,   ///< Gaussian with the memory of the best model's residuals, and q²/12 for rounding (eq. (49)).
-  kNone,         ///< Residuals that remember, of noise below half a count: there is no criterion.
+  kNone,         ///< No criterion: a memory of noise below half a count, or of a robust loss; nothing converged.
 };
 
 /// One model among those compared.
 struct ComparisonRow {
   std::string model;
   bool judged = false;  ///< Converged, so that it has criteria (where there are any) and may be recommended.
-  int parameters = 0;   ///< Free ones that are not at a bound, those of the noise among them.
+  int parameters = 0;   ///< Free ones that are not at a bound 0, those of the noise among them.
   double rms = 0;       ///< rad or rad/s, of the residuals.
   std::optional<double> log_likelihood, aic, aicc, bic;  ///< Of densities in 1/rad, 1/(rad/s); probabilities of levels
   std::optional<double> delta_bic;                       ///< To the smallest.

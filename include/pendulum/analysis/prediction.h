@@ -10,9 +10,8 @@ namespace pendulum {
 
 /// How well a model foresees readings that it was not fitted to; those at an end of the sensor's range are left out.
 struct Prediction {
-  double rms = 0;  ///< rad or rad/s, of measured - predicted; 0 where a part could not be predicted.
-  double standardized =
-      0;  ///< rms of (measured - predicted) / its predicted standard deviation: 1 when all is right (53).
+  double rms = 0;            ///< rad or rad/s, of measured - predicted; 0 where a part could not be predicted.
+  double standardized = 0;   ///< rms of that over its predicted standard deviation, MODEL.md eq. (53).
   Eigen::Index samples = 0;  ///< That were predicted; 0 when nothing was, or without a standard deviation.
   std::string reason;        ///< Why there are no samples; empty when there are.
 };

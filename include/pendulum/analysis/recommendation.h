@@ -6,7 +6,8 @@
 namespace pendulum {
 
 /// Sets `recommended` and its reason from the rows: of the models within kWithinBic of the smallest BIC the one of the
-/// fewest physical parameters, then of the smallest BIC; none where there is no criterion.
+/// fewest physical parameters, then of the smallest BIC; none where there is no criterion. A model whose residuals are
+/// more than noise is passed over when it does not predict better than simpler ones (MODEL.md section 9).
 void Recommend(const FittedModels& fitted, Comparison& comparison);
 
 }  // namespace pendulum

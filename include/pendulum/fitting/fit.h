@@ -136,6 +136,7 @@ struct FitReport {
   /// The parameter of that name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 
+  /// Whether there is a warning of that code.
   bool Warns(std::string_view code) const;
 };
 
