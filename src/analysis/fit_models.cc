@@ -113,6 +113,7 @@ class SharedFits {
 Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
                              const std::vector<std::string>& models) {
   std::vector<Result<SwingFit>> fits;
+  fits.reserve(models.size());
   for (const std::string& model : models) {
     fits.push_back(FitSwing(recording, swing, ForModel(options, model, models).options));
   }
