@@ -21,6 +21,9 @@ namespace {
 
 using Eigen::Index;
 
+/// Of twice log L: where two searches of one optimum end.
+constexpr double kRounding = 1e-3;
+
 /// Correlation of the estimates of two parameters of a fit, those at a bound among them, were there no bounds.
 double CorrelationOf(const FittedModels& fitted, const FitReport& fit, const FitOptions& options,
                      const std::vector<ParameterInfo>& two) {
@@ -122,7 +125,6 @@ bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
 
 void SetProbability(const FittedModels& fitted, const FitReport& simpler, const FitReport& richer,
                     const Nesting& nesting, const FitOptions& options, Likelihood likelihood, NestedTest& test) {
-  constexpr double kRounding = 1e-3;  // of twice log L: where two searches end
   if (test.statistic < -kRounding && nesting.unidentified.empty()) {
     test.reason = "the richer law's fit is the worse one: its search ended elsewhere";
   } else if (IsRestricted(nesting, options)) {
@@ -160,8 +162,9 @@ std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector
       test.richer = rows[r].model;
       for (const ParameterInfo& info : nesting->added) test.added.emplace_back(info.name);
       test.statistic = 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood);
+      if (std::abs(test.statistic) < kRounding) test.statistic = 0;
       SetProbability(fitted, simpler, richer, *nesting, options, likelihood, test);
-      test.statistic = std::max(test.statistic, 0.0);
+      if (test.statistic < 0) test.statistic = 0;
       tests.push_back(std::move(test));
     }
   }

@@ -56,7 +56,7 @@ Result<std::vector<MotionModel>> ParseModels(const std::string& names) {
   if (parts.empty() || names.ends_with(',')) parts.emplace_back();
   for (const std::string& name : parts) {
     const auto found = FindMotionModel(name);
-    if (!found) return BadFlag(std::string("--model: ").append(found.error().message).append(", or all"));
+    if (!found) return BadFlag(std::string("--model: ").append(found.error().message).append("; or all, by itself"));
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
       return BadFlag(std::string("--model '").append(names).append("' names ").append(name).append(" twice"));
     }

@@ -41,11 +41,11 @@ inline SyntheticOptions LawRun(const TrueLaw& law, double duration, double noise
   return run;
 }
 
-/// How often each law is recommended, of all registered; the name is empty where none is.
+/// How often each law is recommended, of all registered; the name is empty where none is. Predictions are not made:
+/// they count where more than noise is left, and here nothing else is.
 using Recommendations = std::map<std::string, int>;
 
-inline Recommendations CountRecommendations(SyntheticOptions run, int count, std::uint64_t first_seed,
-                                            const CompareOptions& how = {}) {
+inline Recommendations CountRecommendations(SyntheticOptions run, int count, std::uint64_t first_seed) {
   const std::vector<std::string> models(FrictionModels::kNames.begin(), FrictionModels::kNames.end());
   std::vector<std::string> recommended(static_cast<std::size_t>(count));
   ParallelFor(count, 0, [&](int i) {
@@ -56,7 +56,7 @@ inline Recommendations CountRecommendations(SyntheticOptions run, int count, std
     const Recording recording = *SimulateRecording(own);
     const auto fitted = FitModels(recording, Whole(recording), options, models);
     if (!fitted) return;
-    recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, how).recommended;
+    recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, {.predict = false}).recommended;
   });
   Recommendations counts;
   for (const std::string& name : recommended) ++counts[name];

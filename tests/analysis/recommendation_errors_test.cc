@@ -17,7 +17,7 @@ class Recommendation : public testing::TestWithParam<TrueLaw> {};
 TEST_P(Recommendation, IsTheTrueLawWhereTheRecordingTells) {
   const TrueLaw& law = GetParam();
   const double duration = law.model == "stribeck" ? 60 : 20;
-  Recommendations counts = CountRecommendations(LawRun(law, duration, 1), kSeeds, 1001, {.predict = false});
+  Recommendations counts = CountRecommendations(LawRun(law, duration, 1), kSeeds, 1001);
   EXPECT_GE(counts[std::string(law.model)], kSeeds - kMostWrong) << testing::PrintToString(counts);
 }
 
