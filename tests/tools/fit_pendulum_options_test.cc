@@ -126,7 +126,8 @@ TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
 TEST(MakeFitPendulumOptions, NamesTheModelsThereAre) {
   FitPendulumFlags flags = WithData();
   flags.model = "columb";
-  EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames() + "; or all, by itself");
+  EXPECT_EQ(Refusal(flags),
+            "--model: there is no model 'columb'; the models are " + MotionModelNames() + "; or all, by itself");
 }
 
 TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
