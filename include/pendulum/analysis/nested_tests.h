@@ -9,8 +9,8 @@ namespace pendulum {
 
 /// Likelihood-ratio tests of every two models of which one is nested in the other and both have a log-likelihood in
 /// `rows` (one for each fit; MODEL.md eq. (51)). Where the richer law has a rate of no meaning in the simpler, the
-/// richest within it, by SupremumTail, for independent residuals. `likelihood` is that of
-/// the rows. No p where options restrict what is added.
+/// richest within it, by SupremumTail, for independent residuals. `likelihood` is that of the rows. No p where options
+/// restrict what is added.
 std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector<ComparisonRow>& rows,
                                    const FitOptions& options, Likelihood likelihood);
 
