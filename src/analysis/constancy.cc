@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "pendulum/analysis/amplitude_trend.h"
@@ -51,58 +50,7 @@ std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
 
 // ---- Halves --------------------------------------------------------------------------------------------------------
 
-/// Inertia and friction of a half as its readings alone would have them, whatever bounds they have.
-struct HalfEstimate {
-  std::vector<std::string_view> names;  // K
-  VectorXd value;                       // K
-  MatrixXd covariance;                  // K x K
-};
-
-/// The covariance of all that is free, with the residuals' own variance and memory (MODEL.md eq. (29)).
-MatrixXd CovarianceOf(const PartFit& half, const LinearFit& linear, const NoiseModel& noise,
-                      const ReadingTerms& terms) {
-  const VectorXd time = half.part.clock_scale * half.part.time;
-  const bool converged = half.fit.termination == Termination::kConverged;
-  const Autocorrelation memory =
-      converged ? half.fit.noise.memory
-                : MemoryOf(time, half.part.value, noise, half.fit.fitted, linear.jacobian(Eigen::all, linear.free));
-  const MatrixXd covariance = ScoreCovariance(noise, memory, terms, time, linear.influence);
-  const double lost = linear.inverse.ldlt().solve(covariance).trace();
-  return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
-}
-
-/// A step to where the likelihood would be greatest without the bounds: what a bound cut off has no normal
-/// distribution, and what is left beside it depends on it.
-std::optional<HalfEstimate> EstimateHalf(const PartFit& half, const NoiseModel& noise, const std::optional<Rig>& rig) {
-  const ReadingTerms terms = TermsOf(noise, half.part.value, half.fit.fitted);
-  const std::optional<LinearFit> linear = Linearize(half.part, half.fit, rig, terms, {}, false);
-  if (!linear) return std::nullopt;
-  const VectorXd step = linear->influence.transpose() * terms.score;
-  const MatrixXd covariance = CovarianceOf(half, *linear, noise, terms);
-  HalfEstimate estimate;
-  const auto physical = static_cast<Index>(PhysicalParameters(half.fit.model).size());
-  std::vector<double> values;
-  for (std::size_t i = 0; i < linear->free.size() && linear->free[i] < physical; ++i) {
-    const ParameterEstimate& parameter = half.fit.parameters[static_cast<std::size_t>(linear->free[i])];
-    estimate.names.push_back(parameter.info.name);
-    values.push_back(parameter.estimate + step[static_cast<Index>(i)]);
-  }
-  const auto size = static_cast<Index>(values.size());
-  estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
-  estimate.covariance = covariance.topLeftCorner(size, size);
-  return estimate;
-}
-
-/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
-double SquaredLength(const VectorXd& difference, const MatrixXd& covariance) {
-  const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  const VectorXd scaled = scale.asDiagonal() * difference;
-  const MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const auto factors = correlation.ldlt();
-  return factors.isPositive() ? scaled.dot(factors.solve(scaled)) : std::numeric_limits<double>::quiet_NaN();
-}
-
-void CompareEstimates(const HalfEstimate& first, const HalfEstimate& second, const FitReport& fit, Constancy& result) {
+void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& second, const FitReport& fit, Constancy& result) {
   const VectorXd difference = second.value - first.value;
   const MatrixXd covariance = first.covariance + second.covariance;
   for (Index i = 0; i < difference.size(); ++i) {
@@ -124,12 +72,12 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
                           const std::optional<Rig>& rig, Constancy& result) {
   if (ends.size() - 1 < 2 * kFewestHalfSwings) return TooShort(ends, "halves", 2 * kFewestHalfSwings);
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
-  std::vector<HalfEstimate> estimates;
+  std::vector<UnboundedEstimate> estimates;
   for (const auto& [name, from, to] :
        {std::tuple("first", ends.front(), cut), std::tuple("second", After(cut), ends.back())}) {
     const PartFit half = parts.Fit(from, to, {});
     if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
-    std::optional<HalfEstimate> estimate = EstimateHalf(half, parts.NoiseOf(half.fit), rig);
+    std::optional<UnboundedEstimate> estimate = EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), rig);
     if (!estimate) return std::string("the ") + name + " half does not tell all parameters";
     estimates.push_back(*std::move(estimate));
   }

@@ -179,6 +179,18 @@ OptionsForModel ForModel(const FitOptions& options, const std::string& model, co
   return own;
 }
 
+std::vector<std::string> PhysicalNames(const std::vector<std::string>& models) {
+  std::vector<std::string> names;
+  for (const std::string& name : models) {
+    const Result<MotionModel> model = FindMotionModel(name);
+    if (!model) continue;
+    for (const ParameterInfo& info : PhysicalParameters(*model)) {
+      if (std::ranges::find(names, info.name) == names.end()) names.emplace_back(info.name);
+    }
+  }
+  return names;
+}
+
 Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models) {
   Result<FittedModels> fitted = swing.undersampled ? FitEach(recording, swing, options, models)

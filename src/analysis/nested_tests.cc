@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/analysis/likelihood_ratio.h"
@@ -24,24 +25,49 @@ using Eigen::Index;
 /// Of twice log L: where two searches of one optimum end.
 constexpr double kRounding = 1e-3;
 
-/// Correlation of the estimates of two parameters of a fit, those at a bound among them, were there no bounds.
-double CorrelationOf(const FittedModels& fitted, const FitReport& fit, const FitOptions& options,
+/// What is left of columns when `explained` explains what it can.
+Eigen::MatrixXd LeftBy(const Eigen::MatrixXd& explained, const Eigen::MatrixXd& columns) {
+  if (explained.cols() == 0) return columns;
+  Eigen::MatrixXd basis = explained;
+  for (Index k = 0; k < basis.cols(); ++k) basis.col(k) /= std::max(basis.col(k).norm(), 1e-300);
+  return columns - basis * basis.colPivHouseholderQr().solve(columns);
+}
+
+void Append(const Eigen::MatrixXd& rows, Eigen::MatrixXd& matrix) {
+  const Index before = matrix.rows();
+  matrix.conservativeResize(before + rows.rows(), rows.cols());
+  matrix.bottomRows(rows.rows()) = rows;
+}
+
+bool IsIn(const std::vector<std::string>& names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+double SigmaOf(const FitReport& fit) { return fit.noise.sigma > 0 ? fit.noise.sigma : 1.0; }
+
+/// Correlation of the estimates of two shared parameters of a fit, those at a bound among them, were there no bounds.
+double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitOptions& options,
                      const std::vector<ParameterInfo>& two) {
-  const FittedMotion motion(fitted.used, fit, options.rig);
-  Eigen::MatrixXd jacobian;
-  if (!motion.Readings(motion.instants(), &jacobian)) return 0;
-  std::vector<Index> columns;
+  Eigen::MatrixXd shared;
   std::vector<Index> rows;  // of the two
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (fit.parameters[i].fixed) continue;
-    const bool asked = std::ranges::find(two, fit.parameters[i].info.name, &ParameterInfo::name) != two.end();
-    if (asked) rows.push_back(static_cast<Index>(columns.size()));
-    columns.push_back(static_cast<Index>(i));
+  for (const ComparedRun& run : compared.runs) {
+    const FitReport& fit = *run.fits[index];
+    const FittedMotion motion(run.used, fit, options.rig);
+    Eigen::MatrixXd jacobian;
+    if (!motion.Readings(motion.instants(), &jacobian)) return 0;
+    std::vector<Index> own, common;
+    rows.clear();
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      const std::string_view name = fit.parameters[i].info.name;
+      if (fit.parameters[i].fixed) continue;
+      if (std::ranges::find(two, name, &ParameterInfo::name) != two.end()) rows.push_back(static_cast<Index>(common.size()));
+      (IsIn(compared.shared, name) ? common : own).push_back(static_cast<Index>(i));
+    }
+    Append(LeftBy(jacobian(Eigen::all, own), jacobian(Eigen::all, common)) / SigmaOf(fit), shared);
   }
   if (rows.size() != 2) return 0;
-  Eigen::MatrixXd free = jacobian(Eigen::all, columns);
-  free.colwise().normalize();
-  const Eigen::MatrixXd covariance = (free.transpose() * free).inverse();
+  shared.colwise().normalize();
+  const Eigen::MatrixXd covariance = (shared.transpose() * shared).inverse();
   const double scale = std::sqrt(covariance(rows[0], rows[0]) * covariance(rows[1], rows[1]));
   const double correlation = covariance(rows[0], rows[1]) / scale;
   return std::isfinite(correlation) ? correlation : 0;
@@ -62,54 +88,68 @@ FitReport AtNull(const FitReport& simpler, FitReport richer, std::string_view un
 }
 
 /// The largest rate of a fit's motion, roughly [rad/s].
-double LargestRate(const FittedModels& fitted, const FitReport& fit, const FitOptions& options) {
+double LargestRate(const ComparedRun& run, const FitReport& fit, const FitOptions& options) {
   const double half_range = 0.5 * (fit.fitted.maxCoeff() - fit.fitted.minCoeff());
   if (fit.quantity == Quantity::kRate) return half_range;
-  return half_range * 2 * kPi / FittedMotion(fitted.used, fit, options.rig).small_angle_period();
+  return half_range * 2 * kPi / FittedMotion(run.used, fit, options.rig).small_angle_period();
 }
 
-/// Derivatives of the readings at the null: by what the simpler law has free, and by the added term.
+/// Derivatives of one recording's readings at the null: by what the simpler law has free, shared and own, and by the
+/// added term.
 struct NullColumns {
-  Eigen::MatrixXd nuisance;
+  Eigen::MatrixXd shared, own;
   Eigen::VectorXd term;
 };
 
-std::optional<NullColumns> ColumnsAtNull(const FittedModels& fitted, const FitReport& simpler, const FitReport& null,
-                                         std::string_view term, const FitOptions& options) {
-  const FittedMotion motion(fitted.used, null, options.rig);
+std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vector<std::string>& shared,
+                                         const FitReport& simpler, const FitReport& null, std::string_view term,
+                                         const FitOptions& options) {
+  const FittedMotion motion(run.used, null, options.rig);
   Eigen::MatrixXd jacobian;
   if (!motion.Readings(motion.instants(), &jacobian)) return std::nullopt;
   const OrderedPair order = OrderOf(null.model);
   if (order.larger >= 0) jacobian.col(order.smaller) += jacobian.col(order.larger);  // they move together
   NullColumns columns;
-  std::vector<Index> free;
+  std::vector<Index> common, own;
   for (std::size_t i = 0; i < null.parameters.size(); ++i) {
     const std::string_view name = null.parameters[i].info.name;
     const ParameterEstimate* const known = simpler.Find(name);
-    if (known != nullptr && !known->fixed && !known->at_bound) free.push_back(static_cast<Index>(i));
+    const bool is_free = known != nullptr && !known->fixed && !known->at_bound;
+    if (is_free) (IsIn(shared, name) ? common : own).push_back(static_cast<Index>(i));
     if (name == term) columns.term = jacobian.col(static_cast<Index>(i));
   }
-  columns.nuisance = jacobian(Eigen::all, free);
+  columns.shared = jacobian(Eigen::all, common);
+  columns.own = jacobian(Eigen::all, own);
   return columns;
 }
 
-/// The test of a term whose rate has no meaning in the simpler law, over 24 rates from 1/50 to twice the largest.
-void TestUnidentified(const FittedModels& fitted, const FitReport& simpler, const FitReport& richer,
-                      const Nesting& nesting, const FitOptions& options, NestedTest& test) {
+/// The test of a term whose rate has no meaning in the simpler law, over 24 rates from 1/50 to twice the largest. What
+/// is a recording's own is taken out of its columns first.
+void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::size_t richer, const Nesting& nesting,
+                      const FitOptions& options, NestedTest& test) {
   constexpr int kRates = 24;
   const std::string_view rate = nesting.unidentified.front();
-  const double largest = LargestRate(fitted, simpler, options);
   const std::string_view term = nesting.added.front().name;
-  Eigen::MatrixXd nuisance, shapes(fitted.used.size(), kRates);
-  for (int g = 0; g < kRates; ++g) {
-    const double value = 0.02 * largest * std::pow(100.0, g / (kRates - 1.0));
-    const auto columns = ColumnsAtNull(fitted, simpler, AtNull(simpler, richer, rate, value), term, options);
-    if (!columns) {
-      test.reason = "the motion of the simpler law cannot be traced";
-      return;
+  double largest = 0;
+  for (const ComparedRun& run : compared.runs)
+    largest = std::max(largest, LargestRate(run, *run.fits[simpler], options));
+  Eigen::MatrixXd nuisance, shapes;
+  for (const ComparedRun& run : compared.runs) {
+    const FitReport& simple = *run.fits[simpler];
+    Eigen::MatrixXd own_shapes(run.used.size(), kRates);
+    std::optional<NullColumns> columns;
+    for (int g = 0; g < kRates; ++g) {
+      const double value = 0.02 * largest * std::pow(100.0, g / (kRates - 1.0));
+      const FitReport null = AtNull(simple, *run.fits[richer], rate, value);
+      columns = ColumnsAtNull(run, compared.shared, simple, null, term, options);
+      if (!columns) {
+        test.reason = "the motion of the simpler law cannot be traced";
+        return;
+      }
+      own_shapes.col(g) = columns->term;
     }
-    nuisance = columns->nuisance;
-    shapes.col(g) = columns->term;
+    Append(LeftBy(columns->own, columns->shared) / SigmaOf(simple), nuisance);
+    Append(LeftBy(columns->own, own_shapes) / SigmaOf(simple), shapes);
   }
   test.p = SupremumTail(nuisance, shapes, test.statistic, options.seed);
   test.null = "simulated, for " + test.simpler + " has no " + std::string(rate);
@@ -123,21 +163,25 @@ bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
   });
 }
 
-void SetProbability(const FittedModels& fitted, const FitReport& simpler, const FitReport& richer,
-                    const Nesting& nesting, const FitOptions& options, Likelihood likelihood, NestedTest& test) {
+void SetProbability(const ComparedRuns& compared, std::size_t simpler, std::size_t richer, const Nesting& nesting,
+                    const FitOptions& options, Likelihood likelihood, NestedTest& test) {
   if (test.statistic < -kRounding && nesting.unidentified.empty()) {
     test.reason = "the richer law's fit is the worse one: its search ended elsewhere";
+  } else if (!std::ranges::all_of(nesting.added, [&](const ParameterInfo& info) {
+               return IsIn(compared.shared, info.name);
+             })) {
+    test.reason = "what is added is not shared: each recording adds its own";
   } else if (IsRestricted(nesting, options)) {
     test.reason = "--fix, --bounds or --prior name what is added";
   } else if (!nesting.unidentified.empty() && likelihood == Likelihood::kCorrelated) {
     test.reason = "its distribution is simulated for independent residuals only";
   } else if (nesting.unidentified.empty() && nesting.bounded <= 2) {
-    const double correlation = nesting.bounded == 2 ? CorrelationOf(fitted, richer, options, nesting.added) : 0;
+    const double correlation = nesting.bounded == 2 ? CorrelationOf(compared, richer, options, nesting.added) : 0;
     const ChiBarWeights weights = WeightsAtBound(nesting.bounded, nesting.free, correlation);
     test.null = DescribeMixture(weights);
     test.p = ChiBarTail(weights, test.statistic);
   } else if (nesting.unidentified.size() == 1 && nesting.bounded == 1 && nesting.free == 0) {
-    TestUnidentified(fitted, simpler, richer, nesting, options, test);
+    TestUnidentified(compared, simpler, richer, nesting, options, test);
   } else {
     test.reason = "more than one parameter has no meaning in the simpler law, or none is at a bound there";
   }
@@ -145,25 +189,25 @@ void SetProbability(const FittedModels& fitted, const FitReport& simpler, const 
 
 }  // namespace
 
-std::vector<NestedTest> TestNested(const FittedModels& fitted, const std::vector<ComparisonRow>& rows,
+std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vector<ComparisonRow>& rows,
                                    const FitOptions& options, Likelihood likelihood) {
   std::vector<NestedTest> tests;
   for (std::size_t s = 0; s < rows.size(); ++s) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       if (!rows[s].log_likelihood || !rows[r].log_likelihood) continue;
-      const FitReport& simpler = fitted.fits[s];
-      const FitReport& richer = fitted.fits[r];
-      const std::optional<Nesting> nesting = FindNesting(simpler.model, richer.model);
+      const MotionModel& simpler = compared.runs.front().fits[s]->model;
+      const MotionModel& richer = compared.runs.front().fits[r]->model;
+      const std::optional<Nesting> nesting = FindNesting(simpler, richer);
       if (!nesting) continue;
       // Two steps at once, of which one is tested alone, have no distribution that is known or soon simulated.
-      if (!nesting->unidentified.empty() && RichestWithin(richer.model)->name != simpler.model.name) continue;
+      if (!nesting->unidentified.empty() && RichestWithin(richer)->name != simpler.name) continue;
       NestedTest test;
       test.simpler = rows[s].model;
       test.richer = rows[r].model;
       for (const ParameterInfo& info : nesting->added) test.added.emplace_back(info.name);
       test.statistic = 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood);
       if (std::abs(test.statistic) < kRounding) test.statistic = 0;
-      SetProbability(fitted, simpler, richer, *nesting, options, likelihood, test);
+      SetProbability(compared, s, r, *nesting, options, likelihood, test);
       if (test.statistic < 0) test.statistic = 0;
       tests.push_back(std::move(test));
     }

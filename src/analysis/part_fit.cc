@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/fitting/covariance.h"
 #include "pendulum/fitting/estimate_autocorrelation.h"
@@ -58,6 +60,19 @@ bool IsNear(const PartFit& part, const NoiseModel& noise, const std::optional<Ri
   if (!linear) return false;
   const VectorXd gradient = linear->jacobian(Eigen::all, linear->free).transpose() * terms.score;
   return gradient.dot(linear->inverse * gradient) < kNear * kNear;
+}
+
+/// The covariance of all that is free, with the residuals' own variance and memory (MODEL.md eq. (29)).
+MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearFit& linear, const NoiseModel& noise,
+                      const ReadingTerms& terms) {
+  const VectorXd time = part.clock_scale * part.time;
+  const bool converged = fit.termination == Termination::kConverged;
+  const Autocorrelation memory =
+      converged ? fit.noise.memory
+                : MemoryOf(time, part.value, noise, fit.fitted, linear.jacobian(Eigen::all, linear.free));
+  const MatrixXd covariance = ScoreCovariance(noise, memory, terms, time, linear.influence);
+  const double lost = linear.inverse.ldlt().solve(covariance).trace();
+  return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
 }
 
 }  // namespace
@@ -115,11 +130,19 @@ Parts::Parts(const Recording& used, const FitReport& fit, const FitOptions& opti
       motion_(FittedMotion(used, fit, options.rig).Trace()) {
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   inertia_ = fit.parameters[0].estimate / gravity_torque;
-  if (fit.noise.censored == 0) return;
+  const NoiseModel noise = NoiseOfFit(used, fit, options);
+  low_ = noise.low;
+  high_ = noise.high;
+}
+
+NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options) {
+  NoiseModel noise{fit.noise.family, fit.noise.sigma, fit.noise.resolution, -kInfinity, kInfinity};
+  if (fit.noise.censored == 0) return noise;
   if (const Result<FitProblem> problem = MakeFitProblem(used, options)) {
-    low_ = problem->noise.low;
-    high_ = problem->noise.high;
+    noise.low = problem->noise.low;
+    noise.high = problem->noise.high;
   }
+  return noise;
 }
 
 PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& held) const {
@@ -206,6 +229,38 @@ double Inflation(const NoiseModel& noise, Index samples, Index free, double lost
   const auto count = static_cast<double>(samples);
   const double known = noise.IsPlain() ? static_cast<double>(free) : 0;  // to σ
   return (count - known) / std::max(count - lost, 1.0);
+}
+
+/// A step to where the likelihood would be greatest without the bounds: what a bound cut off has no normal
+/// distribution, and what is left beside it depends on it.
+std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
+                                                   const std::optional<Rig>& rig) {
+  const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);
+  const std::optional<LinearFit> linear = Linearize(part, fit, rig, terms, {}, false);
+  if (!linear) return std::nullopt;
+  const VectorXd step = linear->influence.transpose() * terms.score;
+  const MatrixXd covariance = CovarianceOf(part, fit, *linear, noise, terms);
+  UnboundedEstimate estimate;
+  const auto physical = static_cast<Index>(PhysicalParameters(fit.model).size());
+  std::vector<double> values;
+  for (std::size_t i = 0; i < linear->free.size() && linear->free[i] < physical; ++i) {
+    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(linear->free[i])];
+    estimate.names.push_back(parameter.info.name);
+    values.push_back(parameter.estimate + step[static_cast<Index>(i)]);
+  }
+  const auto size = static_cast<Index>(values.size());
+  estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
+  estimate.covariance = covariance.topLeftCorner(size, size);
+  return estimate;
+}
+
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
+double SquaredLength(const VectorXd& difference, const MatrixXd& covariance) {
+  const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const VectorXd scaled = scale.asDiagonal() * difference;
+  const MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const auto factors = correlation.ldlt();
+  return factors.isPositive() ? scaled.dot(factors.solve(scaled)) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace pendulum

@@ -18,7 +18,7 @@ constexpr double kSame = 1e-3;
 /// The rows of one comparison, by their place.
 class Judge {
  public:
-  Judge(const FittedModels& fitted, const Comparison& comparison) : fitted_(fitted), rows_(comparison.rows) {}
+  Judge(const std::vector<FitReport>& fits, const Comparison& comparison) : fits_(fits), rows_(comparison.rows) {}
 
   /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: a law that does not
   /// predict as well as it fits must predict better than each with fewer terms.
@@ -66,7 +66,7 @@ class Judge {
     return names;
   }
 
-  std::size_t Terms(std::size_t i) const { return PhysicalParameters(fitted_.fits[i].model).size(); }
+  std::size_t Terms(std::size_t i) const { return PhysicalParameters(fits_[i].model).size(); }
 
   /// The recommended row; their number when there is none.
   std::size_t Simplest() const {
@@ -106,7 +106,7 @@ class Judge {
   }
 
  private:
-  const FittedModels& fitted_;
+  const std::vector<FitReport>& fits_;
   const std::vector<ComparisonRow>& rows_;
 };
 
@@ -137,8 +137,8 @@ std::string Doubts(const ComparisonRow& row, const FitReport& fit) {
 
 }  // namespace
 
-void Recommend(const FittedModels& fitted, Comparison& comparison) {
-  const Judge judge(fitted, comparison);
+void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
+  const Judge judge(fits, comparison);
   const std::size_t chosen = judge.Simplest();
   if (chosen == comparison.rows.size()) {
     comparison.reason = "none is recommended: there is no criterion";
@@ -167,7 +167,7 @@ void Recommend(const FittedModels& fitted, Comparison& comparison) {
         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better, or not at all";
   }
   if (const std::string other = judge.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
-  comparison.reason += Doubts(row, fitted.fits[chosen]);
+  comparison.reason += Doubts(row, fits[chosen]);
 }
 
 }  // namespace pendulum

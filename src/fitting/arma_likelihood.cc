@@ -279,7 +279,7 @@ CorrelatedLikelihood White(const CorrelatedResiduals& data, Eigen::VectorXd shif
   const double variance = std::max(squares / samples, data.rounding_variance);
   const double log_likelihood = -0.5 * (samples * std::log(2 * kPi * variance) + squares / variance);
   const double sigma = std::sqrt(variance - data.rounding_variance);
-  return {log_likelihood, {}, sigma, std::move(shift), 1};
+  return {log_likelihood, {}, sigma, std::move(shift), 1, data.jacobian.transpose() * data.jacobian / variance};
 }
 
 CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const Autocorrelation& like,
@@ -289,7 +289,7 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
   const Climb climb(family, data.time, left);
   Eigen::VectorXd place = LikeliestStart(family, like, data.time, left);
-  if (place.size() == 0) return {std::numeric_limits<double>::quiet_NaN(), {}, 0, shift, 0};
+  if (place.size() == 0) return {std::numeric_limits<double>::quiet_NaN(), {}, 0, shift, 0, {}};
   place = climb.Highest(place);
   double log_likelihood = climb.At(place).log_likelihood;
   for (int round = 0; round < kMostRounds && data.jacobian.cols() > 0; ++round) {
@@ -302,7 +302,13 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
     if (!(gain > kEnough)) break;
   }
   const MemoryProcess process = ProcessAt(family, place);
-  return {log_likelihood, process.memory, std::sqrt(process.variance), shift, static_cast<int>(family.parameters)};
+  const Eigen::MatrixXd white = Whitened(FilteredAt(family, place), data.time, data.jacobian);
+  return {log_likelihood,
+          process.memory,
+          std::sqrt(process.variance),
+          shift,
+          static_cast<int>(family.parameters),
+          white.transpose() * white};
 }
 
 }  // namespace

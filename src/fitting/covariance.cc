@@ -3,9 +3,25 @@
 
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace pendulum {
+
+namespace {
+
+/// The inverse by Cholesky's factors, a tenth of the work of eigenvalues; false where they lose half of the digits.
+bool WellConditionedInverse(const Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
+  constexpr double kHalfOfTheDigits = 1e-8;
+  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+  if (factor.info() != Eigen::Success || !(factor.rcond() > kHalfOfTheDigits)) return false;
+  const auto size = matrix.rows();
+  const Eigen::MatrixXd root = factor.matrixL().solve(Eigen::MatrixXd::Identity(size, size));
+  inverse = root.transpose() * root;
+  return true;
+}
+
+}  // namespace
 
 /// Scaled to unit diagonal, so that parameters of very different size do not look dependent.
 InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
@@ -19,6 +35,11 @@ InformationInverse InvertInformation(const Eigen::MatrixXd& information, const s
   if (!inverse.direction.empty()) return inverse;
   const Eigen::VectorXd scale = norms.cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information(free, free) * scale.asDiagonal();
+  if (WellConditionedInverse(scaled, inverse.matrix)) {
+    inverse.identifiable = true;
+    inverse.matrix = (scale.asDiagonal() * inverse.matrix * scale.asDiagonal()).eval();
+    return inverse;
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   const Eigen::VectorXd& values = eigen.eigenvalues();  // in increasing order
   constexpr double kSmallest = 1e-12;

@@ -14,20 +14,10 @@
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/search.h"
 #include "pendulum/trajectory/tolerance.h"
+#include "trace_error.h"
 
 namespace pendulum {
 namespace {
-
-/// The readings at a solution, and their largest difference to those of a hundredth of the tolerance.
-bool MeasureAccuracy(TrajectoryCost& cost, double tolerance, Solution& solution) {
-  Eigen::VectorXd finer;
-  cost.set_tolerance(1e-2 * tolerance);
-  const bool finer_traced = cost.Readings(solution.parameters, &finer, nullptr);
-  cost.set_tolerance(tolerance);
-  if (!cost.Readings(solution.parameters, &solution.readings, nullptr) || !finer_traced) return false;
-  solution.trace_error = (solution.readings - finer).cwiseAbs().maxCoeff();
-  return true;
-}
 
 /// Takes whole turns out of the zero, which a search near the top may have put in: the same readings with the zero next
 /// to that of the turning points.
@@ -44,9 +34,7 @@ void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
-  constexpr double kSmallestError = 1e-12;  // rad; rounding over a long recording comes near it
-  constexpr int kMostRefinements = 3;
-  const double max_error = std::max(std::min(options.max_trace_error, 1e-3 * problem.data.scale), kSmallestError);
+  const double max_error = MaxTraceError(problem, options);
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
   cost.set_tolerance(tolerance);
   const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
@@ -56,9 +44,9 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   TakeTurnsOut(problem, solution);
   MaximizeLikelihood(cost, problem, options, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
-    solution.usable = MeasureAccuracy(cost, tolerance, solution);
-    if (solution.trace_error <= max_error || refinement == kMostRefinements) break;
-    tolerance = std::max(1e-2 * tolerance, 1e-17);
+    solution.usable = MeasureTraceError(cost, tolerance, solution);
+    if (solution.trace_error <= max_error || refinement == kMostTraceRefinements) break;
+    tolerance = FinerTolerance(tolerance);
     cost.set_tolerance(tolerance);
     solution = Continue(cost, solution, problem.solve);
   }

@@ -33,44 +33,6 @@ void SetInterval(const FitProblem& problem, int parameter, const std::optional<d
   report.parameters[i].upper95 = reported(upper);
 }
 
-bool NearBound(const FittedModel& fitted, const Errors& errors) {
-  constexpr double kNear = 3;  // standard errors
-  const SolveOptions& solve = fitted.problem.solve;
-  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
-    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
-    const double reach = kNear * std::sqrt(errors.covariance(static_cast<Index>(row), static_cast<Index>(row)));
-    const double at = fitted.solution.parameters[i];
-    if (at - reach < solve.lower[i] || at + reach > solve.upper[i]) return true;
-  }
-  return !fitted.optimum.at_bound.empty();
-}
-
-/// Estimate ± t std_error, within the bounds.
-void SetCovarianceIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
-  const SolveOptions& solve = fitted.problem.solve;
-  for (std::size_t row = 0; row < fitted.optimum.free.size(); ++row) {
-    const auto i = static_cast<std::size_t>(fitted.optimum.free[row]);
-    const auto k = static_cast<Index>(row);
-    const double length = errors.t95[k] * std::sqrt(errors.covariance(k, k));
-    const double at = fitted.solution.parameters[i];
-    const double lowest = i == 0 ? 0.0 : solve.lower[i];  // inertia is positive
-    SetInterval(fitted.problem, fitted.optimum.free[row], std::max(at - length, lowest),
-                std::min(at + length, solve.upper[i]), report);
-  }
-  for (const int i : fitted.optimum.at_bound) {
-    report.parameters[static_cast<std::size_t>(i)].open_interval =
-        "at its bound; --interval profile gives the other end";
-    const double at = fitted.solution.parameters[static_cast<std::size_t>(i)];
-    const bool low = BoundSide(solve, static_cast<std::size_t>(i), at) < 0;
-    SetInterval(fitted.problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at),
-                report);
-  }
-  if (errors.t95.size() == 0) return;
-  const std::string least = NumberText(errors.t95.minCoeff(), 4);
-  const std::string most = NumberText(errors.t95.maxCoeff(), 4);
-  report.interval_method = "estimate ± " + (least == most ? least : least + " to " + most) + " standard errors";
-}
-
 /// The points of a profile as the report has them.
 ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const ProfileInterval& interval) {
   const auto i = static_cast<std::size_t>(parameter);
@@ -85,20 +47,12 @@ ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const Profi
 }
 
 void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
-  const SolveOptions& solve = fitted.problem.solve;
   std::vector<int> parameters = NotFixed(fitted.optimum);
   std::ranges::sort(parameters);
   for (const int i : parameters) {
-    const ProfileInterval interval =
-        ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i);
-    const auto k = static_cast<std::size_t>(i);
-    report.parameters[k].open_interval = interval.open;
-    if (interval.lower == solve.lower[k] && interval.upper == solve.upper[k]) {
-      report.parameters[k].open_interval = "no value that it may have is excluded";
-    } else {
-      SetInterval(fitted.problem, i, interval.lower, interval.upper, report);
-    }
-    if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(fitted.problem, i, interval));
+    SetProfileInterval(
+        fitted.problem, i,
+        ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i), report);
   }
   report.interval_method = "profile likelihood";
 }
@@ -227,6 +181,53 @@ Optimum WithoutBounds(const Optimum& optimum) {
 
 }  // namespace
 
+bool IsNearBound(const SolveOptions& solve, const Optimum& optimum, const std::vector<double>& parameters,
+                 const Eigen::MatrixXd& covariance) {
+  constexpr double kNear = 3;  // standard errors
+  for (std::size_t row = 0; row < optimum.free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(optimum.free[row]);
+    const double reach = kNear * std::sqrt(covariance(static_cast<Index>(row), static_cast<Index>(row)));
+    if (parameters[i] - reach < solve.lower[i] || parameters[i] + reach > solve.upper[i]) return true;
+  }
+  return !optimum.at_bound.empty();
+}
+
+void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution, const Optimum& optimum,
+                            const Errors& errors, FitReport& report) {
+  const SolveOptions& solve = problem.solve;
+  for (std::size_t row = 0; row < optimum.free.size(); ++row) {
+    const auto i = static_cast<std::size_t>(optimum.free[row]);
+    const auto k = static_cast<Index>(row);
+    const double length = errors.t95[k] * std::sqrt(errors.covariance(k, k));
+    const double at = solution.parameters[i];
+    const double lowest = i == 0 ? 0.0 : solve.lower[i];  // inertia is positive
+    SetInterval(problem, optimum.free[row], std::max(at - length, lowest), std::min(at + length, solve.upper[i]),
+                report);
+  }
+  for (const int i : optimum.at_bound) {
+    report.parameters[static_cast<std::size_t>(i)].open_interval =
+        "at its bound; --interval profile gives the other end";
+    const double at = solution.parameters[static_cast<std::size_t>(i)];
+    const bool low = BoundSide(solve, static_cast<std::size_t>(i), at) < 0;
+    SetInterval(problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at), report);
+  }
+  if (errors.t95.size() == 0) return;
+  const std::string least = NumberText(errors.t95.minCoeff(), 4);
+  const std::string most = NumberText(errors.t95.maxCoeff(), 4);
+  report.interval_method = "estimate ± " + (least == most ? least : least + " to " + most) + " standard errors";
+}
+
+void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileInterval& interval, FitReport& report) {
+  const auto k = static_cast<std::size_t>(parameter);
+  report.parameters[k].open_interval = interval.open;
+  if (interval.lower == problem.solve.lower[k] && interval.upper == problem.solve.upper[k]) {
+    report.parameters[k].open_interval = "no value that it may have is excluded";
+  } else {
+    SetInterval(problem, parameter, interval.lower, interval.upper, report);
+  }
+  if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(problem, parameter, interval));
+}
+
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
   constexpr std::size_t kMostSamples = 200'000;  // the matrices of a draw fill the memory
   const bool asked = fitted.options.interval == IntervalMethod::kAuto;
@@ -239,10 +240,11 @@ std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, F
   if (!posterior) return std::nullopt;
   MoveTo(linear, *posterior, fitted, optimum.free, report);
   errors.covariance = posterior->covariance;
-  errors.sigma = posterior->sigma_std_dev;
-  errors.method = "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";
+  errors.runs[0].sigma = posterior->sigma_std_dev;
+  errors.runs[0].method =
+      "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";
   fitted.solution.noise.sigma = posterior->sigma;
-  report.interval_method = "quantiles of the posterior";
+  report.interval_method = kPosteriorIntervals;
   return optimum;
 }
 
@@ -250,11 +252,13 @@ void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& re
   switch (fitted.options.interval) {
     case IntervalMethod::kBootstrap: return SetBootstrapIntervals(fitted, report);
     case IntervalMethod::kProfile: return SetProfileIntervals(fitted, report);
-    case IntervalMethod::kCovariance: return SetCovarianceIntervals(fitted, errors, report);
-    case IntervalMethod::kAuto: break;
+    case IntervalMethod::kCovariance: break;
+    case IntervalMethod::kAuto:
+      if (IsNearBound(fitted.problem.solve, fitted.optimum, fitted.solution.parameters, errors.covariance)) {
+        return SetProfileIntervals(fitted, report);
+      }
   }
-  if (NearBound(fitted, errors)) return SetProfileIntervals(fitted, report);
-  SetCovarianceIntervals(fitted, errors, report);
+  SetCovarianceIntervals(fitted.problem, fitted.solution, fitted.optimum, errors, report);
 }
 
 namespace {

@@ -109,6 +109,8 @@ double GaussianLogLikelihood(double rss, double samples) {
   return -0.5 * samples * (std::log(2 * kPi * std::max(rss, std::numeric_limits<double>::min()) / samples) + 1);
 }
 
+}  // namespace
+
 double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
   const auto value = problem.data.values();
   const auto samples = static_cast<double>(value.size());
@@ -122,7 +124,6 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
          densities * std::log(DensityUnit(problem.resolution));
 }
 
-}  // namespace
 
 /// Below one resolution rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008,
 /// section 5.1).

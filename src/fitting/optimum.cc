@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -12,10 +13,10 @@ namespace {
 using Eigen::Index;
 
 /// Information of the priors over the free parameters.
-Eigen::MatrixXd PriorInformation(const TrajectoryCost& cost, const std::vector<int>& free) {
+Eigen::MatrixXd PriorInformation(std::span<const PriorTerm> priors, const std::vector<int>& free) {
   const auto size = static_cast<Index>(free.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-  for (const PriorTerm& prior : cost.priors()) {
+  for (const PriorTerm& prior : priors) {
     const Index i = std::ranges::find(free, prior.parameter) - free.begin();
     if (i < size) information(i, i) += prior.weight * prior.weight;
   }
@@ -47,24 +48,8 @@ SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
 /// The inverse of a symmetric matrix scaled to unit diagonal; empty when it has none.
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& matrix) {
   std::vector<int> all(static_cast<std::size_t>(matrix.rows()));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  std::iota(all.begin(), all.end(), 0);
   return InvertInformation(matrix, all).matrix;
-}
-
-/// The likelihood's own covariance, σ estimated beside the parameters.
-void SetLikelihoodErrors(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum,
-                         const SampleTerms& terms, const Eigen::MatrixXd& jacobian, Errors& errors) {
-  const Index size = jacobian.cols();
-  Eigen::MatrixXd joint(size + 1, size + 1);
-  joint.topLeftCorner(size, size) =
-      jacobian.transpose() * terms.information.asDiagonal() * jacobian + PriorInformation(cost, optimum.free);
-  joint.col(size).head(size) = jacobian.transpose() * terms.mixed;
-  joint.row(size).head(size) = joint.col(size).head(size).transpose();
-  joint(size, size) = terms.sigma_information;
-  const Eigen::MatrixXd inverse = Inverse(joint);
-  if (inverse.size() == 0) return;
-  errors.covariance = inverse.topLeftCorner(size, size);
-  errors.sigma = solution.noise.sigma * std::sqrt(inverse(size, size));
 }
 
 /// The covariance of the scores, Σ_ij ∇m_i cov(s_i, s_j) ∇m_j'. Of different samples it is that of their quantile
@@ -81,29 +66,76 @@ Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const
   return (correlated - jacobian.transpose() * lost.asDiagonal() * jacobian) / variance;
 }
 
-/// A^-1 B A^-1, and what it says of the residuals.
-struct Sandwich {
-  Eigen::MatrixXd covariance;
-  double lost = 0;  // tr(A^-1 B): how much of N variances the parameters took from the residuals
+/// Jᵀ W J. A robust family's information is that of the mean, for its meat is that of the mean square score (P. J.
+/// Huber, Robust Statistics, Wiley 1981, section 7.6); readings at an end of the range say less than the mean.
+Eigen::MatrixXd InformationOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
+                              const Eigen::MatrixXd& jacobian) {
+  const bool by_mean = noise.IsRobust() && problem.censored == 0;
+  const Eigen::VectorXd weight =
+      by_mean ? Eigen::VectorXd::Constant(jacobian.rows(), terms.information.mean()) : terms.information;
+  return jacobian.transpose() * weight.asDiagonal() * jacobian;
+}
+
+bool IsWhite(const FittedRun& run) { return run.correlation.kind == Autocorrelation::Kind::kWhite; }
+
+/// Whether least squares say everything: normal noise without memory.
+bool IsSimple(const FittedRun& run) { return run.solution.noise.IsPlain() && IsWhite(run); }
+
+/// What one recording says of those F of its parameters that are free.
+struct Part {
+  std::vector<Index> rows;          // F: where they stand among all free ones
+  Eigen::MatrixXd bread, meat;      // F x F: information, and the covariance of the scores
+  Eigen::VectorXd mixed;            // F: information of a parameter and log σ
+  double sigma_information = 0;     // of log σ
+  double samples = 0, counted = 0;  // N; parameters that σ² has counted already, as its 1 / (N - counted)
 };
 
-/// A robust family's A is that of the mean information, for its B is that of the mean square score (P. J. Huber, Robust
-/// Statistics, Wiley 1981, section 7.6).
-Sandwich MakeSandwich(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
-                      const Optimum& optimum, const SampleTerms& terms, const Eigen::MatrixXd& jacobian,
-                      const Autocorrelation& correlation) {
-  const Eigen::MatrixXd prior = PriorInformation(cost, optimum.free);
-  Eigen::MatrixXd bread = optimum.inverse.matrix;
-  if (solution.noise.IsRobust()) {
-    // Readings at an end of the range say less than the mean.
-    const bool alike = problem.censored == 0;
-    const Eigen::VectorXd weight =
-        alike ? Eigen::VectorXd::Constant(jacobian.rows(), terms.information.mean()) : terms.information;
-    const Eigen::MatrixXd mean = Inverse(jacobian.transpose() * weight.asDiagonal() * jacobian + prior);
-    if (mean.size() > 0) bread = mean;
+/// A recording's parameters that are free, and where those stand among all free ones.
+std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std::vector<Index>& rows) {
+  std::vector<Index> columns;
+  for (std::size_t j = 0; j < run.at.size(); ++j) {
+    const auto place = std::ranges::find(optimum.free, run.at[j]);
+    if (place == optimum.free.end()) continue;
+    rows.push_back(place - optimum.free.begin());
+    columns.push_back(static_cast<Index>(j));
   }
-  const Eigen::MatrixXd meat = MeatOf(problem, solution.noise, terms, jacobian, correlation);
-  return {bread * (meat + prior) * bread, (bread * meat).trace()};
+  return columns;
+}
+
+/// The sums say it all, and the cost has them ready.
+void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
+  Eigen::MatrixXd sums, priors;
+  run.cost.Sums(run.solution.parameters, &sums);  // known to be traced: the optimum was
+  priors.setZero(sums.rows(), sums.cols());
+  AddPriors(run.cost.priors(), run.solution.parameters, &priors);
+  part.bread = part.meat = (sums - priors)(columns, columns);
+}
+
+Part PartOf(const FittedRun& run, const Optimum& optimum) {
+  Part part;
+  part.samples = static_cast<double>(run.problem.data.time.size());
+  const std::vector<Index> columns = FreeColumns(run, optimum, part.rows);
+  if (IsSimple(run)) {
+    SetSimple(run, columns, part);
+    return part;
+  }
+  const NoiseModel& noise = run.solution.noise;
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd all;
+  run.cost.Readings(run.solution.parameters, &readings, &all);  // known to be traced: the optimum was
+  const Eigen::MatrixXd jacobian = all(Eigen::all, columns);
+  const SampleTerms terms = TermsOf(run.problem, run.solution);
+  part.bread = InformationOf(run.problem, noise, terms, jacobian);
+  part.mixed = jacobian.transpose() * terms.mixed;
+  part.sigma_information = terms.sigma_information;
+  if (!IsWhite(run) || noise.IsRobust()) {
+    part.meat = MeatOf(run.problem, noise, terms, jacobian, run.correlation);
+  } else {
+    // σ is estimated beside the parameters.
+    if (!noise.IsPlain()) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
+    part.meat = part.bread;
+  }
+  return part;
 }
 
 std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation) {
@@ -118,7 +150,7 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
 
 }  // namespace
 
-std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution) {
   Optimum optimum;
   Eigen::MatrixXd sums;
   if (!solution.usable || !cost.Sums(solution.parameters, &sums)) return std::nullopt;
@@ -126,8 +158,8 @@ std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost
   optimum.information = sums.topLeftCorner(size, size);
   optimum.gradient = sums.col(size).head(size);
   for (int i = 0; i < static_cast<int>(size); ++i) {
-    if (problem.solve.fixed[i]) continue;
-    const int side = BoundSide(problem.solve, static_cast<std::size_t>(i), solution.parameters[i]);
+    if (options.fixed[i]) continue;
+    const int side = BoundSide(options, static_cast<std::size_t>(i), solution.parameters[i]);
     const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
     (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
   }
@@ -161,49 +193,79 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   return t95;
 }
 
-/// The inverse information, or a sandwich where the family is robust or the residuals remember.
-Errors CovarianceErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                        const Optimum& optimum, const Autocorrelation& correlation) {
-  const auto samples = static_cast<double>(problem.data.time.size());
-  const auto free = static_cast<double>(optimum.free.size());
-  const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
-  Errors errors;
-  errors.effective_samples = std::max(samples / std::max(correlation.VarianceInflation(), 1.0), 1.0);
-  errors.method = MethodOf(solution.noise, correlation);
-  errors.covariance = optimum.inverse.matrix;
-  if (solution.noise.IsPlain()) errors.sigma = solution.noise.sigma / std::sqrt(2 * std::max(samples - free, 1.0));
-  if ((solution.noise.IsPlain() && white) || optimum.free.empty()) return errors;
-  const SampleTerms terms = TermsOf(problem, solution);
-  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
-  if (!solution.noise.IsPlain()) SetLikelihoodErrors(cost, solution, optimum, terms, jacobian, errors);
-  if (solution.noise.IsRobust()) {
-    errors.sigma = RobustSigmaError(solution.noise, problem.data.values(), solution.readings);
+/// σ's standard error beside parameters of covariance C.
+std::optional<double> SigmaError(const FittedRun& run, const Part& part, const Eigen::MatrixXd& covariance) {
+  const NoiseModel& noise = run.solution.noise;
+  if (noise.IsRobust()) return RobustSigmaError(noise, run.problem.data.values(), run.solution.readings);
+  const Eigen::VectorXd traded = part.mixed / part.sigma_information;
+  return noise.sigma * std::sqrt(1 / part.sigma_information + traded.dot(covariance(part.rows, part.rows) * traded));
+}
+
+NoiseErrors NoiseErrorsOf(const FittedRun& run) {
+  const auto samples = static_cast<double>(run.problem.data.time.size());
+  return {std::nullopt, std::max(samples / std::max(run.correlation.VarianceInflation(), 1.0), 1.0),
+          MethodOf(run.solution.noise, run.correlation)};
+}
+
+/// The sandwich of all recordings' information and covariance of scores; each recording's share of the parameters is
+/// what its σ and its residuals' memory are short of.
+void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& parts, const Eigen::MatrixXd& prior,
+                   Errors& errors) {
+  Eigen::MatrixXd information = prior;
+  for (const Part& part : parts) information(part.rows, part.rows) += part.bread;
+  Eigen::MatrixXd inverse = Inverse(information);
+  if (inverse.size() == 0) inverse = errors.covariance;
+  Eigen::MatrixXd meat = prior;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const Part& part = parts[k];
+    const Eigen::MatrixXd own = inverse(part.rows, part.rows);
+    const double lost = (own * part.meat).trace();
+    const double counted = runs[k].solution.noise.IsPlain() ? (own * part.bread).trace() : 0;
+    meat(part.rows, part.rows) += (part.samples - counted) / std::max(part.samples - lost, 1.0) * part.meat;
+    if (!runs[k].solution.noise.IsPlain()) errors.runs[k].sigma = SigmaError(runs[k], part, inverse);
   }
-  if (errors.sigma) *errors.sigma *= std::sqrt(correlation.SquaredInflation());
-  const double counted = solution.noise.IsPlain() ? free : 0;  // of the parameters, in σ
-  if (!white || solution.noise.IsRobust()) {
-    const Sandwich sandwich = MakeSandwich(cost, problem, solution, optimum, terms, jacobian, correlation);
-    errors.covariance = sandwich.covariance * (samples - counted) / std::max(samples - sandwich.lost, 1.0);
-  } else {
-    errors.covariance *= samples / std::max(samples - free, 1.0);
-  }
-  return errors;
+  errors.covariance = inverse * meat * inverse;
 }
 
 }  // namespace
 
-Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                     const Optimum& optimum, const Autocorrelation& correlation) {
-  Errors errors = CovarianceErrors(problem, cost, solution, optimum, correlation);
+Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum) {
+  Errors errors;
+  double samples = 0;
+  for (const FittedRun& run : runs) {
+    samples += static_cast<double>(run.problem.data.time.size());
+    errors.runs.push_back(NoiseErrorsOf(run));
+  }
+  errors.covariance = optimum.inverse.matrix;
+  const bool simple = std::ranges::all_of(runs, IsSimple) || optimum.free.empty();
+  if (!simple) {
+    std::vector<Part> parts;
+    for (const FittedRun& run : runs) parts.push_back(PartOf(run, optimum));
+    SetCovariance(runs, parts, PriorInformation(priors, optimum.free), errors);
+  }
   const bool sound =
       errors.covariance.allFinite() && (errors.covariance.size() == 0 || errors.covariance.diagonal().minCoeff() > 0);
-  if (!sound) {  // a memory that alternates may leave less than nothing of a direction
-    errors.covariance = optimum.inverse.matrix;
-    errors.method = "inverse information, residuals taken as independent: with their memory it has no inverse";
+  if (!sound) errors.covariance = optimum.inverse.matrix;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    NoiseErrors& own = errors.runs[k];
+    const auto count = static_cast<double>(runs[k].problem.data.time.size());
+    const double free = static_cast<double>(optimum.free.size()) / static_cast<double>(runs.size());
+    const NoiseModel& noise = runs[k].solution.noise;
+    if (noise.IsPlain()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
+    if (own.sigma) *own.sigma *= std::sqrt(runs[k].correlation.SquaredInflation());
+    // A memory that alternates may leave less than nothing of a direction.
+    if (!sound) own.method = "inverse information, residuals taken as independent: with their memory it has no inverse";
   }
-  const bool white = correlation.kind == Autocorrelation::Kind::kWhite;
-  errors.t95 = StudentT95(errors.covariance, optimum, static_cast<double>(problem.data.time.size()), white);
+  errors.t95 = StudentT95(errors.covariance, optimum, samples, std::ranges::all_of(runs, IsWhite));
   return errors;
+}
+
+Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                     const Optimum& optimum, const Autocorrelation& correlation) {
+  FittedRun run{problem, cost, solution, correlation, {}};
+  run.at.resize(problem.infos.size());
+  std::iota(run.at.begin(), run.at.end(), 0);
+  return ComputeErrors({&run, 1}, cost.priors(), optimum);
 }
 
 }  // namespace pendulum

@@ -14,19 +14,19 @@ using Eigen::Index;
 /// fixed σ, which accounts for σ and for residuals that remember.
 class Profile {
  public:
-  Profile(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution, Optimum optimum,
-          const Autocorrelation& correlation, int k)
-      : cost_(cost), problem_(problem), solution_(solution), optimum_(std::move(optimum)), k_(k) {
+  Profile(LeastSquares& cost, const SolveOptions& options, const Solution& solution, Optimum optimum,
+          const ErrorsOf& errors_of, double samples, int k)
+      : cost_(cost), options_(options), solution_(solution), optimum_(std::move(optimum)), samples_(samples), k_(k) {
     if (std::ranges::find(optimum_.free, k) == optimum_.free.end()) {
       optimum_.free.push_back(k);
       optimum_.inverse = InvertInformation(optimum_.information, optimum_.free);
     }
     if (!optimum_.inverse.identifiable) return;
     const Index row = std::ranges::find(optimum_.free, k) - optimum_.free.begin();
-    const Errors errors = ComputeErrors(problem, cost, solution, optimum_, correlation);
+    const Errors errors = errors_of(optimum_);
     const double naive = optimum_.inverse.matrix(row, row);
     length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
-    last_trace_ = cost.traces() + Budget(problem);
+    last_trace_ = cost.traces() + Budget();
     threshold_ = length_ * length_ / naive;
     t95_ = errors.t95[row];
     points_.push_back({At(), 0});
@@ -38,7 +38,7 @@ class Profile {
   /// How far the likelihood reaches on a side (-1 or 1), or nothing.
   std::optional<double> Reach(double side) {
     const auto index = static_cast<std::size_t>(k_);
-    const double bound = side < 0 ? problem_.solve.lower[index] : problem_.solve.upper[index];
+    const double bound = side < 0 ? options_.lower[index] : options_.upper[index];
     const double farthest = std::min(std::abs(bound - At()), kFarthest * length_);
     if (farthest == 0) return 0;
     return Find(side, farthest);
@@ -54,7 +54,7 @@ class Profile {
   /// those that the search for the ends left far beyond them apart.
   std::vector<ProfilePoint> SpreadPoints(double down, double up) {
     constexpr double kFarBeyond = 4;  // thresholds
-    last_trace_ = cost_.traces() + Budget(problem_);
+    last_trace_ = cost_.traces() + Budget();
     SpreadOver(-down);
     SpreadOver(up);
     std::erase_if(points_, [&](const ProfilePoint& p) { return p.statistic > kFarBeyond * threshold(); });
@@ -77,15 +77,16 @@ class Profile {
   static constexpr double kFarthest = 100;  // lengths
   static constexpr double kNegligible = 0.05;
 
-  /// Trajectories for one parameter: a profile that can be followed takes some tens.
-  static int Budget(const FitProblem& problem) {
+  /// Trajectories for one parameter: a profile that can be followed takes some tens of each recording.
+  int Budget() const {
     constexpr double kSamples = 2e6;
-    return static_cast<int>(std::clamp(kSamples / static_cast<double>(problem.data.time.size()), 100.0, 400.0));
+    const double runs = cost_.runs();
+    return static_cast<int>(runs * std::clamp(kSamples * runs / samples_, 100.0, 400.0));
   }
 
   /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
   double RootAt(double distance, double side) {
-    SolveOptions options = problem_.solve;
+    SolveOptions options = options_;
     options.fixed[static_cast<std::size_t>(k_)] = true;
     options.max_traces = last_trace_;
     std::vector<double> start = solution_.parameters;
@@ -150,10 +151,11 @@ class Profile {
     return inside + std::clamp(share, 0.05, 0.95) * (outside - inside);
   }
 
-  TrajectoryCost& cost_;
-  const FitProblem& problem_;
+  LeastSquares& cost_;
+  const SolveOptions& options_;
   const Solution& solution_;
   Optimum optimum_;
+  double samples_;
   int k_;
   bool found_lower_ = false;
   int last_trace_ = 0;
@@ -166,17 +168,17 @@ class Profile {
 
 }  // namespace
 
-ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
-                                 const Optimum& optimum, const Autocorrelation& correlation, int k) {
+ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
+                                 const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k) {
   const auto index = static_cast<std::size_t>(k);
-  Profile profile(cost, problem, solution, optimum, correlation, k);
+  Profile profile(cost, options, solution, optimum, errors_of, samples, k);
   ProfileInterval interval;
   if (!profile.is_defined()) {
     interval.open = "the recording does not determine it beside the others";
     return interval;
   }
-  const double lower = problem.solve.lower[index];
-  const double upper = problem.solve.upper[index];
+  const double lower = options.lower[index];
+  const double upper = options.upper[index];
   const std::optional<double> down = profile.Reach(-1);
   const std::optional<double> up = profile.Reach(1);
   if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
@@ -197,6 +199,13 @@ ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem
   if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();  // no curve, but the ends hold
   interval.threshold = profile.threshold();
   return interval;
+}
+
+ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
+                                 const Optimum& optimum, const Autocorrelation& correlation, int k) {
+  const auto errors_of = [&](const Optimum& freed) { return ComputeErrors(problem, cost, solution, freed, correlation); };
+  return ProfileParameter(cost, problem.solve, solution, optimum, errors_of,
+                          static_cast<double>(problem.data.time.size()), k);
 }
 
 }  // namespace pendulum

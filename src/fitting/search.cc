@@ -53,7 +53,7 @@ std::vector<double> GrowingTimes(double begin, double end, double cycle) {
 
 /// How all parameters move when parameter k does and the others follow to keep the cost low: a column of the inverse of
 /// J'J over the free parameters, with a 1 at k; empty where the data do not determine it.
-Eigen::VectorXd ProfileDirection(const TrajectoryCost& cost, const std::vector<double>& at, int k,
+Eigen::VectorXd ProfileDirection(const LeastSquares& cost, const std::vector<double>& at, int k,
                                  const SolveOptions& options) {
   Eigen::MatrixXd sums;
   if (!cost.Sums(at, &sums)) return {};
@@ -82,7 +82,7 @@ std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift,
 
 /// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
 /// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
-std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<double>& from, double side,
+std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double>& from, double side,
                               const SolveOptions& options) {
   constexpr double kFirstShift = 1e-3;
   constexpr double kLargestShift = 0.2;
@@ -91,15 +91,15 @@ std::vector<double> NextBasin(const TrajectoryCost& cost, const std::vector<doub
   const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
   if (direction.size() == 0) return {};
   const auto shifted = [&](double shift) { return ShiftedAlong(direction, shift * from[k], from, options); };
-  const int reversals = cost.Trace(from).reversals;
+  const int reversals = cost.Reversals(from);
   for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
-    if (cost.Trace(shifted(side * shift)).reversals != reversals) return shifted(side * shift * kGrowth);
+    if (cost.Reversals(shifted(side * shift)) != reversals) return shifted(side * shift * kGrowth);
   }
   return {};
 }
 
 /// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
-Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveOptions& options) {
+Solution DescendBasins(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
     for (bool better = true; better && cost.traces() < options.max_traces;) {
@@ -122,26 +122,16 @@ Solution DescendBasins(TrajectoryCost& cost, const Solution& found, const SolveO
 
 /// Whether the pendulum comes to rest, at a minimum or with dry friction 1.2 % to either side along its profile: only
 /// then are there other minima near.
-bool MayReachRest(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& parameters,
-                  const SolveOptions& options) {
+bool MayReachRest(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options) {
   constexpr double kShift = 0.012;
-  const auto rests = [&](const std::vector<double>& at) { return cost.Trace(at).stop_time < data.time.back(); };
   const int k = options.holding_parameter;
-  if (k < 0 || rests(parameters)) return k >= 0;
+  if (k < 0 || !cost.ComesToRest(parameters, kShift * parameters[k])) return false;
+  if (cost.ComesToRest(parameters, 0)) return true;
   if (options.fixed[k] || !(parameters[k] > 0)) return false;
   const Eigen::VectorXd direction = ProfileDirection(cost, parameters, k, options);
   if (direction.size() == 0) return false;
-  return rests(ShiftedAlong(direction, kShift * parameters[k], parameters, options)) ||
-         rests(ShiftedAlong(direction, -kShift * parameters[k], parameters, options));
-}
-
-/// Solves over all samples, and goes on to the neighbouring minima where the pendulum comes to rest.
-Solution Refine(TrajectoryCost& cost, const TrajectoryData& data, const Solution& from, const SolveOptions& options) {
-  Solution solution = Continue(cost, from, options);
-  const int holding = options.holding_parameter;
-  if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
-  if (!MayReachRest(cost, data, solution.parameters, options)) return solution;
-  return DescendBasins(cost, solution, options);
+  return cost.ComesToRest(ShiftedAlong(direction, kShift * parameters[k], parameters, options), 0) ||
+         cost.ComesToRest(ShiftedAlong(direction, -kShift * parameters[k], parameters, options), 0);
 }
 
 /// Solves from `start`; where that does not explain the data, over the first three cycles, then twice as many and so
@@ -165,7 +155,7 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
     solution = SolveGrowing(cost, data, solution, options,
                             {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
   }
-  return Refine(cost, data, solution, options);
+  return Refine(cost, solution, options);
 }
 
 /// A stage of the search ends where it is after so many trajectories, and leaves some to the others.
@@ -203,10 +193,18 @@ bool IsSmall(const TrajectoryData& data, const Solution& solution) {
 
 }  // namespace
 
+Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& options) {
+  Solution solution = Continue(cost, from, options);
+  const int holding = options.holding_parameter;
+  if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
+  if (!MayReachRest(cost, solution.parameters, options)) return solution;
+  return DescendBasins(cost, solution, options);
+}
+
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
   Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
-  if (IsSmall(data, best) && !MayReachRest(cost, data, best.parameters, options)) return best;
+  if (IsSmall(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
   for (const int k : Removable(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);
@@ -215,7 +213,7 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGue
     if (other.usable) others.push_back({other.parameters, other.sum});
     best.other_minima = std::move(others);
     best.iterations += other.iterations;
-    if (better) best = Refine(cost, data, best, WithBudget(cost, options));
+    if (better) best = Refine(cost, best, WithBudget(cost, options));
   }
   return best;
 }

@@ -42,9 +42,10 @@ class StopAtBound final : public ceres::IterationCallback {
   const std::vector<bool>& held_;
 };
 
-ceres::Solver::Options SolverOptions(int max_iterations) {
+ceres::Solver::Options SolverOptions(int max_iterations, bool several) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
+  // Of several recordings each has few of the parameters.
+  solver.linear_solver_type = several ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
   solver.max_num_iterations = max_iterations;
   solver.function_tolerance = 1e-10;
   solver.gradient_tolerance = 1e-12;
@@ -57,14 +58,14 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
 }
 
 /// One run of Ceres over the parameters that are not held; ends at convergence or on a bound.
-void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
+void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.disable_all_safety_checks = true;
   ceres::Problem problem(problem_options);
   std::vector<double*> blocks;
   for (double& parameter : solution.parameters) blocks.push_back(&parameter);
-  problem.AddResidualBlock(&cost, nullptr, blocks);
+  cost.AddTo(problem, blocks);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (held[i]) {
       problem.SetParameterBlockConstant(blocks[i]);
@@ -74,7 +75,7 @@ void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bo
     if (std::isfinite(options.upper[i])) problem.SetParameterUpperBound(blocks[i], 0, options.upper[i]);
   }
   StopAtBound stop(solution.parameters, options, held);
-  ceres::Solver::Options solver = SolverOptions(options.max_iterations);
+  ceres::Solver::Options solver = SolverOptions(options.max_iterations, cost.runs() > 1);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
@@ -86,7 +87,7 @@ void Run(TrajectoryCost& cost, const SolveOptions& options, const std::vector<bo
 
 /// Parameters that the Gauss-Newton step from here carries to a bound, and which one: a step that Ceres found too
 /// small to make leaves them short of it.
-std::vector<std::pair<std::size_t, double>> CarriedToBound(const TrajectoryCost& cost, const SolveOptions& options,
+std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& cost, const SolveOptions& options,
                                                            const std::vector<bool>& held, const Solution& solution) {
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return {};
@@ -108,7 +109,7 @@ std::vector<std::pair<std::size_t, double>> CarriedToBound(const TrajectoryCost&
 }
 
 /// Of the parameters held at their bound, the one the cost pulls inwards most; -1 when there is none.
-int PulledInwards(const TrajectoryCost& cost, const SolveOptions& options, const std::vector<bool>& held,
+int PulledInwards(const LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held,
                   const Solution& solution) {
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return -1;
@@ -134,7 +135,7 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value) {
 
 /// An active-set method: a parameter whose step lands on its bound, or would, is held there, and let go when the cost
 /// pulls it inwards at the others' optimum.
-Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options) {
+Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;
   std::vector<bool> held = options.fixed;
@@ -160,7 +161,7 @@ Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const Sol
   return solution;
 }
 
-Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options) {
+Solution Continue(LeastSquares& cost, const Solution& from, const SolveOptions& options) {
   Solution solution = Solve(cost, from.parameters, options);
   if (!solution.usable) solution.parameters = from.parameters;
   solution.iterations += from.iterations;

@@ -127,7 +127,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       last_.samples = used_samples_;
     }
     *sums = last_.sums;
-    AddPriors(p, sums);
+    AddPriors(priors(), p, sums);
     return true;
   }
 
@@ -154,6 +154,14 @@ class TrajectoryCostFor final : public TrajectoryCost {
     ++traces_;
     const std::function<void(const Segment<double>&)> nothing = [](const Segment<double>&) {};
     return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing);
+  }
+
+  /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be safe.
+  bool ComesToRest(std::span<const double> p, double torque_change) const override {
+    constexpr double kSafe = 4;
+    const TraceSummary trace = Trace(p);
+    return trace.stop_time < data_.time.back() ||
+           trace.smallest_reversal_margin < kSafe * 2 * trace.reversals * torque_change;
   }
 
  private:
@@ -319,24 +327,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
 }  // namespace
 
-void TrajectoryCost::AddPriors(std::span<const double> parameters, Eigen::MatrixXd* sums) const {
-  const Eigen::Index residual = sums->rows() - 1;
-  for (const PriorTerm& prior : priors_) {
-    const double r = (parameters[prior.parameter] - prior.mean) * prior.weight;
-    (*sums)(prior.parameter, prior.parameter) += prior.weight * prior.weight;
-    (*sums)(prior.parameter, residual) += prior.weight * r;
-    (*sums)(residual, prior.parameter) += prior.weight * r;
-    (*sums)(residual, residual) += r * r;
-  }
-}
-
-double TrajectoryCost::PriorSum(std::span<const double> parameters) const {
-  double sum = 0;
-  for (const PriorTerm& prior : priors_) {
-    const double r = (parameters[prior.parameter] - prior.mean) * prior.weight;
-    sum += r * r;
-  }
-  return sum;
+void TrajectoryCost::AddTo(ceres::Problem& problem, const std::vector<double*>& parameters) {
+  problem.AddResidualBlock(this, nullptr, parameters);
 }
 
 std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,

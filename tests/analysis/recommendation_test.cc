@@ -50,7 +50,7 @@ Compared Make(const std::vector<Case>& cases) {
 
 Comparison Recommended(const std::vector<Case>& cases) {
   Compared made = Make(cases);
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   return made.comparison;
 }
 
@@ -83,7 +83,7 @@ TEST(Recommend, SaysWhatIsMissing) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   made.comparison.rows[1].lack_of_fit = true;
   made.comparison.rows[1].lag1_correlation = 0.6;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_THAT(made.comparison.reason,
               HasSubstr("but more than noise is left (lag-1 correlation 0.6): something else is missing"));
 }
@@ -91,21 +91,21 @@ TEST(Recommend, SaysWhatIsMissing) {
 // Where more than noise is left the smaller BIC alone does not do: the law must predict what it was not fitted to.
 TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
   Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 0.69}});
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
   for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
   EXPECT_EQ(made.comparison.reason,
             "drag: no other is better; stribeck has a smaller BIC, but what is left is no noise, and "
             "the last 40 % is predicted no better, or not at all; but more than noise is left (lag-1 correlation 0): "
             "something else is missing");
   made.comparison.rows[1].forward.rms = 0.6;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
   made.comparison.rows[1].forward.rms = 0.69;
   made.comparison.rows[1].rms = 0.6;  // slow noise: it predicts about as well as it fits
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
 }
 
@@ -114,7 +114,7 @@ TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
   Compared made = Make({{"coulomb", 50, 1}, {"drag", 53, 1}});
   made.comparison.rows[0].akaike_weight = 0.1;
   made.comparison.rows[1].akaike_weight = 0.9;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
   EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would take drag"));
 }
@@ -122,7 +122,7 @@ TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
 TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {
   Compared made = Make({{"viscous", 90, 1}, {"coulomb", 50, 1}, {"drag", 50, 1}});
   made.comparison.rows[1].log_likelihood = made.comparison.rows[2].log_likelihood = -20;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
   EXPECT_THAT(made.comparison.reason, Not(HasSubstr("drag")));
 }
@@ -130,7 +130,7 @@ TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {
 TEST(Recommend, RecommendsNothingWithoutACriterion) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   for (ComparisonRow& row : made.comparison.rows) row.bic = row.delta_bic = std::nullopt;
-  Recommend(made.fitted, made.comparison);
+  Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "");
   EXPECT_THAT(made.comparison.reason, Not(testing::IsEmpty()));
 }

@@ -86,7 +86,7 @@ void ExpectInverse(const Errors& errors, const Fitted& fitted, const MinusLog& m
       EXPECT_NEAR(errors.covariance(i, j) / counted / size, expected(i, j) / size, allowed) << i << ", " << j;
     }
   }
-  EXPECT_NEAR(*errors.sigma / fitted.solution.noise.sigma / std::sqrt(expected(6, 6)), 1, allowed);
+  EXPECT_NEAR(*errors.runs[0].sigma / fitted.solution.noise.sigma / std::sqrt(expected(6, 6)), 1, allowed);
 }
 
 TEST(ComputeErrors, OfLevelsAreTheInverseOfTheNumericInformationOfParametersAndSigma) {
@@ -109,7 +109,7 @@ TEST(RemainingShift, IsTheDistanceFromTheSolutionInStandardErrors) {
   // A step of half a standard error along the covariance's first column: so far is the likelihood's largest.
   const Eigen::MatrixXd covariance = fitted.StandardErrors().covariance;
   for (int i = 0; i < 6; ++i) fitted.solution.parameters[i] += 0.5 * covariance(i, 0) / std::sqrt(covariance(0, 0));
-  EXPECT_NEAR(RemainingShift(*Linearize(*fitted.problem, *fitted.cost, fitted.solution)), 0.5, 0.01);
+  EXPECT_NEAR(RemainingShift(*Linearize(fitted.problem->solve, *fitted.cost, fitted.solution)), 0.5, 0.01);
 }
 
 // ---- Scatter over seeds --------------------------------------------------------------------------------------------

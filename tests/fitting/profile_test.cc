@@ -72,6 +72,7 @@ class LineCost final : public TrajectoryCost {
     return true;
   }
   TraceSummary Trace(std::span<const double>) const override { return {}; }
+  bool ComesToRest(std::span<const double>, double) const override { return false; }
   void set_tolerance(double) override {}
   void set_used_samples(std::size_t) override {}
   void set_noise(const NoiseModel& noise) override { sigma_ = noise.sigma; }
@@ -115,7 +116,7 @@ ProfileInterval ProfileOfLine(const Line& line, const Disguise& disguise, double
   Solution solution = Solve(cost, {start, 0}, problem.solve);
   solution.noise = noise;
   EXPECT_TRUE(cost.Readings(solution.parameters, &solution.readings, nullptr));
-  const Optimum optimum = Linearize(problem, cost, solution).value();
+  const Optimum optimum = Linearize(problem.solve, cost, solution).value();
   return ProfileParameter(cost, problem, solution, optimum, {}, 0);
 }
 

@@ -27,6 +27,9 @@ struct OptionsForModel {
 /// The options for `model`, one of `models`.
 OptionsForModel ForModel(const FitOptions& options, const std::string& model, const std::vector<std::string>& models);
 
+/// Names of inertia and friction of any of the models.
+std::vector<std::string> PhysicalNames(const std::vector<std::string>& models);
+
 /// Fits each model to one free swing: the window is that of the richest law among them (FitSwing), and all begin as it
 /// does and have the noise family that the model of the smallest residuals asks for. One model is FitSwing. Errors as
 /// FitSwing; what only one of several models cannot do is a report that is kFailed.

@@ -57,6 +57,24 @@ struct LinearFit {
 std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
                                    const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds);
 
+/// The noise of a fit, with the sensor's range.
+NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options);
+
+/// Inertia and friction as the readings alone would have them, whatever bounds they have: K that are free, in the
+/// report's units.
+struct UnboundedEstimate {
+  std::vector<std::string_view> names;  ///< K
+  Eigen::VectorXd value;                ///< K
+  Eigen::MatrixXd covariance;           ///< K x K
+};
+
+/// A step from the fit to where the likelihood would be greatest without bounds. Nothing as Linearize.
+std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
+                                                   const std::optional<Rig>& rig);
+
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
+double SquaredLength(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
+
 /// A part of the recording, fitted once more.
 struct PartFit {
   Recording part;

@@ -27,6 +27,7 @@ struct CorrelatedLikelihood {
   double sigma = 0;           ///< standard deviation of z, same unit as the residuals
   Eigen::VectorXd shift;      ///< F, δ
   int parameters = 0;         ///< of memory and scale
+  Eigen::MatrixXd information;  ///< F x F, of δ at that memory
 };
 
 /// Exact Gaussian likelihood by a Kalman filter (A. C. Harvey, Forecasting, structural time series models and the

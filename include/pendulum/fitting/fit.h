@@ -129,6 +129,7 @@ struct FitReport {
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
+  StartValues start_values;  ///< Where the search began, in units of G.
   std::vector<Warning> warnings;
   double trace_error = 0;  ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
   Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.

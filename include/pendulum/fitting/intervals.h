@@ -3,6 +3,7 @@
 
 #include "pendulum/fitting/fit.h"
 #include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/profile.h"
 
 namespace pendulum {
 
@@ -26,9 +27,21 @@ std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, F
 /// Sets the 95 % interval of every parameter that is not fixed, by the method of options.interval.
 void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report);
 
+/// Whether a parameter is at a bound or within three standard errors of one: no parabola has its interval.
+bool IsNearBound(const SolveOptions& solve, const Optimum& optimum, const std::vector<double>& parameters,
+                 const Eigen::MatrixXd& covariance);
+
+/// Estimate ± t std_error, within the bounds.
+void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution, const Optimum& optimum,
+                            const Errors& errors, FitReport& report);
+
+/// One parameter's interval and curve.
+void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileInterval& interval, FitReport& report);
+
 /// Sets what the recording can tell of every parameter, from intervals, information and covariance.
 void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report);
 
 inline constexpr double kQuietSigma = 0.12;
+inline constexpr std::string_view kPosteriorIntervals = "quantiles of the posterior";  ///< FitReport::interval_method
 
 }  // namespace pendulum

@@ -21,6 +21,9 @@ ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double res
 /// quantized noise a σ of at least kSmallestSigma resolutions.
 void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options, Solution& solution);
 
+/// Of all samples at the solution's readings, as Solution::log_likelihood.
+double LogLikelihoodOf(const FitProblem& problem, const Solution& solution);
+
 inline constexpr double kSmallestSigma = 0.05;
 
 }  // namespace pendulum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Optimum {
 };
 
 /// Nothing when the trajectory cannot be traced.
-std::optional<Optimum> Linearize(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution);
+std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution);
 
 /// Derivatives of the readings by the free parameters, N x F; no rows when the trajectory cannot be traced.
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
@@ -31,17 +32,35 @@ Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solutio
 /// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
 double RemainingShift(const Optimum& optimum);
 
-/// Errors of the free parameters, and how they were obtained.
-struct Errors {
-  Eigen::MatrixXd covariance;    ///< F x F
+/// One recording's part in a fit of one or several.
+struct FittedRun {
+  const FitProblem& problem;
+  const TrajectoryCost& cost;
+  const Solution& solution;            ///< Its own P parameters and noise.
+  const Autocorrelation& correlation;  ///< Of its residuals.
+  std::vector<int> at;                 ///< P: where its parameters stand among those of the fit.
+};
+
+/// What is known of a recording's noise besides.
+struct NoiseErrors {
   std::optional<double> sigma;   ///< Standard error of σ, rad or rad/s.
-  Eigen::VectorXd t95;           ///< F, Student's t of N_k - F degrees of freedom, N_k / N as naive / true variance.
   double effective_samples = 0;  ///< N over the variance inflation 1 + 2 Σ ρ_k, at most N.
-  std::string method;
+  std::string method;            ///< How its part in the covariance was obtained.
+};
+
+/// Errors of the F free parameters of a fit.
+struct Errors {
+  Eigen::MatrixXd covariance;     ///< F x F
+  Eigen::VectorXd t95;            ///< F, Student's t of N_k - F degrees of freedom, N_k / N as naive / true variance.
+  std::vector<NoiseErrors> runs;  ///< One for each recording.
 };
 
 /// The covariance of the free parameters: the inverse of the observed information of parameters and log σ, and for a
-/// robust family or residuals that remember a sandwich of it (MODEL.md eq. (18), (28) to (30)).
+/// robust family or residuals that remember a sandwich of it (MODEL.md eq. (18), (28) to (30)); of several recordings
+/// from the sums of both (eq. (57)).
+Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum);
+
+/// Of one recording.
 Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                      const Optimum& optimum, const Autocorrelation& correlation);
 

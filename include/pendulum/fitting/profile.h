@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,10 +27,17 @@ struct ProfileInterval {
   double threshold = 0;              ///< Of the statistic at the ends: Student's t².
 };
 
+/// The errors of a fit when the free parameters are those of that optimum.
+using ErrorsOf = std::function<Errors(const Optimum&)>;
+
 /// The 95 % profile-likelihood interval of parameter k, free or at its bound (D. J. Venzon and S. H. Moolgavkar,
 /// Applied Statistics 37:87, 1988), with regard to residuals that remember (R. E. Chandler and S. Bate, Biometrika
 /// 94:167, 2007). An end beyond a bound is the bound. Its points are spread evenly over the interval, four or more on a
-/// side that has a length. Cost: about ten solves.
+/// side that has a length. samples: of all recordings. Cost: about ten solves.
+ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
+                                 const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k);
+
+/// Of one recording.
 ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
                                  const Optimum& optimum, const Autocorrelation& correlation, int k);
 

@@ -5,11 +5,16 @@
 #include <vector>
 
 #include "pendulum/fitting/solve.h"
+#include "pendulum/fitting/trajectory_cost.h"
 
 namespace pendulum {
 
 /// Where a search begins when these parameters (P) are fixed, their values included.
 using StartGuess = std::function<std::vector<double>(const std::vector<bool>& fixed)>;
+
+/// Solves over all samples from where `from` ended, and goes on to the neighbouring minima, on both sides along the
+/// profile of dry friction, where the pendulum comes to rest.
+Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& options);
 
 /// Looks for the lowest of several minima over a whole recording, from start values that may be rough: over growing
 /// parts of it, to either side where it reaches rest, and over the simpler laws within the friction law, so that a law

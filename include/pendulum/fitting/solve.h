@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/least_squares.h"
+#include "pendulum/fitting/noise.h"
 
 namespace pendulum {
 
@@ -19,7 +20,7 @@ struct SolveOptions {
   int release_time = -1;             ///< -1: the recording begins in motion.
   std::vector<int> late;             ///< Parameters that only small swings tell: held while the last part is left out.
   int max_iterations = 100;          ///< Of Ceres, for each run.
-  int max_traces = std::numeric_limits<int>::max();  ///< TrajectoryCost::traces() at which no further run is begun.
+  int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run is begun.
 };
 
 /// |r|² at P parameters where a search ended, as in Solution.
@@ -30,7 +31,7 @@ struct Minimum {
 
 /// A least-squares solution and what the solver did to reach it.
 struct Solution {
-  std::vector<double> parameters;  ///< P, TrajectoryCost's units.
+  std::vector<double> parameters;  ///< P, the cost's units.
   double sum = 0;                  ///< |r|², the deviance under the cost's noise.
   bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
   int iterations = 0;
@@ -48,9 +49,9 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
 /// Levenberg-Marquardt (Ceres) from `start` over the samples the cost uses; parameters stay within their bounds. Ends
 /// when the cost, not owned, changes by less than 1e-10 of itself: estimates within sqrt(1e-10 N) standard errors.
-Solution Solve(TrajectoryCost& cost, const std::vector<double>& start, const SolveOptions& options);
+Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.
-Solution Continue(TrajectoryCost& cost, const Solution& from, const SolveOptions& options);
+Solution Continue(LeastSquares& cost, const Solution& from, const SolveOptions& options);
 
 }  // namespace pendulum

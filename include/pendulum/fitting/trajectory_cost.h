@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <ceres/cost_function.h>
 
+#include "pendulum/fitting/least_squares.h"
 #include "pendulum/fitting/noise.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
@@ -29,12 +30,6 @@ struct TrajectoryData {
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
 };
 
-/// What is known of a parameter beside the recording, as a residual (p - mean) · weight beside those of the samples.
-struct PriorTerm {
-  int parameter = 0;
-  double mean = 0, weight = 0;  ///< In the cost's units; one over the standard deviation.
-};
-
 /// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
@@ -44,15 +39,8 @@ struct PriorTerm {
 /// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
 /// the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be
 /// traced or is released outside the data makes every function return false.
-class TrajectoryCost : public ceres::CostFunction {
+class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
-  /// |r|², the deviance of samples and priors, or false.
-  virtual bool SumOfSquares(std::span<const double> parameters, double* sum) const = 0;
-
-  /// The (P + 1) x (P + 1) symmetric matrix of sums [J'J, J'r; r'J, r'r], J = dr/dp: information, minus the gradient of
-  /// the log-likelihood, and the deviance; or false.
-  virtual bool Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) const = 0;
-
   /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
   virtual bool Readings(std::span<const double> parameters, Eigen::VectorXd* readings,
                         Eigen::MatrixXd* jacobian) const = 0;
@@ -67,14 +55,13 @@ class TrajectoryCost : public ceres::CostFunction {
   const std::vector<PriorTerm>& priors() const { return priors_; }
 
   /// The priors' part of |r|^2.
-  double PriorSum(std::span<const double> parameters) const;
+  double PriorSum(std::span<const double> parameters) const { return pendulum::PriorSum(priors_, parameters); }
 
-  /// Trajectories traced so far, with and without derivatives, for whatever purpose.
-  int traces() const { return traces_; }
+  void AddTo(ceres::Problem& problem, const std::vector<double*>& parameters) override;
+  int Reversals(std::span<const double> parameters) const override { return Trace(parameters).reversals; }
+  int traces() const override { return traces_; }
 
  protected:
-  void AddPriors(std::span<const double> parameters, Eigen::MatrixXd* sums) const;
-
   mutable int traces_ = 0;
 
  private:

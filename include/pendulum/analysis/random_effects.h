@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pendulum {
+
+/// A rig's constant from K runs that may scatter by more than their own errors: each run has a value of its own, drawn
+/// about the rig's with the standard deviation `between`. Unit of the values.
+struct RandomEffects {
+  double mean = 0, std_error = 0;
+  double lower95 = 0, upper95 = 0;                  ///< Of the mean.
+  double between = 0;                               ///< Standard deviation between runs; 0: errors explain all.
+  double between_lower95 = 0, between_upper95 = 0;  ///< Of `between`.
+};
+
+/// From values and their standard errors (K >= 2, positive): `between` of R. C. Paule and J. Mandel, J. Res. NBS 87:377
+/// (1982), its interval of W. Viechtbauer, Statistics in Medicine 26:37 (2007), the mean's error of J. Hartung and G.
+/// Knapp, Statistics in Medicine 20:3875 (2001), never below that of runs that agree, with Student's t of K - 1 degrees
+/// of freedom (MODEL.md eq. (60) and (61)).
+RandomEffects SummarizeScatter(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
+
+}  // namespace pendulum

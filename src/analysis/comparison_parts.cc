@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pendulum/analysis/fitted_motion.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Noise below this many counts, with memory, is neither Gaussian nor independent: no likelihood is known for it.
+constexpr double kSmallestSigma = 0.5;
+
+/// What is at the bound 0 leaves a simpler law; at another bound it has been used.
+bool Counts(const ParameterEstimate& parameter) {
+  return !parameter.fixed && !(parameter.at_bound && parameter.estimate == 0);
+}
+
+/// How far a parameter may move from its estimate within its bounds and the user's.
+std::pair<double, double> Room(const ParameterEstimate& parameter, const FitOptions& options) {
+  double lower = parameter.info.lower;
+  double upper = parameter.info.upper;
+  if (const auto own = options.bounds.find(parameter.info.name); own != options.bounds.end()) {
+    lower = std::max(lower, own->second.lower);
+    upper = std::min(upper, own->second.upper);
+  }
+  return {std::min(lower - parameter.estimate, 0.0), std::max(upper - parameter.estimate, 0.0)};
+}
+
+/// Residuals as small as the trajectory's own error are numbers', not a sensor's.
+bool IsRounding(const FitReport& best) { return best.statistics.rms_residual <= best.trace_error; }
+
+bool IsNormal(const FitReport& best) {
+  return best.noise.family == NoiseFamily::kGaussian || best.noise.family == NoiseFamily::kQuantized;
+}
+
+std::string WhyNone(const FitReport& best, const std::string& memory) {
+  const std::string residuals =
+      "the residuals of " + std::string(best.model.name) + ", the model nearest to the readings, ";
+  if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
+  const std::string why = best.noise.censored > 0 ? "readings at an end of the sensor's range"
+                          : IsNormal(best)        ? "noise below half a count"
+                                                  : "a robust loss";
+  return residuals + "remember (" + memory + "), and no likelihood is known for that with " + why;
+}
+
+}  // namespace
+
+ComparisonRow DescribeFit(const FitReport& fit) {
+  ComparisonRow row;
+  row.model = fit.model.name;
+  row.judged = fit.termination == Termination::kConverged;
+  if (!row.judged) row.reason = std::string(TerminationName(fit.termination)) + ": " + fit.reason;
+  if (fit.termination == Termination::kFailed) return row;
+  row.parameters = static_cast<int>(std::ranges::count_if(fit.parameters, Counts)) + 1;
+  row.rms = fit.statistics.rms_residual;
+  row.lag1_correlation = fit.noise.lag1_correlation;
+  row.ljung_box_p = fit.statistics.ljung_box_p;
+  row.lack_of_fit = fit.Warns("lack_of_fit");
+  return row;
+}
+
+const FitReport* BestFit(const std::vector<FitReport>& fits) {
+  const FitReport* best = nullptr;
+  for (const FitReport& fit : fits) {
+    if (fit.termination != Termination::kConverged || !std::isfinite(fit.statistics.aicc)) continue;
+    if (best == nullptr || fit.statistics.aicc < best->statistics.aicc) best = &fit;
+  }
+  return best;
+}
+
+std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit,
+                                               const FitOptions& options) {
+  const FittedMotion motion(used, fit, options.rig);
+  Eigen::MatrixXd jacobian;
+  const auto readings = motion.Readings(motion.instants(), &jacobian);
+  if (!readings) return std::nullopt;
+  CorrelatedResiduals data{motion.instants(), fit.residual, {}, {}, {}, 0};
+  std::vector<Index> columns;
+  std::vector<double> lowest, highest;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    if (fit.parameters[i].fixed) continue;
+    const auto [low, high] = Room(fit.parameters[i], options);
+    columns.push_back(static_cast<Index>(i));
+    lowest.push_back(low);
+    highest.push_back(high);
+  }
+  const auto free = static_cast<Index>(columns.size());
+  data.jacobian = jacobian(Eigen::all, columns);
+  data.lowest = Eigen::Map<const Eigen::VectorXd>(lowest.data(), free);
+  data.highest = Eigen::Map<const Eigen::VectorXd>(highest.data(), free);
+  data.rounding_variance = used.resolution * used.resolution / 12;
+  return data;
+}
+
+double PerCount(const Recording& used) {
+  return used.resolution > 0 ? static_cast<double>(used.size()) * std::log(used.resolution) : 0.0;
+}
+
+Autocorrelation SharedMemory(const FitReport& best) {
+  constexpr std::size_t kMostOrder = 8;
+  Autocorrelation memory = best.noise.memory;
+  if (memory.autoregressive.size() > kMostOrder) memory.autoregressive.assign(kMostOrder, 0.0);
+  return memory;
+}
+
+std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best) {
+  const std::string memory = SharedMemory(best).Name();
+  switch (likelihood) {
+    case Likelihood::kIndependent:
+      return "likelihood of independent " + std::string(NoiseFamilyName(best.noise.family)) + " residuals";
+    case Likelihood::kCorrelated:
+      return "Gaussian likelihood of residuals that remember, " + memory + " as those of " +
+             std::string(best.model.name) + ", with the variance of rounding added";
+    case Likelihood::kNone: return "none: " + WhyNone(best, memory);
+  }
+  return "";
+}
+
+Likelihood ChooseLikelihood(const FitReport& best, double resolution) {
+  if (IsRounding(best)) return Likelihood::kNone;
+  if (best.noise.memory.kind == Autocorrelation::Kind::kWhite) return Likelihood::kIndependent;
+  const bool is_loud = best.noise.sigma >= kSmallestSigma * resolution;
+  return IsNormal(best) && is_loud && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kNone;
+}
+
+void SetCriteria(double samples, double effective_samples, ComparisonRow& row) {
+  if (!row.log_likelihood) return;
+  const double k = row.parameters;
+  row.aic = 2 * k - 2 * *row.log_likelihood;
+  row.aicc = *row.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  row.bic = k * std::log(effective_samples) - 2 * *row.log_likelihood;
+}
+
+void SetDifferences(std::vector<ComparisonRow>& rows) {
+  double smallest_bic = kUnbounded, smallest_aicc = kUnbounded;
+  for (const ComparisonRow& row : rows) {
+    if (!row.bic) continue;
+    smallest_bic = std::min(smallest_bic, *row.bic);
+    smallest_aicc = std::min(smallest_aicc, *row.aicc);
+  }
+  double sum = 0;
+  for (ComparisonRow& row : rows) {
+    if (!row.bic) continue;
+    row.delta_bic = *row.bic - smallest_bic;
+    row.akaike_weight = std::exp(-0.5 * (*row.aicc - smallest_aicc));
+    sum += *row.akaike_weight;
+  }
+  for (ComparisonRow& row : rows) {
+    if (row.akaike_weight) *row.akaike_weight /= sum;
+  }
+}
+
+}  // namespace pendulum

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pendulum/analysis/model_comparison.h"
+#include "pendulum/fitting/arma_likelihood.h"
+
+namespace pendulum {
+
+ComparisonRow DescribeFit(const FitReport& fit);
+
+/// The judged fit of the smallest AICc; whether others have memory does not matter, for wrong laws leave some.
+const FitReport* BestFit(const std::vector<FitReport>& fits);
+
+/// The residuals of a fit about its estimates; nothing when its motion cannot be traced.
+std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit,
+                                               const FitOptions& options);
+
+/// log L of probabilities instead of densities, as the fits have it.
+double PerCount(const Recording& used);
+
+/// The memory that all models are given: that of the best one, of no more than kMostOrder. What a law does not explain
+/// looks like a process of very high order, of which the first few whiten nearly as well in a fraction of the time.
+Autocorrelation SharedMemory(const FitReport& best);
+
+/// What the criteria rest on, in words.
+std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best);
+
+Likelihood ChooseLikelihood(const FitReport& best, double resolution);
+
+/// AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978).
+void SetCriteria(double samples, double effective_samples, ComparisonRow& row);
+
+/// Differences to the best model, and Akaike's weights.
+void SetDifferences(std::vector<ComparisonRow>& rows);
+
+}  // namespace pendulum

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/homogeneity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include "homogeneity_words.h"
+#include "pendulum/analysis/amplitude_dependence.h"
+#include "pendulum/analysis/part_fit.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double Tail(double statistic, double dof) {
+  if (!(dof > 0)) return 1;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), std::max(statistic, 0.0)));
+}
+
+// ---- What each recording alone says ---------------------------------------------------------------------------------
+
+/// Of S shared parameters.
+struct Told {
+  std::size_t run = 0;
+  VectorXd value;       // S
+  MatrixXd covariance;  // S x S
+};
+
+/// Estimates and errors as the fit reports them, unless a bound has to do with them.
+std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names) {
+  const FitReport& fit = run.fit;
+  if (fit.termination != Termination::kConverged) return std::nullopt;
+  const auto size = static_cast<Index>(names.size());
+  Told told{0, VectorXd(size), MatrixXd(size, size)};
+  const bool bounded = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; });
+  std::vector<Index> rows;
+  VectorXd all(static_cast<Index>(fit.covariance_names.size()));
+  MatrixXd covariance = fit.covariance;
+  std::vector<std::string> told_names = fit.covariance_names;
+  for (Index i = 0; i < all.size(); ++i) all[i] = fit.Find(told_names[static_cast<std::size_t>(i)])->estimate;
+  if (bounded) {
+    const NoiseModel noise = NoiseOfFit(run.used, fit, run.options);
+    const auto unbounded = EstimateUnbounded(run.used, fit, noise, run.options.rig);
+    if (!unbounded) return std::nullopt;
+    told_names.assign(unbounded->names.begin(), unbounded->names.end());
+    all = unbounded->value;
+    covariance = unbounded->covariance;
+  }
+  for (const std::string& name : names) {
+    const auto row = std::ranges::find(told_names, name) - told_names.begin();
+    if (row == static_cast<std::ptrdiff_t>(told_names.size())) return std::nullopt;
+    rows.push_back(row);
+  }
+  told.value = all(rows);
+  told.covariance = covariance(rows, rows);
+  const bool sound = told.value.allFinite() && told.covariance.allFinite() && told.covariance.diagonal().minCoeff() > 0;
+  return sound ? std::optional(told) : std::nullopt;
+}
+
+// ---- Do they agree? -------------------------------------------------------------------------------------------------
+
+/// Weighted mean of several recordings, in units of typical errors.
+struct Pool {
+  MatrixXd precision;  // S x S
+  VectorXd mean;       // S
+  double statistic = 0;
+};
+
+Pool PoolOf(const std::vector<Told>& told, const std::vector<std::size_t>& members, const VectorXd& scale) {
+  const Index size = scale.size();
+  Pool pool{MatrixXd::Zero(size, size), VectorXd::Zero(size), 0};
+  std::vector<MatrixXd> precisions;
+  VectorXd sum = VectorXd::Zero(size);
+  for (const std::size_t k : members) {
+    const MatrixXd scaled =
+        scale.cwiseInverse().asDiagonal() * told[k].covariance * scale.cwiseInverse().asDiagonal();
+    precisions.push_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
+    pool.precision += precisions.back();
+    sum += precisions.back() * told[k].value.cwiseQuotient(scale);
+  }
+  pool.mean = pool.precision.ldlt().solve(sum);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const VectorXd distance = told[members[i]].value.cwiseQuotient(scale) - pool.mean;
+    pool.statistic += distance.dot(precisions[i] * distance);
+  }
+  return pool;
+}
+
+/// A typical error of each parameter.
+VectorXd ScaleOf(const std::vector<Told>& told) {
+  VectorXd scale = VectorXd::Zero(told.front().value.size());
+  for (const Told& one : told) scale += one.covariance.diagonal().cwiseSqrt() / static_cast<double>(told.size());
+  return scale;
+}
+
+/// Leaves out one recording after the other, each time the one whose absence leaves least to explain, until the others
+/// agree; no more than leave a majority, for else nobody knows who is right.
+std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd& scale) {
+  std::vector<std::size_t> members(told.size());
+  std::iota(members.begin(), members.end(), 0);
+  std::vector<std::size_t> out;
+  const auto dof = [&](std::size_t count) { return static_cast<double>(scale.size()) * static_cast<double>(count - 1); };
+  while (2 * (out.size() + 1) < told.size()) {
+    std::size_t best = 0;
+    double least = kUnbounded;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      std::vector<std::size_t> rest = members;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      const double statistic = PoolOf(told, rest, scale).statistic;
+      if (statistic >= least) continue;
+      least = statistic;
+      best = i;
+    }
+    out.push_back(members[best]);
+    members.erase(members.begin() + static_cast<std::ptrdiff_t>(best));
+    if (members.size() > 1 && Tail(least, dof(members.size())) >= Homogeneity::kDisagree) return out;
+  }
+  return {};
+}
+
+/// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be enough.
+std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
+  constexpr std::size_t kFewest = 4;
+  std::vector<std::size_t> far;
+  if (told.size() < kFewest) return far;
+  const Index size = told.front().value.size();
+  const double trials = static_cast<double>(told.size()) * static_cast<double>(size);
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    for (Index j = 0; j < size; ++j) {
+      VectorXd value(static_cast<Index>(told.size()) - 1), error(value.size());
+      for (Index i = 0; i < value.size(); ++i) {
+        const Told& other = told[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
+        value[i] = other.value[j];
+        error[i] = std::sqrt(other.covariance(j, j));
+      }
+      const RandomEffects others = SummarizeScatter(value, error);
+      const double variance = told[k].covariance(j, j) + others.between * others.between +
+                              others.std_error * others.std_error;
+      const boost::math::students_t distribution(static_cast<double>(value.size() - 1));
+      const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
+      const double p = 2 * boost::math::cdf(boost::math::complement(distribution, t));
+      if (p * trials >= Homogeneity::kDisagree) continue;
+      far.push_back(k);
+      break;
+    }
+  }
+  return far;
+}
+
+// ---- Each parameter -------------------------------------------------------------------------------------------------
+
+void SetDistances(SharedParameter& parameter) {
+  for (RunEstimate& run : parameter.runs) {
+    if (!run.value) continue;
+    const double own = 1 / (*run.std_error * *run.std_error);
+    const double all = 1 / (parameter.std_error * parameter.std_error);
+    const double others = all - own;
+    if (!(others > 1e-12 * all)) continue;
+    const double mean_of_others = (all * parameter.mean - own * *run.value) / others;
+    run.z = (*run.value - mean_of_others) / std::sqrt(1 / own + 1 / others);
+  }
+}
+
+SharedParameter DescribeParameter(const ParameterEstimate& info, const std::vector<Told>& told, Index j,
+                                  std::size_t runs) {
+  SharedParameter parameter;
+  parameter.name = info.info.name;
+  parameter.unit = info.unit;
+  parameter.runs.resize(runs);
+  const auto count = static_cast<Index>(told.size());
+  VectorXd value(count), error(count);
+  for (Index i = 0; i < count; ++i) {
+    const Told& one = told[static_cast<std::size_t>(i)];
+    value[i] = one.value[j];
+    error[i] = std::sqrt(one.covariance(j, j));
+    parameter.runs[one.run] = {value[i], error[i], {}};
+  }
+  const VectorXd weight = error.cwiseAbs2().cwiseInverse();
+  parameter.mean = weight.dot(value) / weight.sum();
+  parameter.std_error = 1 / std::sqrt(weight.sum());
+  parameter.statistic = weight.dot((value.array() - parameter.mean).square().matrix());
+  parameter.dof = static_cast<int>(count) - 1;
+  parameter.p = Tail(parameter.statistic, parameter.dof);
+  parameter.scatter = SummarizeScatter(value, error);
+  SetDistances(parameter);
+  return parameter;
+}
+
+std::vector<std::string> FreeNames(const FitReport& fit, const std::vector<std::string>& shared) {
+  std::vector<std::string> names;
+  for (const std::string& name : shared) {
+    const ParameterEstimate* const parameter = fit.Find(name);
+    if (parameter != nullptr && !parameter->fixed) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector<std::string>& shared) {
+  Homogeneity result;
+  for (const RunAlone& run : runs) result.amplitudes.push_back(MeanAmplitude(run.used, run.fit, run.options));
+  const std::vector<std::string> names = FreeNames(runs.front().fit, shared);
+  std::vector<Told> told;
+  for (std::size_t k = 0; k < runs.size() && !names.empty(); ++k) {
+    if (std::optional<Told> one = TellOne(runs[k], names)) {
+      told.push_back(*std::move(one));
+      told.back().run = k;
+    }
+  }
+  if (told.size() < 2) {
+    result.reason = names.empty() ? "all that is shared is fixed: there is nothing to compare"
+                                  : "fewer than two recordings tell all shared parameters alone";
+    result.verdict = "not tested: " + result.reason;
+    return result;
+  }
+  const VectorXd scale = ScaleOf(told);
+  std::vector<std::size_t> all(told.size());
+  std::iota(all.begin(), all.end(), 0);
+  result.statistic = PoolOf(told, all, scale).statistic;
+  result.dof = static_cast<int>(scale.size()) * static_cast<int>(told.size() - 1);
+  if (std::isfinite(result.statistic)) result.p = Tail(result.statistic, result.dof);
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    result.parameters.push_back(
+        DescribeParameter(*runs.front().fit.Find(names[j]), told, static_cast<Index>(j), runs.size()));
+    if (auto dependence = TestAmplitudeDependence(runs, result.parameters.back(), result.amplitudes)) {
+      result.amplitude_dependence.push_back(*std::move(dependence));
+    }
+  }
+  if (!result.agrees()) {
+    std::vector<std::size_t> out = LeaveOut(told, scale);
+    if (out.empty()) out = FarFromScatter(told);
+    for (const std::size_t k : out) result.disagreeing.push_back(static_cast<int>(told[k].run));
+    std::ranges::sort(result.disagreeing);
+  }
+  result.verdict = DescribeHomogeneity(result, runs);
+  return result;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "homogeneity_words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+std::string Percent(double share) { return NumberText(100 * std::abs(share), 2) + " %"; }
+
+std::string Names(const Homogeneity& result) {
+  std::vector<std::string> names;
+  for (const SharedParameter& parameter : result.parameters) names.push_back(parameter.name);
+  return NameList(names);
+}
+
+/// The parameter in which a recording is farthest from the others.
+const SharedParameter* Farthest(const Homogeneity& result, std::size_t run) {
+  const SharedParameter* farthest = nullptr;
+  for (const SharedParameter& parameter : result.parameters) {
+    const auto& z = parameter.runs[run].z;
+    if (!z) continue;
+    if (farthest == nullptr || std::abs(*z) > std::abs(*farthest->runs[run].z)) farthest = &parameter;
+  }
+  return farthest;
+}
+
+/// Weighted mean of all that do not disagree.
+double MeanOfOthers(const Homogeneity& result, const SharedParameter& parameter) {
+  double sum = 0, weights = 0;
+  for (std::size_t k = 0; k < parameter.runs.size(); ++k) {
+    const RunEstimate& run = parameter.runs[k];
+    const bool out = std::ranges::find(result.disagreeing, static_cast<int>(k)) != result.disagreeing.end();
+    if (!run.value || out) continue;
+    const double weight = 1 / (*run.std_error * *run.std_error);
+    sum += weight * *run.value;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+/// "recording 3 (c.csv) disagrees with the others: its inertia is 3.0 % larger".
+std::string DescribeOutlier(const Homogeneity& result, const std::vector<RunAlone>& runs, std::size_t run) {
+  std::string text = runs[run].label + " disagrees with the others";
+  const SharedParameter* const farthest = Farthest(result, run);
+  if (farthest == nullptr) return text;
+  const double mean = MeanOfOthers(result, *farthest);
+  const double change = *farthest->runs[run].value / mean - 1;
+  text += ": its " + farthest->name + " is ";
+  if (mean == 0 || !std::isfinite(change)) return text + NumberText(*farthest->runs[run].value, 3);
+  return text + Percent(change) + (change > 0 ? " larger" : " smaller");
+}
+
+std::string DescribeOutliers(const Homogeneity& result, const std::vector<RunAlone>& runs) {
+  std::string text;
+  for (const int run : result.disagreeing) {
+    text += (text.empty() ? "" : "; ") + DescribeOutlier(result, runs, static_cast<std::size_t>(run));
+  }
+  return text + "; fit the others without " + (result.disagreeing.size() == 1 ? "it" : "them");
+}
+
+/// What amplitude explains, where it does.
+std::string DescribeAmplitude(const Homogeneity& result) {
+  std::string text;
+  for (const AmplitudeDependence& dependence : result.amplitude_dependence) {
+    if (!(dependence.p < Homogeneity::kDisagree)) continue;
+    text += (text.empty() ? "" : "; ") + dependence.name + (dependence.span > 0 ? " rises by " : " falls by ") +
+            Percent(dependence.span) + " from the recording of the smallest swings to that of the largest, as a slope " +
+            "with amplitude squared within and between recordings would have it (p " +
+            ProbabilityText(dependence.p) + ")" +
+            (dependence.rest_p < Homogeneity::kDisagree ? ", which is not all that differs"
+                                                        : ", and nothing else differs");
+  }
+  return text;
+}
+
+/// The parameter that scatters most against its errors.
+std::string DescribeScatter(const Homogeneity& result) {
+  const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
+  const RandomEffects& scatter = most->scatter;
+  return "between recordings " + most->name + " scatters by " +
+         (scatter.mean != 0 ? Percent(scatter.between / scatter.mean)
+                            : NumberText(scatter.between, 2) + " " + most->unit) +
+         ", beyond its errors: the rig's constants and their errors are the random-effects means";
+}
+
+bool LacksFit(const std::vector<RunAlone>& runs) {
+  return std::ranges::any_of(runs, [](const RunAlone& run) { return run.fit.Warns("lack_of_fit"); });
+}
+
+}  // namespace
+
+std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs) {
+  const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + std::to_string(result.dof) +
+                           " degrees of freedom, p " + ProbabilityText(result.p.value_or(0)) + ")";
+  if (result.agrees()) return "the recordings agree on " + Names(result) + test;
+  std::string text = "the recordings do not agree on " + Names(result) + test;
+  const std::string amplitude = DescribeAmplitude(result);
+  if (!result.disagreeing.empty()) text += "; " + DescribeOutliers(result, runs);
+  if (result.disagreeing.empty() && !amplitude.empty()) text += "; " + amplitude;
+  if (result.disagreeing.empty()) text += "; " + DescribeScatter(result);
+  if (LacksFit(runs)) {
+    text += "; the model does not describe all of each recording, so that the errors compared here are too small";
+  }
+  return text;
+}
+
+}  // namespace pendulum

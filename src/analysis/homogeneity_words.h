@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pendulum/analysis/homogeneity.h"
+
+namespace pendulum {
+
+/// Sentences on whether recordings agree, which one does not, and what explains it.
+std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs);
+
+}  // namespace pendulum

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/joint_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "comparison_parts.h"
+#include "fitting/box_least_squares.h"
+#include "pendulum/analysis/nested_tests.h"
+#include "pendulum/analysis/recommendation.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+std::vector<FitReport> Wholes(const JointModels& joint) {
+  std::vector<FitReport> wholes;
+  for (const JointFit& fit : joint.joint) wholes.push_back(fit.whole);
+  return wholes;
+}
+
+bool SameUnit(const JointModels& joint) {
+  return std::ranges::all_of(joint.runs, [&](const RunModels& run) {
+    return run.alone.used.value_unit() == joint.runs.front().alone.used.value_unit();
+  });
+}
+
+ComparisonRow DescribeJoint(const JointModels& joint, std::size_t m) {
+  const JointFit& fit = joint.joint[m];
+  ComparisonRow row = DescribeFit(fit.whole);
+  row.parameters = fit.parameters;
+  for (std::size_t k = 0; k < fit.runs.size() && fit.whole.termination != Termination::kFailed; ++k) {
+    const FitReport& run = fit.runs[k];
+    row.lack_of_fit = row.lack_of_fit || run.Warns("lack_of_fit");
+    if (std::abs(run.noise.lag1_correlation) > std::abs(row.lag1_correlation))
+      row.lag1_correlation = run.noise.lag1_correlation;
+    row.ljung_box_p = std::min(row.ljung_box_p, run.statistics.ljung_box_p);
+  }
+  return row;
+}
+
+/// The strictest that any recording asks for.
+Likelihood ChooseJointly(const JointModels& joint, std::size_t best) {
+  Likelihood chosen = Likelihood::kIndependent;
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    chosen = std::max(chosen, ChooseLikelihood(joint.FitOf(k, best), joint.runs[k].alone.used.resolution));
+  }
+  return chosen;
+}
+
+/// The recording whose residuals ask for that likelihood, for words.
+const FitReport& Speaker(const JointModels& joint, std::size_t best, Likelihood likelihood) {
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    const FitReport& fit = joint.FitOf(k, best);
+    if (ChooseLikelihood(fit, joint.runs[k].alone.used.resolution) == likelihood) return fit;
+  }
+  return joint.FitOf(0, best);
+}
+
+// ---- Likelihood of residuals that remember --------------------------------------------------------------------------
+
+/// Recordings' likelihoods about the joint estimates, as parabolas over all parameters that are free.
+class SharedShift {
+ public:
+  /// δ of the run's F free parameters: information (F x F) and where it is largest, within [lowest, highest].
+  void Add(const std::vector<std::string>& names, const Eigen::MatrixXd& information, const Eigen::VectorXd& shift,
+           const Eigen::VectorXd& lowest, const Eigen::VectorXd& highest, const std::vector<std::string>& shared) {
+    std::vector<Index> at;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const bool is_shared = std::ranges::find(shared, names[i]) != shared.end();
+      const auto known = std::ranges::find(shared_names_, names[i]);
+      const auto row = static_cast<Index>(i);
+      if (is_shared && known != shared_names_.end()) {
+        at.push_back(places_[static_cast<std::size_t>(known - shared_names_.begin())]);
+        continue;
+      }
+      at.push_back(static_cast<Index>(lowest_.size()));
+      lowest_.push_back(lowest[row]);
+      highest_.push_back(highest[row]);
+      if (!is_shared) continue;
+      shared_names_.push_back(names[i]);
+      places_.push_back(at.back());
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+    const Eigen::MatrixXd root =
+        eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+    roots_.push_back({std::move(at), root, root * shift});
+  }
+
+  /// By how much the sum of log-likelihoods stays below the sum of what each recording alone would have.
+  double Loss() const {
+    const auto columns = static_cast<Index>(lowest_.size());
+    Index rows = 0;
+    for (const Root& root : roots_) rows += root.wanted.size();
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, columns);
+    Eigen::VectorXd wanted(rows);
+    Index first = 0;
+    for (const Root& root : roots_) {
+      const Index count = root.wanted.size();
+      matrix(Eigen::seqN(first, count), root.at) = root.matrix;
+      wanted.segment(first, count) = root.wanted;
+      first += count;
+    }
+    const Eigen::VectorXd shift =
+        BoxLeastSquares(matrix, wanted, Eigen::Map<const Eigen::VectorXd>(lowest_.data(), columns),
+                        Eigen::Map<const Eigen::VectorXd>(highest_.data(), columns));
+    return 0.5 * (wanted - matrix * shift).squaredNorm();
+  }
+
+ private:
+  struct Root {
+    std::vector<Index> at;
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd wanted;
+  };
+  std::vector<Root> roots_;
+  std::vector<std::string> shared_names_;
+  std::vector<Index> places_;  // of these names
+  std::vector<double> lowest_, highest_;
+};
+
+/// Each recording has a memory of the kind and order that its residuals by the best model have.
+void SetCorrelatedLikelihood(const JointModels& joint, std::size_t m, std::size_t best, const FitOptions& options,
+                             ComparisonRow& row) {
+  SharedShift together;
+  double sum = 0;
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    const Recording& used = joint.runs[k].alone.used;
+    const FitReport& fit = joint.FitOf(k, m);
+    std::optional<CorrelatedResiduals> data = ResidualsOf(used, fit, options);
+    std::optional<CorrelatedLikelihood> likelihood;
+    if (data) {
+      const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
+      data->lowest.setConstant(-kUnbounded);
+      data->highest.setConstant(kUnbounded);
+      likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(joint.FitOf(k, best)));
+      std::vector<std::string> names;
+      for (const ParameterEstimate& parameter : fit.parameters)
+        if (!parameter.fixed) names.emplace_back(parameter.info.name);
+      if (likelihood) {
+        together.Add(names, likelihood->information, likelihood->shift, lowest, highest, joint.joint[m].shared);
+      }
+    }
+    if (!likelihood) {
+      row.judged = false;
+      row.reason = "the residuals of " + joint.runs[k].label + " have no likelihood with the memory of the best model's";
+      return;
+    }
+    sum += likelihood->log_likelihood + PerCount(used);
+    row.parameters += likelihood->parameters - 1;
+  }
+  row.log_likelihood = sum - together.Loss();
+}
+
+void SetLikelihoods(const JointModels& joint, std::size_t best, const FitOptions& options, Comparison& comparison) {
+  double samples = 0;
+  for (const RunModels& run : joint.runs) samples += static_cast<double>(run.alone.used.size());
+  for (std::size_t m = 0; m < comparison.rows.size(); ++m) {
+    ComparisonRow& row = comparison.rows[m];
+    if (!row.judged || comparison.likelihood == Likelihood::kNone) continue;
+    if (comparison.likelihood == Likelihood::kIndependent) {
+      row.log_likelihood = joint.joint[m].whole.statistics.log_likelihood;
+    } else {
+      SetCorrelatedLikelihood(joint, m, best, ForModel(options, joint.models[m], joint.models).options, row);
+    }
+    SetCriteria(samples, comparison.effective_samples, row);
+  }
+  SetDifferences(comparison.rows);
+}
+
+// ---- Prediction -----------------------------------------------------------------------------------------------------
+
+/// Predictions of several recordings as one.
+class PooledPrediction {
+ public:
+  void Add(const Prediction& one, double unit, const std::string& label) {
+    if (one.samples == 0) {
+      if (pooled_.reason.empty()) pooled_.reason = label + ": " + one.reason;
+      return;
+    }
+    const auto samples = static_cast<double>(one.samples);
+    squares_ += samples * one.rms * one.rms / (unit * unit);
+    standardized_ += samples * one.standardized * one.standardized;
+    pooled_.samples += one.samples;
+  }
+
+  Prediction Take() {
+    if (!pooled_.reason.empty()) pooled_.samples = 0;  // a part is missing
+    if (pooled_.samples == 0) return pooled_;
+    const auto samples = static_cast<double>(pooled_.samples);
+    pooled_.rms = std::sqrt(squares_ / samples);
+    pooled_.standardized = std::sqrt(standardized_ / samples);
+    return pooled_;
+  }
+
+ private:
+  Prediction pooled_;
+  double squares_ = 0, standardized_ = 0;
+};
+
+void SetPredictions(const JointModels& joint, const FitOptions& options, Comparison& comparison) {
+  const bool same = SameUnit(joint);
+  for (std::size_t m = 0; m < joint.models.size(); ++m) {
+    if (joint.joint[m].whole.termination != Termination::kConverged) continue;
+    const FitOptions own = ForModel(options, joint.models[m], joint.models).options;
+    PooledPrediction blocks, forward;
+    for (const RunModels& run : joint.runs) {
+      const FitReport& alone = run.alone.fits[m];
+      const double unit = same ? 1.0 : alone.noise.sigma;
+      blocks.Add(CrossValidate(run.alone.used, alone, own), unit, run.label);
+      forward.Add(PredictForward(run.alone.used, alone, own), unit, run.label);
+    }
+    comparison.rows[m].cross_validation = blocks.Take();
+    comparison.rows[m].forward = forward.Take();
+  }
+}
+
+/// rms of residuals over their σ where units differ.
+void SetUnitlessRms(const JointModels& joint, Comparison& comparison) {
+  for (std::size_t m = 0; m < joint.models.size(); ++m) {
+    double squares = 0, samples = 0;
+    for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+      const FitReport& fit = joint.FitOf(k, m);
+      const auto own = static_cast<double>(fit.residual.size());
+      squares += own * std::pow(fit.statistics.rms_residual / joint.runs[k].alone.fits[m].noise.sigma, 2);
+      samples += own;
+    }
+    comparison.rows[m].rms = std::sqrt(squares / std::max(samples, 1.0));
+  }
+}
+
+ComparedRuns AsCompared(const JointModels& joint) {
+  ComparedRuns compared;
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    ComparedRun run{joint.runs[k].alone.used, {}};
+    for (std::size_t m = 0; m < joint.models.size(); ++m) run.fits.push_back(&joint.FitOf(k, m));
+    compared.runs.push_back(std::move(run));
+  }
+  for (const JointFit& fit : joint.joint) {
+    for (const std::string& name : fit.shared) {
+      if (std::ranges::find(compared.shared, name) == compared.shared.end()) compared.shared.push_back(name);
+    }
+  }
+  return compared;
+}
+
+}  // namespace
+
+Comparison CompareJointModels(const JointModels& joint, const FitOptions& options, const CompareOptions& how) {
+  Comparison comparison;
+  const std::vector<FitReport> wholes = Wholes(joint);
+  for (std::size_t m = 0; m < joint.models.size(); ++m) comparison.rows.push_back(DescribeJoint(joint, m));
+  if (!SameUnit(joint)) SetUnitlessRms(joint, comparison);
+  const FitReport* const best = BestFit(wholes);
+  if (best == nullptr) {
+    comparison.likelihood = Likelihood::kNone;
+    comparison.criterion = "none: no fit converged";
+    comparison.reason = "no model converged, so none is recommended";
+    return comparison;
+  }
+  const auto index = static_cast<std::size_t>(best - wholes.data());
+  comparison.likelihood = ChooseJointly(joint, index);
+  comparison.effective_samples = std::max(best->statistics.effective_samples, std::exp(2.0));
+  comparison.criterion =
+      DescribeLikelihood(comparison.likelihood, Speaker(joint, index, comparison.likelihood)) + ", of all recordings";
+  SetLikelihoods(joint, index, options, comparison);
+  if (how.predict) SetPredictions(joint, options, comparison);
+  comparison.tests = TestNested(AsCompared(joint), comparison.rows, options, comparison.likelihood);
+  Recommend(wholes, comparison);
+  return comparison;
+}
+
+}  // namespace pendulum

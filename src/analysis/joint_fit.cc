@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/joint_fit.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace pendulum {
+namespace {
+
+/// A joint fit that cannot be made, with as many runs as there are recordings.
+JointFit FailedFit(const std::vector<RunModels>& runs, std::size_t m, const std::string& reason) {
+  JointFit fit;
+  fit.whole.model = runs.front().alone.fits[m].model;
+  fit.whole.termination = Termination::kFailed;
+  fit.whole.reason = reason;
+  for (const RunModels& run : runs) {
+    fit.runs.push_back(run.alone.fits[m]);
+    WithdrawErrors("the joint fit failed", fit.runs.back());
+    fit.runs.back().termination = Termination::kFailed;
+    fit.runs.back().reason = reason;
+  }
+  return fit;
+}
+
+JointFit FitModel(const std::vector<RunModels>& runs, std::size_t m, const FitOptions& options,
+                  const std::vector<std::string>& shared) {
+  std::vector<JointRun> joint;
+  for (const RunModels& run : runs) joint.push_back({run.alone.used, run.alone.fits[m], options});
+  Result<JointFit> fit = FitJointly(joint, shared);
+  return fit ? *std::move(fit) : FailedFit(runs, m, fit.error().message);
+}
+
+Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const FitOptions& options,
+                        const std::vector<std::string>& shared) {
+  std::vector<RunAlone> alone;
+  for (const RunModels& run : runs) {
+    const Constancy* const constancy = m < run.constancy.size() ? &run.constancy[m] : nullptr;
+    alone.push_back({run.label, run.alone.used, run.alone.fits[m], options, constancy});
+  }
+  return TestHomogeneity(alone, shared);
+}
+
+/// What the comparison of the recordings adds to how the joint fit ended.
+void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
+  if (homogeneity.agrees()) return;
+  if (whole.termination != Termination::kConverged) whole.reason += "; " + homogeneity.verdict;
+  whole.warnings.push_back({"recordings_disagree", homogeneity.verdict});
+}
+
+}  // namespace
+
+JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, const std::vector<std::string>& models,
+                        const std::vector<std::string>& shared) {
+  JointModels result{models, std::move(runs), {}, {}};
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const FitOptions own = ForModel(options, models[m], models).options;
+    result.joint.push_back(FitModel(result.runs, m, own, shared));
+    result.homogeneity.push_back(CompareRuns(result.runs, m, own, shared));
+    SetVerdict(result.homogeneity.back(), result.joint.back().whole);
+  }
+  return result;
+}
+
+}  // namespace pendulum

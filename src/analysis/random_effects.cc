@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/random_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace pendulum {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Runs with variances of their own and one between them.
+struct Scatter {
+  VectorXd value, variance;  // K
+
+  VectorXd Weights(double between) const { return (variance.array() + between).inverse(); }
+
+  double Mean(double between) const {
+    const VectorXd weights = Weights(between);
+    return weights.dot(value) / weights.sum();
+  }
+
+  /// Σ w (value - mean)², which falls as the variance between runs grows.
+  double Statistic(double between) const {
+    return Weights(between).dot((value.array() - Mean(between)).square().matrix());
+  }
+
+  /// The variance between runs at which the statistic is so large; 0 where it is never so large.
+  double BetweenAt(double statistic) const {
+    if (!(Statistic(0) > statistic)) return 0;
+    const double highest = (value.array() - value.mean()).square().sum() / statistic;
+    std::uintmax_t most_steps = 200;
+    const auto [low, high] = boost::math::tools::toms748_solve(
+        [&](double between) { return Statistic(between) - statistic; }, 0.0, highest,
+        boost::math::tools::eps_tolerance<double>(40), most_steps);
+    return 0.5 * (low + high);
+  }
+};
+
+}  // namespace
+
+RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error) {
+  const Scatter scatter{value, std_error.cwiseAbs2()};
+  const auto freedom = static_cast<double>(value.size() - 1);
+  const double between = scatter.BetweenAt(freedom);
+  RandomEffects effects;
+  effects.mean = scatter.Mean(between);
+  effects.between = std::sqrt(between);
+  const double ratio = std::max(scatter.Statistic(between) / freedom, 1.0);
+  effects.std_error = std::sqrt(ratio / scatter.Weights(between).sum());
+  const double length =
+      effects.std_error * boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  effects.lower95 = effects.mean - length;
+  effects.upper95 = effects.mean + length;
+  const boost::math::chi_squared distribution(freedom);
+  effects.between_lower95 = std::sqrt(scatter.BetweenAt(boost::math::quantile(distribution, 0.975)));
+  effects.between_upper95 = std::sqrt(scatter.BetweenAt(boost::math::quantile(distribution, 0.025)));
+  return effects;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit_jointly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "fit_description.h"
+#include "joint_problem.h"
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/fit_warnings.h"
+#include "pendulum/fitting/intervals.h"
+#include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/profile.h"
+#include "pendulum/fitting/systematic.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// A joint solution on its way to a report.
+struct Work {
+  JointProblem joint;
+  Solution solution;
+  Optimum optimum;
+  std::vector<Optimum> own_optima;        // K: the optimum as each recording sees it
+  std::vector<Description> descriptions;  // K
+  std::vector<Autocorrelation> memories;  // K
+  Errors errors;
+};
+
+/// The rows of a recording's free parameters among all that are free.
+std::vector<Index> RowsOf(const Work& work, std::size_t k) {
+  std::vector<Index> rows;
+  const std::vector<int>& free = work.optimum.free;
+  for (const int i : work.own_optima[k].free) {
+    const int place = work.joint.members[k].at[static_cast<std::size_t>(i)];
+    rows.push_back(std::ranges::find(free, place) - free.begin());
+  }
+  return rows;
+}
+
+void SeeOwn(Work& work) {
+  const Optimum& all = work.optimum;
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    Optimum own;
+    own.information = all.information(member.at, member.at);
+    own.gradient = all.gradient(member.at);
+    own.free = member.Own(all.free);
+    own.at_bound = member.Own(all.at_bound);
+    own.inverse.identifiable = all.inverse.identifiable;
+    own.inverse.direction = member.Own(all.inverse.direction);
+    work.own_optima.push_back(std::move(own));
+    if (!all.inverse.identifiable) continue;
+    const std::vector<Index> rows = RowsOf(work, k);
+    work.own_optima[k].inverse.matrix = all.inverse.matrix(rows, rows);
+  }
+}
+
+// ---- How it ended ---------------------------------------------------------------------------------------------------
+
+struct Ending {
+  Termination termination = Termination::kNotConverged;
+  std::string reason;
+};
+
+std::string NamesOf(const JointProblem& joint, const std::vector<int>& parameters) {
+  std::vector<std::string> names;
+  for (const int i : parameters) names.push_back(joint.NameOf(i));
+  return NameList(names);
+}
+
+/// Which recordings the joint trajectories leave unexplained.
+std::string Unexplained(const Work& work) {
+  std::string left;
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    const double share = member.problem->UnexplainedShare(member.solution.readings);
+    if (share <= MostUnexplained(work.descriptions[k].correlated)) continue;
+    left += (left.empty() ? "" : ", ") +
+            (share < 1 ? std::to_string(std::lround(100 * share)) + " %" : std::string("all")) +
+            " of the variance of recording " + std::to_string(k + 1);
+  }
+  return left;
+}
+
+Ending EndOf(const Work& work) {
+  const InformationInverse& inverse = work.optimum.inverse;
+  if (!inverse.identifiable) {
+    const std::string names = NamesOf(work.joint, inverse.direction);
+    return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
+  }
+  if (const std::string left = Unexplained(work); !left.empty()) {
+    return {Termination::kNotConverged, "these are not swings of one pendulum with one " +
+                                            NameList(work.joint.shared) + ": the best joint trajectories leave " +
+                                            left + " unexplained"};
+  }
+  if (const double shift = RemainingShift(work.optimum); !(shift <= kLargestShift)) {
+    return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +
+                                            " standard errors is left to make; shorter windows or another model may "
+                                            "converge"};
+  }
+  return {Termination::kConverged,
+          "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors"};
+}
+
+// ---- Errors ---------------------------------------------------------------------------------------------------------
+
+Errors ErrorsAt(const Work& work, const Optimum& optimum) {
+  std::vector<FittedRun> runs;
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    runs.push_back({*member.problem, *member.cost, member.solution, work.memories[k], member.at});
+  }
+  return ComputeErrors(runs, work.joint.cost->priors(), optimum);
+}
+
+/// Whether the joint residuals of a recording are those of its own fit, but for what sharing a few parameters costs.
+bool IsAsAlone(const JointMember& member) {
+  constexpr double kSame = 0.01;
+  const FitReport& alone = *member.alone;
+  return alone.termination == Termination::kConverged &&
+         std::abs(std::log(member.solution.noise.sigma / alone.noise.sigma)) < kSame;
+}
+
+Errors OwnErrors(const Work& work, std::size_t k) {
+  const std::vector<Index> rows = RowsOf(work, k);
+  return {work.errors.covariance(rows, rows), work.errors.t95(rows), {work.errors.runs[k]}};
+}
+
+/// Rig, clock and calibration: sources that recordings have in common move all of them together. P x P, units of G.
+Eigen::MatrixXd SystematicErrors(const Work& work) {
+  const auto size = static_cast<Index>(work.joint.solve.fixed.size());
+  std::map<std::string, std::pair<SystematicSource, std::size_t>> sources;  // and of how many recordings
+  for (const JointMember& member : work.joint.members) {
+    for (const SystematicSource& source : SystematicSources(*member.recording, member.options, *member.problem,
+                                                            *member.cost, member.solution)) {
+      auto& [all, count] = sources[source.identity];
+      if (count++ == 0) {
+        all = {source.identity, Eigen::VectorXd::Zero(source.powers.size() > 0 ? size : 0),
+               Eigen::MatrixXd::Zero(size, source.pull.cols()), source.covariance};
+      }
+      if (source.powers.size() > 0) all.powers(member.at) = source.powers;
+      all.pull(member.at, Eigen::all) += source.pull;
+    }
+  }
+  const SourceContext context{work.solution.parameters, work.joint.solve.fixed, work.joint.cost->priors(),
+                              work.optimum};
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (const auto& [identity, source] : sources) {
+    covariance += SourceCovariance(source.first, source.second == work.joint.members.size(), context);
+  }
+  return covariance;
+}
+
+// ---- Estimates from posteriors --------------------------------------------------------------------------------------
+
+bool IsFromPosterior(const FitReport& fit) { return fit.interval_method == kPosteriorIntervals; }
+
+/// Whether a fit alone rests on a posterior; then all of them must have errors.
+bool HasPosteriors(const JointProblem& joint) {
+  const auto& members = joint.members;
+  return std::ranges::any_of(members, [](const JointMember& m) { return IsFromPosterior(*m.alone); }) &&
+         std::ranges::all_of(members, [](const JointMember& m) { return !m.alone->covariance_names.empty(); });
+}
+
+/// Combines the posteriors of the fits alone as parabolas: quiet recordings have no other likelihood that is one.
+void UsePosteriors(Work& work) {
+  Optimum& optimum = work.optimum;
+  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
+  std::ranges::sort(optimum.free);
+  optimum.at_bound.clear();
+  CombinedParabolas combined = CombineParabolas(work.joint);
+  const InformationInverse inverse = InvertInformation(combined.information, optimum.free);
+  if (!inverse.identifiable) return;
+  work.solution.parameters = std::move(combined.parameters);
+  optimum.information = std::move(combined.information);
+  optimum.inverse = inverse;
+  optimum.gradient.setZero();
+  work.joint.Distribute(work.solution.parameters);
+  for (JointMember& member : work.joint.members) {
+    member.solution.noise.sigma = member.alone->noise.sigma;
+    if (!member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr)) return;
+  }
+}
+
+// ---- Intervals ------------------------------------------------------------------------------------------------------
+
+bool WantsProfiles(const Work& work) {
+  const IntervalMethod method = work.joint.members.front().options.interval;
+  if (method == IntervalMethod::kProfile) return true;
+  return method == IntervalMethod::kAuto &&
+         IsNearBound(work.joint.solve, work.optimum, work.solution.parameters, work.errors.covariance);
+}
+
+/// Profiles of the shared parameters, the same in every report.
+void SetSharedProfiles(Work& work, std::vector<FitReport>& reports) {
+  const JointProblem& joint = work.joint;
+  const ErrorsOf errors_of = [&](const Optimum& optimum) { return ErrorsAt(work, optimum); };
+  if (!joint.cost->SumOfSquares(work.solution.parameters, &work.solution.sum)) return;
+  for (int i = 0; i < static_cast<int>(joint.shared.size()); ++i) {
+    if (joint.solve.fixed[static_cast<std::size_t>(i)]) continue;
+    const ProfileInterval interval =
+        ProfileParameter(*joint.cost, joint.solve, work.solution, work.optimum, errors_of, joint.samples(), i);
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+      const auto own = std::ranges::find(joint.members[k].at, i) - joint.members[k].at.begin();
+      SetProfileInterval(*joint.members[k].problem, static_cast<int>(own), interval, reports[k]);
+    }
+  }
+  for (FitReport& report : reports) {
+    report.interval_method = "profile likelihood of what is shared; of the others " + report.interval_method;
+  }
+}
+
+// ---- Reports --------------------------------------------------------------------------------------------------------
+
+FitReport ReportOf(const Work& work, std::size_t k, const Eigen::MatrixXd& systematic) {
+  const JointMember& member = work.joint.members[k];
+  FitReport report = work.descriptions[k].report;
+  const Optimum& own = work.own_optima[k];
+  const Errors errors = OwnErrors(work, k);
+  report.noise.memory = work.memories[k];
+  report.statistics.effective_samples = errors.runs[0].effective_samples;
+  report.noise.sigma_std_error = errors.runs[0].sigma;
+  SetParameters(*member.recording, member.options, *member.problem, own, member.solution, report);
+  SetCovariance(*member.problem, own, errors, report);
+  SetSystematicErrors(*member.problem, systematic(member.at, member.at), report);
+  SetCovarianceIntervals(*member.problem, member.solution, own, errors, report);
+  if (HasPosteriors(work.joint)) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
+  return report;
+}
+
+/// Parameters, errors and intervals of all recordings.
+void SetReports(Work& work, JointFit& fit) {
+  const Eigen::MatrixXd systematic = SystematicErrors(work);
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) fit.runs.push_back(ReportOf(work, k, systematic));
+  if (WantsProfiles(work) && !HasPosteriors(work.joint)) SetSharedProfiles(work, fit.runs);
+  for (std::size_t k = 0; k < fit.runs.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    SetDerived(*member.problem, work.own_optima[k], OwnErrors(work, k), member.solution, fit.runs[k]);
+    SetIdentifiability(*member.problem, work.own_optima[k], fit.runs[k]);
+  }
+}
+
+/// Parameters without errors.
+void SetReportsWithoutErrors(Work& work, JointFit& fit) {
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    FitReport report = work.descriptions[k].report;
+    SetParameters(*member.recording, member.options, *member.problem, work.own_optima[k], member.solution, report);
+    SetDerived(*member.problem, work.own_optima[k], Errors{}, member.solution, report);
+    fit.runs.push_back(std::move(report));
+  }
+}
+
+/// Free ones that are not at a bound 0, and σ of each recording.
+int CountParameters(const Work& work) {
+  auto count = static_cast<int>(work.optimum.free.size() + work.joint.members.size());
+  for (const int i : work.optimum.at_bound) count += work.solution.parameters[static_cast<std::size_t>(i)] == 0 ? 0 : 1;
+  return count;
+}
+
+FitStatistics WholeStatistics(const JointFit& fit, double samples) {
+  FitStatistics all;
+  double squares = 0;
+  for (const FitReport& run : fit.runs) {
+    const auto own = static_cast<double>(run.residual.size());
+    squares += own * run.statistics.rms_residual * run.statistics.rms_residual;
+    all.log_likelihood += run.statistics.log_likelihood;
+    all.effective_samples += run.statistics.effective_samples;
+  }
+  const double k = fit.parameters;
+  all.rms_residual = std::sqrt(squares / samples);
+  all.aic = 2 * k - 2 * all.log_likelihood;
+  all.aicc = all.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  all.bic = k * std::log(samples) - 2 * all.log_likelihood;
+  return all;
+}
+
+/// What is shared, as the first recording's report has it.
+void SetShared(JointFit& fit) {
+  const FitReport& first = fit.runs.front();
+  FitReport& whole = fit.whole;
+  const auto is_shared = [&](const std::string_view name) {
+    return std::ranges::find(fit.shared, name) != fit.shared.end();
+  };
+  const auto keep = [&](const std::vector<std::string>& names, const Eigen::MatrixXd& matrix,
+                        std::vector<std::string>& kept_names, Eigen::MatrixXd& kept) {
+    std::vector<Index> rows;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!is_shared(names[i])) continue;
+      rows.push_back(static_cast<Index>(i));
+      kept_names.push_back(names[i]);
+    }
+    kept = matrix(rows, rows);
+  };
+  std::ranges::copy_if(first.parameters, std::back_inserter(whole.parameters),
+                       [&](const ParameterEstimate& p) { return is_shared(p.info.name); });
+  for (ParameterEstimate& parameter : whole.parameters) parameter.closed_form.reset();
+  keep(first.covariance_names, first.covariance, whole.covariance_names, whole.covariance);
+  keep(first.systematic_names, first.systematic_covariance, whole.systematic_names, whole.systematic_covariance);
+  std::ranges::copy_if(first.profiles, std::back_inserter(whole.profiles),
+                       [&](const ProfileCurve& curve) { return is_shared(curve.name); });
+  std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),
+                       [&](const Identifiability& known) { return is_shared(known.parameter); });
+  // Each is of inertia and one friction parameter at most: all of them need all of these.
+  if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
+  whole.interval_method = first.interval_method;
+  whole.std_error_method = first.std_error_method;
+  const auto remembers = std::ranges::find_if(
+      fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
+  whole.noise = (remembers == fit.runs.end() ? first : *remembers).noise;
+}
+
+/// The joint fit where no trajectory can be traced.
+JointFit Failed(const JointProblem& joint, JointFit fit) {
+  fit.whole.termination = Termination::kFailed;
+  fit.whole.reason = "no joint trajectory can be traced: the recordings are too different, or what is fixed holds them";
+  for (const JointMember& member : joint.members) {
+    fit.runs.push_back(IntroduceFit(*member.recording, *member.problem, *member.cost, member.solution));
+    SetParameters(*member.recording, member.options, *member.problem, Optimum{}, member.solution, fit.runs.back());
+    fit.runs.back().termination = fit.whole.termination;
+    fit.runs.back().reason = fit.whole.reason;
+  }
+  return fit;
+}
+
+void AddWarnings(const Work& work, JointFit& fit) {
+  for (std::size_t k = 0; k < fit.runs.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    const Description& described = work.descriptions[k];
+    fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
+                                       described.quantile_residuals, described.correlated, fit.runs[k]);
+    // Of the joint fit, not of a recording; Search of each alone has said which other minima it has.
+    std::erase_if(fit.runs[k].warnings, [](const Warning& warning) { return warning.code == "prior_conflict"; });
+  }
+}
+
+}  // namespace
+
+Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+  Result<JointProblem> joint = MakeJointProblem(runs, shared);
+  if (!joint) return tl::unexpected(joint.error());
+  Work work{*std::move(joint), {}, {}, {}, {}, {}, {}};
+  work.solution = SolveJointly(work.joint);
+  JointFit fit;
+  fit.shared = work.joint.shared;
+  fit.whole.model = work.joint.members.front().problem->model;
+  std::optional<Optimum> optimum = Linearize(work.joint.solve, *work.joint.cost, work.solution);
+  fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message};
+  if (!optimum) return Failed(work.joint, std::move(fit));
+  work.optimum = *std::move(optimum);
+  if (HasPosteriors(work.joint)) UsePosteriors(work);
+  SeeOwn(work);
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    work.descriptions.push_back(Describe(*member.recording, *member.problem, *member.cost, member.solution,
+                                         static_cast<int>(work.own_optima[k].free.size())));
+  }
+  const auto [termination, reason] = EndOf(work);
+  fit.whole.termination = termination;
+  fit.whole.reason = reason;
+  for (Description& described : work.descriptions) {
+    described.report.termination = termination;
+    described.report.reason = reason;
+  }
+  if (termination == Termination::kConverged) {
+    for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+      const JointMember& member = work.joint.members[k];
+      const Description& described = work.descriptions[k];
+      work.memories.push_back(
+          IsAsAlone(member) ? member.alone->noise.memory
+                            : MemoryOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
+                                       described.quantile_residuals, described.correlated));
+    }
+    work.errors = ErrorsAt(work, work.optimum);
+    if (HasPosteriors(work.joint)) work.errors.covariance = work.optimum.inverse.matrix;
+    SetReports(work, fit);
+  } else {
+    SetReportsWithoutErrors(work, fit);
+  }
+  AddWarnings(work, fit);
+  fit.parameters = CountParameters(work);
+  fit.whole.statistics = WholeStatistics(fit, work.joint.samples());
+  SetShared(fit);
+  fit.whole.solver.evaluations = work.joint.cost->traces();
+  return fit;
+}
+
+}  // namespace pendulum

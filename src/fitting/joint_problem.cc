@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "joint_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/search.h"
+#include "pendulum/trajectory/tolerance.h"
+#include "trace_error.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+std::string NumberOf(std::size_t k) { return "recording " + std::to_string(k + 1); }
+
+/// A problem whose parameters are those of the fit alone.
+Result<FitProblem> ProblemOf(const JointRun& run, FitOptions& options) {
+  options = AskAlike(run.alone, run.options);
+  options.start_values = run.alone.start_values;
+  options.initial.clear();
+  for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {  // a parameter where the options name it
+    if (run.alone.Find(drift) == nullptr) continue;
+    options.start_values->parameters.pop_back();
+    if (!options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
+  }
+  return MakeFitProblem(run.used, options);
+}
+
+/// The noise of the fit alone, with the sensor's range.
+NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
+  NoiseModel noise = problem.noise;
+  noise.family = alone.noise.family;
+  noise.sigma = std::max(alone.noise.sigma, problem.negligible_sigma());
+  noise.resolution = noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
+  return noise;
+}
+
+Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
+  JointMember member;
+  member.recording = &run.used;
+  member.alone = &run.alone;
+  if (run.alone.termination == Termination::kFailed) {
+    return Error(StatusCode::kFailedPrecondition, NumberOf(k) + " cannot be fitted alone: " + run.alone.reason);
+  }
+  Result<FitProblem> problem = ProblemOf(run, member.options);
+  if (!problem) return tl::unexpected(problem.error());
+  member.problem = std::make_unique<FitProblem>(*std::move(problem));
+  member.cost = MakeTrajectoryCost(member.problem->model, member.problem->start.start, member.problem->data);
+  member.tolerance = TraceTolerance(MaxTraceError(*member.problem, member.options), member.problem->start.amplitude);
+  member.cost->set_tolerance(member.tolerance);
+  Solution& solution = member.solution;
+  for (std::size_t i = 0; i < member.problem->infos.size(); ++i) {
+    const double own = member.problem->Internal(i, run.alone.parameters[i].estimate);
+    solution.parameters.push_back(std::clamp(own, member.problem->solve.lower[i], member.problem->solve.upper[i]));
+  }
+  member.alone_parameters = solution.parameters;
+  solution.noise = NoiseOf(*member.problem, run.alone);
+  solution.noise_reason = run.alone.noise.why;
+  member.cost->set_noise(solution.noise);
+  return member;
+}
+
+/// Names of the model's parameters among those asked for, in the model's order.
+std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<std::string>& asked) {
+  std::vector<std::string> shared;
+  for (const ParameterInfo& info : PhysicalParameters(model)) {
+    if (std::ranges::find(asked, info.name) != asked.end()) shared.emplace_back(info.name);
+  }
+  return shared;
+}
+
+/// Gives the members' parameters their places, with bounds, what is fixed and priors.
+void Assemble(JointProblem& joint) {
+  std::vector<PriorTerm> priors;
+  joint.solve.lower.assign(joint.shared.size(), -kUnbounded);
+  joint.solve.upper.assign(joint.shared.size(), kUnbounded);
+  joint.solve.fixed.assign(joint.shared.size(), false);
+  for (JointMember& member : joint.members) {
+    const FitProblem& problem = *member.problem;
+    for (std::size_t i = 0; i < problem.infos.size(); ++i) {
+      const auto shared = std::ranges::find(joint.shared, problem.infos[i].name);
+      const bool own = shared == joint.shared.end();
+      const auto place = own ? joint.solve.fixed.size() : static_cast<std::size_t>(shared - joint.shared.begin());
+      if (own) {
+        joint.solve.lower.push_back(-kUnbounded);
+        joint.solve.upper.push_back(kUnbounded);
+        joint.solve.fixed.push_back(false);
+      }
+      joint.solve.lower[place] = std::max(joint.solve.lower[place], problem.solve.lower[i]);
+      joint.solve.upper[place] = std::min(joint.solve.upper[place], problem.solve.upper[i]);
+      joint.solve.fixed[place] = joint.solve.fixed[place] || problem.solve.fixed[i];
+      member.at.push_back(static_cast<int>(place));
+      for (PriorTerm prior : problem.priors) {
+        if (prior.parameter != static_cast<int>(i) || (!own && &member != &joint.members.front())) continue;
+        prior.parameter = static_cast<int>(place);
+        priors.push_back(prior);
+      }
+    }
+  }
+  std::vector<JointTerm> terms;
+  for (const JointMember& member : joint.members) terms.push_back({member.cost.get(), member.at});
+  const FitProblem& first = *joint.members.front().problem;
+  const int holding = first.solve.holding_parameter;
+  const int held = holding < 0 ? -1 : joint.members.front().at[static_cast<std::size_t>(holding)];
+  joint.solve.holding_parameter = held < static_cast<int>(joint.shared.size()) ? held : -1;
+  joint.solve.max_iterations = first.solve.max_iterations;
+  joint.solve.max_traces = first.solve.max_traces * static_cast<int>(terms.size());
+  joint.cost = std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), priors);
+}
+
+/// The likelihood of a recording about its own fit: places among all parameters, information (M x M), estimates.
+struct Parabola {
+  std::vector<int> at;
+  Eigen::MatrixXd information;
+  Eigen::VectorXd centre;
+};
+
+/// From the covariance of the fit alone where it has one: the trajectory need not be traced for it.
+Parabola ParabolaOf(const JointMember& member) {
+  const FitReport& alone = *member.alone;
+  const std::vector<double>& own = member.alone_parameters;
+  const auto size = static_cast<Index>(own.size());
+  const Eigen::Map<const Eigen::VectorXd> estimates(own.data(), size);
+  if (alone.covariance_names.empty()) {
+    Eigen::MatrixXd sums;
+    if (!member.cost->Sums(own, &sums)) return {member.at, Eigen::MatrixXd::Zero(size, size), estimates};
+    return {member.at, sums.topLeftCorner(size, size), estimates};
+  }
+  std::vector<Index> rows;
+  std::vector<double> units;
+  Parabola parabola;
+  for (const std::string& name : alone.covariance_names) {
+    const auto i = static_cast<std::size_t>(alone.Find(name) - alone.parameters.data());
+    rows.push_back(static_cast<Index>(i));
+    parabola.at.push_back(member.at[i]);
+    units.push_back(member.problem->si_per_internal[i]);
+  }
+  const auto count = static_cast<Index>(rows.size());
+  const Eigen::Map<const Eigen::VectorXd> unit(units.data(), count);
+  std::vector<int> all(rows.size());
+  std::iota(all.begin(), all.end(), 0);
+  parabola.information = InvertInformation(alone.covariance, all).matrix;
+  if (parabola.information.size() == 0) parabola.information = Eigen::MatrixXd::Zero(count, count);
+  parabola.information = (unit.asDiagonal() * parabola.information * unit.asDiagonal()).eval();
+  parabola.centre = estimates(rows);
+  return parabola;
+}
+
+/// All where the last one's fit alone has what is shared.
+std::vector<double> StartOfLast(const JointProblem& joint) {
+  std::vector<double> start(joint.solve.fixed.size());
+  for (const JointMember& member : joint.members) {
+    for (std::size_t i = 0; i < member.at.size(); ++i) {
+      start[static_cast<std::size_t>(member.at[i])] = member.alone_parameters[i];
+    }
+  }
+  return start;
+}
+
+/// σ of a recording at the joint optimum; of Gaussian noise RSS / (N - its share of the parameters).
+double SigmaOf(const JointMember& member, const Optimum& optimum) {
+  const FitProblem& problem = *member.problem;
+  const NoiseModel& noise = member.solution.noise;
+  const double smallest = problem.negligible_sigma();
+  if (!noise.IsPlain()) {
+    return LikeliestSigma(noise, problem.data.values(), member.solution.readings,
+                          std::max(kSmallestSigma * problem.resolution, smallest));
+  }
+  Eigen::MatrixXd sums;
+  double share = 0;
+  if (member.cost->Sums(member.solution.parameters, &sums)) {
+    for (std::size_t i = 0; i < member.at.size(); ++i) {
+      for (std::size_t j = 0; j < member.at.size(); ++j) {
+        const auto row = std::ranges::find(optimum.free, member.at[i]) - optimum.free.begin();
+        const auto column = std::ranges::find(optimum.free, member.at[j]) - optimum.free.begin();
+        const auto free = static_cast<std::ptrdiff_t>(optimum.free.size());
+        if (row == free || column == free) continue;
+        share += optimum.inverse.matrix(row, column) * sums(static_cast<Index>(j), static_cast<Index>(i));
+      }
+    }
+  }
+  const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
+  return std::max(std::sqrt(rss / std::max(member.samples() - share, 1.0)), smallest);
+}
+
+/// Gives every recording the σ that its residuals have at the solution, unless it has that to a fraction of σ's own
+/// error. False where a motion cannot be traced.
+bool UpdateNoise(JointProblem& joint, const Solution& solution) {
+  constexpr double kSame = 3e-3;
+  const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
+  joint.Distribute(solution.parameters);
+  if (!optimum || !optimum->inverse.identifiable) return optimum.has_value();
+  for (JointMember& member : joint.members) {
+    if (!member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr)) return false;
+    const double sigma = SigmaOf(member, *optimum);
+    const bool changed = std::abs(std::log(sigma / member.solution.noise.sigma)) > kSame;
+    if (!changed && !member.solution.noise.IsPlain()) continue;  // to change it costs a trajectory
+    member.solution.noise.sigma = sigma;
+    member.cost->set_noise(member.solution.noise);
+  }
+  return true;
+}
+
+/// Parameters and σ in turn.
+void Settle(JointProblem& joint, Solution& solution) {
+  constexpr int kMostRounds = 30;
+  constexpr double kSettled = 0.01;  // standard errors
+  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+    solution.usable = UpdateNoise(joint, solution);
+    const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
+    if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) < kSettled) return;
+    solution = Continue(*joint.cost, solution, joint.solve);
+  }
+}
+
+/// Whether all trajectories are accurate enough, or no finer tolerance is left to try. Where the fit alone was accurate
+/// at the first tolerance, so is the joint one.
+bool AreAccurate(JointProblem& joint, Solution& solution, bool last) {
+  bool accurate = true;
+  for (JointMember& member : joint.members) {
+    const double max_error = MaxTraceError(*member.problem, member.options);
+    member.solution.trace_error = member.alone->trace_error;
+    if (member.solution.trace_error <= max_error) continue;
+    solution.usable = solution.usable && MeasureTraceError(*member.cost, member.tolerance, member.solution);
+    if (member.solution.trace_error <= max_error || last) continue;
+    accurate = false;
+    member.tolerance = FinerTolerance(member.tolerance);
+    member.cost->set_tolerance(member.tolerance);
+  }
+  return accurate || !solution.usable;
+}
+
+}  // namespace
+
+std::vector<int> JointMember::Own(const std::vector<int>& of_all) const {
+  std::vector<int> own;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (std::ranges::find(of_all, at[i]) != of_all.end()) own.push_back(static_cast<int>(i));
+  }
+  return own;
+}
+
+double JointProblem::samples() const {
+  double samples = 0;
+  for (const JointMember& member : members) samples += member.samples();
+  return samples;
+}
+
+void JointProblem::Distribute(const std::vector<double>& parameters) {
+  for (std::size_t k = 0; k < members.size(); ++k) members[k].solution.parameters = cost->Own(k, parameters);
+}
+
+std::string JointProblem::NameOf(int parameter) const {
+  if (parameter < static_cast<int>(shared.size())) return shared[static_cast<std::size_t>(parameter)];
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto own = std::ranges::find(members[k].at, parameter);
+    if (own == members[k].at.end()) continue;
+    const auto i = static_cast<std::size_t>(own - members[k].at.begin());
+    return std::string(members[k].problem->infos[i].name) + " of " + NumberOf(k);
+  }
+  return "";
+}
+
+Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+  if (runs.size() < 2) {
+    return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
+                                                   std::string(runs.empty() ? "there is none" : "there is one"));
+  }
+  JointProblem joint;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    Result<JointMember> member = MakeMember(runs[k], k);
+    if (!member) return tl::unexpected(member.error());
+    joint.members.push_back(*std::move(member));
+  }
+  const MotionModel& model = joint.members.front().problem->model;
+  joint.shared = SharedOf(model, shared);
+  if (joint.shared.empty()) {
+    return Error(StatusCode::kInvalidArgument,
+                 "model " + std::string(model.name) + " has none of the parameters that are to be shared");
+  }
+  Assemble(joint);
+  return joint;
+}
+
+CombinedParabolas CombineParabolas(const JointProblem& joint) {
+  const auto size = static_cast<Index>(joint.solve.fixed.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(size);
+  for (const JointMember& member : joint.members) {
+    const std::vector<double>& own = member.alone_parameters;
+    start(member.at) = Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Index>(own.size()));
+  }
+  std::vector<double> parameters(start.begin(), start.end());
+  AddPriors(joint.cost->priors(), parameters, &sums);
+  Eigen::VectorXd pull = -sums.col(size).head(size);
+  for (const JointMember& member : joint.members) {
+    const Parabola parabola = ParabolaOf(member);
+    sums(parabola.at, parabola.at) += parabola.information;
+    pull(parabola.at) += parabola.information * (parabola.centre - start(parabola.at));
+  }
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (!joint.solve.fixed[static_cast<std::size_t>(i)] && sums(i, i) > 0) free.push_back(i);
+  }
+  const Eigen::VectorXd scale = sums.diagonal()(free).cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(scale.asDiagonal() * sums(free, free) * scale.asDiagonal());
+  const Eigen::VectorXd step = scale.cwiseProduct(factor.solve(scale.cwiseProduct(pull(free))));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto i = static_cast<std::size_t>(free[k]);
+    const double moved = parameters[i] + step[static_cast<Index>(k)];
+    if (std::isfinite(moved)) parameters[i] = std::clamp(moved, joint.solve.lower[i], joint.solve.upper[i]);
+  }
+  return {parameters, sums.topLeftCorner(size, size)};
+}
+
+Solution SolveJointly(JointProblem& joint) {
+  Solution solution;
+  solution.parameters = CombineParabolas(joint).parameters;
+  solution = Refine(*joint.cost, solution, joint.solve);
+  if (!solution.usable) {  // far from parabolas the step may lead where nothing can be traced
+    solution.parameters = StartOfLast(joint);
+    solution = Refine(*joint.cost, solution, joint.solve);
+  }
+  Settle(joint, solution);
+  for (int refinement = 0; !AreAccurate(joint, solution, refinement == kMostTraceRefinements); ++refinement) {
+    solution = Continue(*joint.cost, solution, joint.solve);
+    Settle(joint, solution);
+  }
+  for (JointMember& member : joint.members) {
+    member.solution.usable = solution.usable;
+    member.solution.iterations = solution.iterations;
+    member.solution.message = solution.message;
+    if (solution.usable) member.solution.log_likelihood = LogLikelihoodOf(*member.problem, member.solution);
+  }
+  return solution;
+}
+
+}  // namespace pendulum
