@@ -154,17 +154,6 @@ Table EstimateTable(const FitReport& fit) {
 
 constexpr const char* kNoEstimates = "These are no estimates: nothing was fitted.";
 
-Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
-  Section section{"Parameters"};
-  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
-  section.Add(EstimateTable(fit)).Add(FurtherTable(fit, check));
-  SayMissingErrors(fit, section);
-  if (!fit.std_error_method.empty()) section.Say("Standard errors: " + fit.std_error_method + ".");
-  if (!fit.interval_method.empty()) section.Say("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  SayIdentifiability(fit, section);
-  return section.Say(check != nullptr ? "" : InertiaText(fit, rig));
-}
-
 // --- what follows from the parameters -----------------------------------------------------------------------------
 
 /// An error beyond the value, of a quotient whose divisor may be 0, says nothing.
@@ -181,6 +170,32 @@ std::string DerivedInterval(const DerivedQuantity& quantity) {
     return RoundedText(*end, PdgRounding(quantity.estimate, error));
   };
   return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
+}
+
+/// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
+std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
+  constexpr int kReadingDigits = 3;
+  std::string also;
+  if (const auto degrees = Degrees(unit)) {
+    also = NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit);
+  }
+  if (noise.resolution > 0) {
+    also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.resolution, kReadingDigits) + " resolutions";
+  }
+  return also.empty() ? "" : " (" + also + ")";
+}
+
+}  // namespace
+
+Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
+  Section section{"Parameters"};
+  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
+  section.Add(EstimateTable(fit)).Add(FurtherTable(fit, check));
+  SayMissingErrors(fit, section);
+  if (!fit.std_error_method.empty()) section.Say("Standard errors: " + fit.std_error_method + ".");
+  if (!fit.interval_method.empty()) section.Say("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
+  SayIdentifiability(fit, section);
+  return section.Say(check != nullptr ? "" : InertiaText(fit, rig));
 }
 
 Section DerivedSection(const FitReport& fit) {
@@ -212,19 +227,6 @@ Section CorrelationSection(const FitReport& fit) {
   return {"Correlations", "those below 0.1 in size are not listed", {std::move(table)}};
 }
 
-/// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
-std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
-  constexpr int kReadingDigits = 3;
-  std::string also;
-  if (const auto degrees = Degrees(unit)) {
-    also = NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit);
-  }
-  if (noise.resolution > 0) {
-    also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.resolution, kReadingDigits) + " resolutions";
-  }
-  return also.empty() ? "" : " (" + also + ")";
-}
-
 std::string NoiseText(const FitReport& fit) {
   const NoiseEstimate& noise = fit.noise;
   std::string text(NoiseFamilyName(noise.family));
@@ -234,6 +236,32 @@ std::string NoiseText(const FitReport& fit) {
       noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
   return text + " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
 }
+
+Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
+  Section section{"Equation of motion", "", {Formula{TermsTogether(FittedEquation(fit, rig))}}};
+  if (rig) return section.Say("th in rad from hanging straight down, torques in N m.");
+  return section.Say(
+      "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
+      "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
+      "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
+}
+
+std::string TermsTogether(const std::string& equation) {
+  std::string text;
+  const auto is_sign = [&](std::size_t i) {
+    return i < equation.size() && std::string_view("+-=").find(equation[i]) < 3;
+  };
+  for (std::size_t i = 0; i < equation.size(); ++i) {
+    if (equation[i] == ' ' && !is_sign(i + 1)) {
+      text += kNoBreak;
+    } else {
+      text += equation[i];
+    }
+  }
+  return text;
+}
+
+namespace {
 
 Section StatisticsSection(const FitReport& fit) {
   const FitStatistics& statistics = fit.statistics;
@@ -256,31 +284,7 @@ Section StatisticsSection(const FitReport& fit) {
                          " trajectories, accurate to " + NumberText(fit.trace_error, 1) + " " + fit.reading_unit}}}};
 }
 
-Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
-  Section section{"Equation of motion", "", {Formula{TermsTogether(FittedEquation(fit, rig))}}};
-  if (rig) return section.Say("th in rad from hanging straight down, torques in N m.");
-  return section.Say(
-      "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
-      "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
-      "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
-}
-
 }  // namespace
-
-std::string TermsTogether(const std::string& equation) {
-  std::string text;
-  const auto is_sign = [&](std::size_t i) {
-    return i < equation.size() && std::string_view("+-=").find(equation[i]) < 3;
-  };
-  for (std::size_t i = 0; i < equation.size(); ++i) {
-    if (equation[i] == ' ' && !is_sign(i + 1)) {
-      text += kNoBreak;
-    } else {
-      text += equation[i];
-    }
-  }
-  return text;
-}
 
 Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
   Section section{TitleOf("Parameters", fit, is_one_of_several)};

@@ -9,6 +9,8 @@
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
 #include "pendulum/report/equation.h"
+#include "pendulum/report/fit_json.h"
+#include "pendulum/report/joint_json.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -17,8 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kSchemaVersion = 1;
-
-Json ResolutionJson(const DataSummary& data) { return data.resolution > 0 ? Json(data.resolution) : Json(nullptr); }
 
 std::string WindowReason(const DataSummary& data) {
   return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
@@ -49,112 +49,6 @@ Json DataJson(const RunReport& report) {
       .Set("start", StartJson(report))
       .Set("sampling", SamplingJson(report.sampling))
       .Done();
-}
-
-Json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper) {
-  if (!lower && !upper) return nullptr;
-  return Json::array({NumberOrNull(lower), NumberOrNull(upper)});
-}
-
-Json ParameterJson(const ParameterEstimate& parameter) {
-  NumberObject object;
-  if (!parameter.open_interval.empty()) object.Because("the interval is open: " + parameter.open_interval);
-  return object.Set("estimate", parameter.estimate)
-      .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
-      .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
-      .Set("systematic_std_error", NumberOrNull(parameter.systematic_std_error))
-      .Set("unit", Json(parameter.unit))
-      .Set("fixed", Json(parameter.fixed))
-      .Set("at_bound", Json(parameter.at_bound))
-      .Done();
-}
-
-Json ParametersJson(const FitReport& fit) {
-  Json parameters = Json::object();
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    parameters[std::string(parameter.info.name)] = ParameterJson(parameter);
-  }
-  return parameters;
-}
-
-Json DerivedJson(const FitReport& fit) {
-  Json derived = Json::object();
-  for (const DerivedQuantity& quantity : fit.derived) {
-    derived[quantity.name] =
-        NumberObject()
-            .Set("estimate", quantity.estimate)
-            .Set("std_error", quantity.std_error, "a parameter it comes from has no standard error")
-            .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
-            .Set("unit", Json(quantity.unit))
-            .Done();
-  }
-  return derived;
-}
-
-template <typename Element>
-Json MatrixJson(const std::vector<std::string>& names, const Element& element) {
-  Json matrix = Json::array();
-  for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(names.size()); ++row) {
-    Json values = Json::array();
-    for (Eigen::Index column = 0; column < static_cast<Eigen::Index>(names.size()); ++column) {
-      values.push_back(NumberOrNull(element(row, column)));
-    }
-    matrix.push_back(std::move(values));
-  }
-  return {{"names", names}, {"matrix", std::move(matrix)}};
-}
-
-Json CovarianceJson(const FitReport& fit) {
-  return MatrixJson(fit.covariance_names, [&](Eigen::Index i, Eigen::Index j) { return fit.covariance(i, j); });
-}
-
-Json CorrelationJson(const FitReport& fit) {
-  return MatrixJson(fit.covariance_names, [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
-}
-
-Json SystematicJson(const FitReport& fit) {
-  return MatrixJson(fit.systematic_names,
-                    [&](Eigen::Index i, Eigen::Index j) { return fit.systematic_covariance(i, j); });
-}
-
-Json NoiseJson(const FitReport& fit, const DataSummary& data) {
-  const NoiseEstimate& noise = fit.noise;
-  return NumberObject()
-      .Set("model", Json(NoiseFamilyName(noise.family)))
-      .Set("why", Json(noise.why))
-      .Set(KeyWithUnit("sigma", fit.reading_unit), noise.sigma)
-      .Set("sigma_std_error", NumberOrNull(noise.sigma_std_error))
-      .Set(KeyWithUnit("resolution", fit.reading_unit), ResolutionJson(data))
-      .Set("saturated_samples", Json(noise.censored))
-      .Set("lag1_correlation", noise.lag1_correlation)
-      .Set("correlation", Json(noise.memory.Name()))
-      .Done();
-}
-
-Json StatisticsJson(const FitReport& fit) {
-  const FitStatistics& statistics = fit.statistics;
-  return NumberObject()
-      .Set(KeyWithUnit("rms_residual", fit.reading_unit), statistics.rms_residual)
-      .Set("log_likelihood", statistics.log_likelihood)
-      .Set("aic", statistics.aic)
-      .Set("aicc", statistics.aicc)
-      .Set("bic", statistics.bic)
-      .Set("durbin_watson", statistics.durbin_watson)
-      .Set("ljung_box_p", statistics.ljung_box_p)
-      .Set("runs_p", statistics.runs_p)
-      .Set("effective_samples", statistics.effective_samples)
-      .Done();
-}
-
-Json IdentifiabilityJson(const FitReport& fit) {
-  Json all = Json::array();
-  for (const Identifiability& known : fit.identifiability) {
-    all.push_back({{"parameter", known.parameter},
-                   {"verdict", VerdictName(known.verdict)},
-                   {"direction", known.direction},
-                   {"advice", TextOrNull(known.advice)}});
-  }
-  return all;
 }
 
 /// What a failed fit does not have is null; its `reason` says why.
@@ -193,24 +87,45 @@ Json WarningsJson(const RunReport& report) {
   return warnings;
 }
 
+Json CalibrationJson(const RunReport& report) { return report.calibration; }
+
+/// Of one recording itself; of a joint fit one for each recording, in their order.
+template <typename Part>
+Json OfRecordings(const RunReport& report, const Part& part) {
+  if (!report.is_joint()) return part(report);
+  Json all = Json::array();
+  for (const RunReport& run : report.runs) all.push_back(part(run));
+  return all;
+}
+
+std::string WhyNoClosedForms(const RunReport& report) {
+  std::string why = report.closed_forms || report.is_joint() ? "" : report.no_closed_forms;
+  for (std::size_t k = 0; k < report.runs.size(); ++k) {
+    if (report.runs[k].closed_forms) continue;
+    why += (why.empty() ? "" : "; ") + RecordingLabel(report, k) + ": " + report.runs[k].no_closed_forms;
+  }
+  return why;
+}
+
 }  // namespace
 
 nlohmann::ordered_json ToJson(const RunReport& report) {
   Json fits = Json::array();
   for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    fits.push_back(FitJson(report, i));
+    fits.push_back(report.is_joint() ? JointFitJson(report, i) : FitJson(report, i));
   }
   NumberObject json;
   json.Set("schema_version", Json(kSchemaVersion))
       .Set("tool", Json{{"name", "fit_pendulum"}, {"version", kVersion}})
-      .Set("data", DataJson(report))
+      .Set("data", OfRecordings(report, DataJson))
       .Set("rig", report.rig ? report.rig->source : Json(nullptr))
-      .Set("calibration", report.calibration)
+      .Set("calibration", OfRecordings(report, CalibrationJson))
       .Set("fits", std::move(fits))
       .Set("comparison", ComparisonJson(report))
-      .Set("closed_forms", ClosedFormsJson(report))
+      .Set("closed_forms", OfRecordings(report, ClosedFormsJson))
       .Set("warnings", WarningsJson(report));
-  if (!report.closed_forms) json.Because(report.no_closed_forms);
+  const std::string why = WhyNoClosedForms(report);
+  if (!why.empty()) json.Because(why);
   return json.Done();
 }
 

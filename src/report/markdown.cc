@@ -142,6 +142,7 @@ Items VerdictItems(const RunReport& report, std::size_t main) {
                         ": " + fit.reason);
   if (report.comparison) items.texts.push_back(report.comparison->reason);
   if (const Constancy* constancy = report.ConstancyOf(main)) items.texts.push_back(constancy->verdict);
+  if (report.is_joint()) items.texts.push_back(report.joint[main].homogeneity.verdict);
   std::erase(items.texts, "");
   return items;
 }
@@ -194,7 +195,9 @@ std::string ToMarkdown(const RunReport& report) {
   const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };
   std::ranges::copy_if(all, std::back_inserter(sections), is_warning);
   std::ranges::copy_if(all, std::back_inserter(sections), std::not_fn(is_warning));
-  const std::string name = report.data.path.empty() ? "a recording" : report.data.path;
+  const std::string name = report.is_joint()          ? std::to_string(report.runs.size()) + " recordings of one rig"
+                           : report.data.path.empty() ? "a recording"
+                                                      : report.data.path;
   return "# Pendulum: " + MarkdownText(name) + "\n\n" + ToMarkdown(sections);
 }
 

@@ -34,7 +34,7 @@ std::string ScriptText(const Json& json) {
 
 }  // namespace
 
-std::string ToHtml(const Recording& used, const RunReport& report, const std::string& command) {
+std::string ToHtml(const std::vector<Recording>& used, const RunReport& report, const std::string& command) {
   const std::string_view page = PageTemplate();
   const std::array<std::pair<std::string_view, std::string>, 3> parts = {
       {{"@RESULT@", ScriptText(ToJson(report))},

@@ -78,7 +78,20 @@ std::vector<Warning> AllWarnings(const RunReport& report) {
     }
     AddOnce(named, all);
   }
+  for (std::size_t k = 0; k < report.runs.size(); ++k) {
+    std::vector<Warning> own = AllWarnings(report.runs[k]);
+    for (Warning& warning : own) warning.message = RecordingLabel(report, k) + ": " + warning.message;
+    AddOnce(own, all);
+  }
   return all;
+}
+
+std::string RecordingLabel(const RunReport& report, std::size_t run) {
+  const DataSummary& data = report.runs[run].data;
+  std::string label = "recording " + std::to_string(run + 1);
+  if (data.path.empty()) return label;
+  const bool again = std::ranges::count(report.runs, data.path, [](const RunReport& other) { return other.data.path; }) > 1;
+  return label + " (" + data.path + (again ? ", free swing " + std::to_string(data.release) : "") + ")";
 }
 
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) {

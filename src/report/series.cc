@@ -152,7 +152,14 @@ nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report
   return json;
 }
 
-std::string ToSeriesJsonText(const Recording& used, const RunReport& report) {
+nlohmann::ordered_json SeriesJson(const std::vector<Recording>& used, const RunReport& report, SeriesDetail detail) {
+  if (!report.is_joint()) return SeriesJson(used.front(), report, detail);
+  Json all = Json::array();
+  for (std::size_t k = 0; k < used.size(); ++k) all.push_back(SeriesJson(used[k], report.runs[k], detail));
+  return all;
+}
+
+std::string ToSeriesJsonText(const std::vector<Recording>& used, const RunReport& report) {
   return SeriesJson(used, report).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

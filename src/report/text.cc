@@ -11,6 +11,7 @@
 #include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/fit_sections.h"
+#include "pendulum/report/joint_sections.h"
 #include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
@@ -66,6 +67,11 @@ Section WarningSection(const RunReport& report) {
 }  // namespace
 
 Sections ReportSections(const RunReport& report) {
+  if (report.is_joint()) {
+    Sections joint = JointSections(report);
+    if (!AllWarnings(report).empty()) joint.push_back(WarningSection(report));
+    return joint;
+  }
   Sections sections = {DataSection(report.data)};
   Append(SamplingSections(report), sections);
   Append(ComparisonSections(report), sections);

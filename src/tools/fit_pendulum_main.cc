@@ -28,7 +28,7 @@ const std::string kModelHelp = "Model of the motion, one of " + pendulum::Motion
                                ", several of them between commas to compare, or all; default coulomb.";
 
 DEFINE_string(data, "",
-              "Recording (CSV), or several between commas; the header names the columns and their units, such as "
+              "Recording (CSV), or several of one rig between commas, fitted together (--shared); the header names the columns and their units, such as "
               "time_s,angle_deg; - is standard input.");
 DEFINE_string(calibration, "",
               "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
@@ -40,8 +40,11 @@ DEFINE_string(value_column, "",
 DEFINE_string(unit, "",
               "Unit of the values: rad, deg, rad_s, deg_s, counts or volts; default that in the column's name.");
 DEFINE_string(sample_rate_hz, "", "Samples per second of a file without times; default its line # sample_rate_hz.");
-DEFINE_string(data_list, "", "File that lists recordings, one path a line, each to be fitted by itself; default none.");
+DEFINE_string(data_list, "", "File that lists recordings, one path a line, instead of --data; default none.");
 DEFINE_string(release, "", "Which free swing of a recording to fit: a number from 1, or all; default the longest.");
+DEFINE_string(shared, "",
+              "What several recordings have in common: all of inertia and friction, some of their names, or none (each "
+              "is then fitted by itself); default all of several recordings, none of one recording's releases.");
 DEFINE_string(rig, "", "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.");
 DEFINE_string(model, "coulomb", kModelHelp.c_str());
 DEFINE_string(start, "auto", "How the recording begins: auto (the data tell), release or moving; default auto.");
@@ -61,7 +64,8 @@ DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: hu
 DEFINE_string(interval, "auto",
               "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
 DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
-DEFINE_string(threads, "", "Threads of the bootstrap, 0 for all cores; the result does not depend on it; default 0.");
+DEFINE_string(threads, "", "Threads of the bootstrap and of several recordings, 0 for all cores; the result does not depend on it; "
+              "default 0.");
 DEFINE_bool(closed_form_only, false,
             "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
             "volts without a calibration.");
@@ -86,7 +90,8 @@ constexpr const char* kUsage =
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
     "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
-    "Of several fits those that can be made are written, and the largest code counts.\n"
+    "Of several fits those that can be made are written, and the largest code counts. Several recordings are taken for\n"
+    "one rig's and fitted together; --shared none fits each by itself.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
@@ -94,6 +99,7 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.data = FLAGS_data;
   flags.data_list = FLAGS_data_list;
   flags.release = FLAGS_release;
+  flags.shared = FLAGS_shared;
   flags.init = FLAGS_init;
   flags.bounds = FLAGS_bounds;
   flags.prior = FLAGS_prior;
@@ -142,17 +148,25 @@ std::string CommandLine() {
   return command;
 }
 
+/// The residuals of recording k of a run.
+std::string ResidualsOf(const FitRun& run, std::size_t k) {
+  const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
+  const std::size_t main = run.report.MainFit();
+  const TextbookOverlay none;
+  const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks[main].overlay;
+  return ToResidualCsv(run.used[k], report.fits[main], overlay);
+}
+
 /// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
 void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index, int count,
                  std::vector<Output>& outputs) {
   const RunReport& report = run.report;
+  const auto recordings = static_cast<int>(run.used.size());
   if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(report)});
-  if (!options.residuals.empty()) {
-    const TextbookOverlay none;
-    const std::size_t main = report.MainFit();
-    const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks[main].overlay;
-    outputs.push_back(
-        {NumberedPath(options.residuals, index, count), ToResidualCsv(run.used, report.fits[main], overlay)});
+  for (int k = 0; k < recordings && !options.residuals.empty(); ++k) {
+    const std::string path = report.is_joint() ? NumberedPath(options.residuals, k, recordings)
+                                               : NumberedPath(options.residuals, index, count);
+    outputs.push_back({path, ResidualsOf(run, static_cast<std::size_t>(k))});
   }
   if (!options.series.empty()) {
     outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run.used, report)});
@@ -165,13 +179,17 @@ void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index
   }
 }
 
-/// The result for people, with a picture when asked for.
+/// The result for people, with a picture of each recording when asked for.
 Result<std::string> TextOf(const FitPendulumOptions& options, const FitRun& run) {
-  const std::string text = ToText(run.report, {.colour = WantsColour(STDOUT_FILENO)});
-  if (!options.terminal_plot) return text;
-  const auto drawn = RunGnuplot(TerminalPlot(run.used, run.report.fits[run.report.MainFit()]));
-  if (!drawn) return tl::unexpected(drawn.error());
-  return PictureText(*drawn) + "\n" + text;
+  std::string text;
+  const std::size_t main = run.report.MainFit();
+  for (std::size_t k = 0; k < run.used.size() && options.terminal_plot; ++k) {
+    const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
+    const auto drawn = RunGnuplot(TerminalPlot(run.used[k], report.fits[main]));
+    if (!drawn) return tl::unexpected(drawn.error());
+    text += (run.report.is_joint() ? RecordingLabel(run.report, k) + "\n" : "") + PictureText(*drawn) + "\n";
+  }
+  return text + ToText(run.report, {.colour = WantsColour(STDOUT_FILENO)});
 }
 
 /// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
@@ -212,7 +213,8 @@ Result<void> ParseFitOptions(const FitPendulumFlags& flags, const std::vector<Mo
 Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
   const FitPendulumFlags none;
-  const std::array<Word<bool>, 12> of_a_fit = {{{"--residuals", flags.residuals != none.residuals},
+  const std::array<Word<bool>, 13> of_a_fit = {{{"--shared", flags.shared != none.shared && flags.shared != "none"},
+                                                {"--residuals", flags.residuals != none.residuals},
                                                 {"--start", flags.start != none.start},
                                                 {"--fix", flags.fix != none.fix},
                                                 {"--init", flags.init != none.init},
@@ -286,6 +288,32 @@ Result<void> ParseReadOptions(const FitPendulumFlags& flags, ReadOptions& option
   return {};
 }
 
+/// What recordings share: all of inertia and friction unless it is said.
+Result<void> ParseShared(const FitPendulumFlags& flags, FitPendulumOptions& options) {
+  const std::vector<std::string> all = PhysicalNames(options.models);
+  options.shared = all;
+  if (flags.shared.empty()) return {};
+  options.sharing = flags.shared == "none" ? Sharing::kNothing : Sharing::kAsked;
+  if (flags.shared == "none" || flags.shared == "all") return {};
+  options.shared = Split(flags.shared, ',');
+  for (const std::string& name : options.shared) {
+    if (std::ranges::find(all, name) == all.end()) {
+      return BadFlag("--shared names '" + name + "', which recordings cannot share; they can share " + NameList(all) +
+                     ", or all, or none");
+    }
+    if (std::ranges::count(options.shared, name) > 1) return BadFlag("--shared names " + name + " twice");
+  }
+  return {};
+}
+
+/// A joint fit has the intervals of its covariance, or profiles.
+Result<void> CheckJoint(const FitPendulumFlags& flags, const FitPendulumOptions& options) {
+  const bool joint = options.IsJoint(options.data.size()) || (!flags.data_list.empty() && options.IsJoint(2));
+  if (!joint || options.fit.interval != IntervalMethod::kBootstrap) return {};
+  return BadFlag("--interval bootstrap is for recordings one by one (--shared none); several together have covariance "
+                 "and profile");
+}
+
 }  // namespace
 
 std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
@@ -296,6 +324,20 @@ std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
   if (!report.empty()) outputs.push_back({"--report", NumberedPath(report, index, count)});
   if (!markdown.empty()) outputs.push_back({"--markdown", NumberedPath(markdown, index, count)});
   return outputs;
+}
+
+std::vector<NamedFile> FitPendulumOptions::JointOutputs(int recordings) const {
+  std::vector<NamedFile> outputs = Outputs();
+  std::erase_if(outputs, [](const NamedFile& output) { return output.flag == "--residuals"; });
+  for (int k = 0; k < recordings && !residuals.empty(); ++k) {
+    outputs.push_back({"--residuals", NumberedPath(residuals, k, recordings)});
+  }
+  return outputs;
+}
+
+bool FitPendulumOptions::IsJoint(std::size_t recordings) const {
+  if (closed_form_only || sharing == Sharing::kNothing) return false;
+  return recordings > 1 || sharing == Sharing::kAsked;
 }
 
 std::vector<NamedFile> FitPendulumOptions::Inputs() const {
@@ -321,6 +363,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   const auto release = ParseRelease(flags);
   if (!release) return tl::unexpected(release.error());
   options.swing.release = *release;
+  if (const auto parsed = ParseShared(flags, options); !parsed) return tl::unexpected(parsed.error());
   options.data = Split(flags.data, ',');
   options.data_list = flags.data_list;
   if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
@@ -333,6 +376,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.markdown = flags.markdown;
   options.terminal_plot = flags.terminal_plot;
   options.closed_form_only = flags.closed_form_only;
+  if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());
   return options;
 }
 

@@ -30,6 +30,7 @@ struct FitPendulumFlags {
   std::string series;
   std::string report;
   std::string markdown;
+  std::string shared;
   bool terminal_plot = false;
   bool closed_form_only = false;
   std::string calibration;
@@ -47,9 +48,12 @@ struct FitPendulumFlags {
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
 };
 
+/// Whether recordings are fitted together: unless it is said, several recordings are, and the releases of one are not.
+enum class Sharing { kByDefault, kNothing, kAsked };
+
 /// What fit_pendulum is asked to do.
 struct FitPendulumOptions {
-  std::vector<std::string> data;  ///< Paths of the recordings, each fitted by itself; "-" is standard input.
+  std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
   std::string data_list;          ///< Path of a file that lists them instead; empty for none.
   std::string calibration;        ///< Path; empty for none. ReadOptions::calibration is for the caller to read from it.
   ReadOptions read;
@@ -62,11 +66,19 @@ struct FitPendulumOptions {
   std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
   bool terminal_plot = false;       ///< Draws the recording on standard output.
   bool closed_form_only = false;    ///< No fit is made; of `fit`, the model counts.
+  Sharing sharing = Sharing::kByDefault;
+  std::vector<std::string> shared;  ///< Names of the parameters that several recordings share.
   std::vector<std::string> models;  ///< In the order asked for; several are compared.
   FitOptions fit;                   ///< Its model is the first of them.
 
   /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;
+
+  /// Those of one joint fit of `recordings`: numbered are the residuals of each.
+  std::vector<NamedFile> JointOutputs(int recordings) const;
+
+  /// Whether that many recordings are fitted together.
+  bool IsJoint(std::size_t recordings) const;
 
   /// The files to be read, with their flags.
   std::vector<NamedFile> Inputs() const;

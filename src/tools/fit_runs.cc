@@ -5,62 +5,18 @@
 #include <iterator>
 #include <utility>
 
-#include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/model_comparison.h"
-#include "pendulum/closed_form/closed_forms.h"
-#include "pendulum/closed_form/sampling.h"
-#include "pendulum/fitting/undersampled.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/data_list.h"
-#include "pendulum/recording/read_recording.h"
-#include "pendulum/recording/repair_values.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/recording/window.h"
+#include "tools/fit_joint_run.h"
+#include "tools/run_parts.h"
 
 namespace pendulum {
 namespace {
-
-/// A recording that was read, and the swings to be fitted in it.
-struct ReadSwings {
-  Recording recording;
-  ChosenSwings swings;
-  Eigen::Index samples = 0;  ///< As read, before repairs.
-  RunReport common;          ///< What the reports of all its swings say.
-};
-
-/// `rig` wins over what the recording says of its rig.
-Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, options.read);
-  if (!read) return tl::unexpected(read.error());
-  if (!rig && !read->rig_json.empty()) {
-    auto own = ParseRig(read->rig_json, read->path + ": # rig");
-    if (!own) return tl::unexpected(own.error());
-    rig = *std::move(own);
-  }
-  ReadSwings one;
-  one.samples = read->size();
-  // Readings far apart in time do not resemble their neighbours, which repairs rest on.
-  one.recording = IsUndersampled(*read, rig) ? *std::move(read) : RepairValues(*std::move(read));
-  auto swings = ChooseSwings(one.recording, options.swing, rig);
-  if (!swings) return tl::unexpected(swings.error());
-  one.swings = *std::move(swings);
-  one.common.rig = std::move(rig);
-  one.common.warnings = std::exchange(one.recording.warnings, {});
-  if (one.recording.calibration) one.common.calibration = one.recording.calibration->source;
-  return one;
-}
-
-/// The error of one among several runs, which names its recording and, unless 0, its release.
-tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
-  const std::string name = path == "-" ? "standard input" : path;
-  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
-  const std::string where = name + ": ";
-  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
-  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
-                                status.message.substr(skip));
-}
 
 /// The samples of a swing, without a fit.
 Result<FittedModels> TakeSwing(Recording recording, const FreeSwing& swing) {
@@ -82,31 +38,6 @@ MotionModel ClosedFormModel(const FitPendulumOptions& options, const Recording& 
   return linear;
 }
 
-/// Puts the closed forms with that model's friction into the report.
-void AddClosedForms(const MotionModel& model, FitRun& run) {
-  RunReport& report = run.report;
-  auto forms = EstimateClosedForms(run.used, model);
-  if (!forms) {
-    report.no_closed_forms = forms.error().message;
-    return;
-  }
-  report.closed_forms = *std::move(forms);
-  report.closed_forms_model = model.name;
-}
-
-/// Checks every fit against the closed forms with its own friction; a failed one has an empty check.
-void AddChecks(FitRun& run) {
-  RunReport& report = run.report;
-  if (!report.closed_forms) return;
-  for (const FitReport& fit : report.fits) {
-    report.checks.emplace_back();
-    if (fit.termination == Termination::kFailed) continue;
-    const bool same = fit.model.name == report.closed_forms_model;
-    const auto own = same ? Result<ClosedForms>(*report.closed_forms) : EstimateClosedForms(run.used, fit.model);
-    if (own) report.checks.back() = CheckClosedForms(run.used, *own, fit, report.rig);
-  }
-}
-
 /// What is concluded from the fits together and from each.
 void AddAnalysis(const FitPendulumOptions& options, const FittedModels& fitted, FitRun& run) {
   RunReport& report = run.report;
@@ -119,45 +50,27 @@ void AddAnalysis(const FitPendulumOptions& options, const FittedModels& fitted, 
   }
 }
 
-/// How the swing was sampled, beside what turning points and rig tell of its period. An undersampled one shows none,
-/// and its fit has warned.
-void AddSampling(const FreeSwing& swing, FitRun& run) {
-  RunReport& report = run.report;
-  const double clock_scale = run.used.clock_scale;
-  double half_period = swing.half_period;
-  if (!(half_period > 0) && report.closed_forms) half_period = report.closed_forms->table.half_period / clock_scale;
-  const bool is_seen = half_period > 0 && !(swing.undersampled && report.rig);
-  const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
-  std::optional<double> expected = ExpectedFrequency(report.rig);
-  if (expected) *expected *= clock_scale;
-  const bool told =
-      swing.undersampled && !report.fits.empty() && ExitCode(report.fits[report.MainFit()].termination) == 0;
-  if (expected && told) expected = 0.5 / swing.half_period;
-  report.sampling = DescribeSampling(run.used, seen, expected);
-  if (swing.undersampled) return;
-  std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
-}
-
 /// What is reported of one swing. kFailedPrecondition: there are neither fits nor closed forms.
 Result<FitRun> MakeRun(const FitPendulumOptions& options, const ReadSwings& one, int release, FittedModels fitted) {
   FitRun run{one.common, {}};
   run.report.data = SummarizeData(fitted.used, fitted.swing, one.swings, release, one.samples);
   if (!options.closed_form_only) AddAnalysis(options, fitted, run);
-  run.used = std::move(fitted.used);
+  run.used.push_back(std::move(fitted.used));
+  const Recording& used = run.used.front();
   run.report.fits = std::move(fitted.fits);
   if (fitted.swing.undersampled) {
     run.report.no_closed_forms =
         "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
   } else if (options.closed_form_only) {
-    AddClosedForms(ClosedFormModel(options, run.used, run.report), run);
+    AddClosedForms(ClosedFormModel(options, used, run.report), used, run.report);
   } else {
-    AddClosedForms(run.report.fits[run.report.MainFit()].model, run);
-    AddChecks(run);
+    AddClosedForms(run.report.fits[run.report.MainFit()].model, used, run.report);
+    AddChecks(used, run.report);
   }
   if (options.closed_form_only && !run.report.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, run.report.no_closed_forms);
   }
-  AddSampling(fitted.swing, run);
+  AddSampling(fitted.swing, used, run.report);
   return run;
 }
 
@@ -205,6 +118,9 @@ Result<Setup> ReadSetup(FitPendulumOptions& options) {
 }
 
 Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count) {
+  if (options.IsJoint(setup.paths.size())) {
+    return CheckOutputs(options.JointOutputs(static_cast<int>(count)), setup.inputs);
+  }
   if (count == 1) return {};
   for (const NamedFile& output : options.Outputs()) {
     if (!IsStandardOutput(output.path)) continue;
@@ -220,6 +136,12 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
 
 Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<Result<FitRun>> runs;
+  if (options.IsJoint(setup.paths.size())) {
+    auto joint = FitJointRun(options, setup);
+    if (!joint) return tl::unexpected(joint.error());
+    runs.emplace_back(*std::move(joint));
+    return runs;
+  }
   const std::size_t files = setup.paths.size();
   std::size_t count = files;  // of places: at least one for each recording
   for (const std::string& path : setup.paths) {

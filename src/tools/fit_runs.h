@@ -15,10 +15,10 @@
 
 namespace pendulum {
 
-/// One free swing of one recording, fitted, or with its closed forms only.
+/// One free swing of one recording, fitted, or with its closed forms only; or several together.
 struct FitRun {
   RunReport report;
-  Recording used;  ///< The samples of the swing.
+  std::vector<Recording> used;  ///< The samples of the swing, or of each recording of a joint fit.
 };
 
 /// What the runs need beside their flags.
@@ -35,7 +35,8 @@ Result<Setup> ReadSetup(FitPendulumOptions& options);
 /// kInvalidArgument, kCannotWrite: as CheckOutputs, or standard output for more than one.
 Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count);
 
-/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on.
+/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on. A joint
+/// fit is one run, and none where one of its recordings cannot be fitted.
 /// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
 Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
 

@@ -16,6 +16,16 @@ namespace pendulum {
 /// too. Of the correlations those of at least 0.1 are listed, the largest first. check: of this fit, or nullptr.
 Sections FitSections(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check);
 
+/// The parts of FitSections, for fits of several recordings too: parameters with what is known of each, derived
+/// quantities, correlations, the equation with its numbers.
+Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check);
+Section DerivedSection(const FitReport& fit);
+Section CorrelationSection(const FitReport& fit);
+Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig);
+
+/// "gaussian, sigma 0.00346 ± 0.00006 rad (0.198 deg, 1 resolutions)".
+std::string NoiseText(const FitReport& fit);
+
 /// The table of estimates alone, and the status of a fit that did not converge: "Parameters of drag".
 Section ParameterSection(const FitReport& fit, bool is_one_of_several);
 

@@ -12,6 +12,7 @@
 
 #include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/analysis/constancy.h"
+#include "pendulum/analysis/homogeneity.h"
 #include "pendulum/analysis/model_comparison.h"
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/closed_forms.h"
@@ -48,7 +49,15 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used);
 DataSummary SummarizeData(const Recording& used, const FreeSwing& swing, const ChosenSwings& swings, int release,
                           Eigen::Index samples);
 
-/// All that a run of fit_pendulum found: what every form of the report is made from.
+/// What a fit of several recordings has besides.
+struct JointPart {
+  std::vector<std::string> shared;  ///< Names of the parameters that the recordings share.
+  Homogeneity homogeneity;
+  std::vector<std::string> alone;  ///< How the fit to each recording alone ended: its status, and why if not converged.
+};
+
+/// All that a run of fit_pendulum found, or a joint fit of several recordings (then `data`, sampling, calibration and
+/// closed forms stand in `runs`, and `fits` have what is shared): what every form of the report is made from.
 struct RunReport {
   DataSummary data;
   std::optional<Rig> rig;
@@ -61,6 +70,8 @@ struct RunReport {
   std::vector<ClosedFormCheck> checks;      ///< One for each fit, in their order, or none at all.
   std::optional<Comparison> comparison;     ///< Of the fits, where several were asked for.
   std::vector<Constancy> constancy;         ///< One for each fit, in their order, or none at all.
+  std::vector<JointPart> joint;             ///< One for each fit of several recordings together, else empty.
+  std::vector<RunReport> runs;              ///< Of a joint fit: each recording, with `fits` as they see it.
   std::vector<Warning> warnings;            ///< Of the recording; a fit's own stand in its FitReport.
 
   /// The check of the fit of that index, or nullptr.
@@ -68,6 +79,8 @@ struct RunReport {
 
   /// The constancy of the fit of that index, or nullptr.
   const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
+
+  bool is_joint() const { return !runs.empty(); }
 
   /// The fit that stands for the run: the recommended one, else the first that converged, else the first.
   std::size_t MainFit() const;
@@ -78,6 +91,9 @@ struct RunReport {
 
 /// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about.
 std::vector<Warning> AllWarnings(const RunReport& report);
+
+/// "recording 2 (b.csv)": recording `run` (0-based) of a joint fit.
+std::string RecordingLabel(const RunReport& report, std::size_t run);
 
 /// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -32,7 +33,11 @@ enum class SeriesDetail { kAll, kPage };
 nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report,
                                   SeriesDetail detail = SeriesDetail::kAll);
 
+/// The same; of a joint fit an array with one for each recording, in their order. used: of each recording.
+nlohmann::ordered_json SeriesJson(const std::vector<Recording>& used, const RunReport& report,
+                                  SeriesDetail detail = SeriesDetail::kAll);
+
 /// SeriesJson as one line of UTF-8 text.
-std::string ToSeriesJsonText(const Recording& used, const RunReport& report);
+std::string ToSeriesJsonText(const std::vector<Recording>& used, const RunReport& report);
 
 }  // namespace pendulum

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/report/run_report.h"
+
+namespace pendulum {
+
+/// Fit `index` of a joint report: what is shared in `parameters`, each recording's own numbers in `runs`, whether the
+/// recordings agree in `homogeneity` ($defs/joint_fit of the schema).
+nlohmann::ordered_json JointFitJson(const RunReport& report, std::size_t index);
+
+}  // namespace pendulum

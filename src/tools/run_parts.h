@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pendulum/base/status.h"
+#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/report/run_report.h"
+#include "tools/fit_pendulum_options.h"
+
+namespace pendulum {
+
+/// A recording that was read, and the swings to be fitted in it.
+struct ReadSwings {
+  Recording recording;
+  ChosenSwings swings;
+  Eigen::Index samples = 0;  ///< As read, before repairs.
+  RunReport common;          ///< What the reports of all its swings say.
+};
+
+/// `rig` wins over what the recording says of its rig.
+Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig);
+
+/// The error of one among several runs, which names its recording and, unless 0, its release.
+tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release);
+
+/// Puts the closed forms with that model's friction into the report.
+void AddClosedForms(const MotionModel& model, const Recording& used, RunReport& report);
+
+/// Checks every fit against the closed forms with its own friction; a failed one has an empty check.
+void AddChecks(const Recording& used, RunReport& report);
+
+/// How the swing was sampled, beside what turning points and rig tell of its period. An undersampled one shows none,
+/// and its fit has warned.
+void AddSampling(const FreeSwing& swing, const Recording& used, RunReport& report);
+
+}  // namespace pendulum
