@@ -74,7 +74,7 @@ const FitReport* BestFit(const std::vector<FitReport>& fits) {
 }
 
 std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit,
-                                               const FitOptions& options) {
+                                               const FitOptions& options, bool with_bounded) {
   const FittedMotion motion(used, fit, options.rig);
   Eigen::MatrixXd jacobian;
   const auto readings = motion.Readings(motion.instants(), &jacobian);
@@ -83,7 +83,7 @@ std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitR
   std::vector<Index> columns;
   std::vector<double> lowest, highest;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (fit.parameters[i].fixed) continue;
+    if (fit.parameters[i].fixed || (fit.parameters[i].at_bound && !with_bounded)) continue;
     const auto [low, high] = Room(fit.parameters[i], options);
     columns.push_back(static_cast<Index>(i));
     lowest.push_back(low);

@@ -15,9 +15,10 @@ ComparisonRow DescribeFit(const FitReport& fit);
 /// The judged fit of the smallest AICc; whether others have memory does not matter, for wrong laws leave some.
 const FitReport* BestFit(const std::vector<FitReport>& fits);
 
-/// The residuals of a fit about its estimates; nothing when its motion cannot be traced.
-std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit,
-                                               const FitOptions& options);
+/// The residuals of a fit about its estimates; nothing when its motion cannot be traced. Parameters at a bound may move
+/// away from it if `with_bounded`, and stay there else.
+std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit, const FitOptions& options,
+                                               bool with_bounded);
 
 /// log L of probabilities instead of densities, as the fits have it.
 double PerCount(const Recording& used);

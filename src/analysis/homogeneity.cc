@@ -35,6 +35,19 @@ struct Told {
   MatrixXd covariance;  // S x S
 };
 
+/// By how much 95 % reach farther than for a normal distribution: where residuals remember, errors are of few effective
+/// samples and rough, which is what Student's t is for. A parameter at its bound has the largest of the others.
+VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
+  constexpr double kNormal = 1.959963984540054;
+  double largest = kNormal;
+  for (const std::string& name : names) largest = std::max(largest, fit.Find(name)->t95.value_or(kNormal));
+  VectorXd reach(static_cast<Index>(names.size()));
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    reach[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal, 1.0);
+  }
+  return reach;
+}
+
 /// Estimates and errors as the fit reports them, unless a bound has to do with them.
 std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names) {
   const FitReport& fit = run.fit;
@@ -62,6 +75,8 @@ std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>&
   }
   told.value = all(rows);
   told.covariance = covariance(rows, rows);
+  const VectorXd wider = ReachOf(fit, names);
+  told.covariance = (wider.asDiagonal() * told.covariance * wider.asDiagonal()).eval();
   const bool sound = told.value.allFinite() && told.covariance.allFinite() && told.covariance.diagonal().minCoeff() > 0;
   return sound ? std::optional(told) : std::nullopt;
 }

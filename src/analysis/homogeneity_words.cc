@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pendulum/base/format.h"
-#include "pendulum/base/physics.h"
+#include "pendulum/model/parameter.h"
 
 namespace pendulum {
 namespace {
@@ -82,6 +82,12 @@ std::string DescribeAmplitude(const Homogeneity& result) {
 std::string DescribeScatter(const Homogeneity& result) {
   const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
   const RandomEffects& scatter = most->scatter;
+  constexpr double kOneRig = 0.05;
+  const auto inertia = std::ranges::find(result.parameters, kInertia.name, &SharedParameter::name);
+  if (inertia != result.parameters.end() && inertia->scatter.between > kOneRig * std::abs(inertia->scatter.mean)) {
+    return "inertia differs by " + Percent(inertia->scatter.between / inertia->scatter.mean) +
+           " (standard deviation): these are not recordings of one rig, or not at one length";
+  }
   return "between recordings " + most->name + " scatters by " +
          (scatter.mean != 0 ? Percent(scatter.between / scatter.mean)
                             : NumberText(scatter.between, 2) + " " + most->unit) +
@@ -97,14 +103,18 @@ bool LacksFit(const std::vector<RunAlone>& runs) {
 std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs) {
   const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + std::to_string(result.dof) +
                            " degrees of freedom, p " + ProbabilityText(result.p.value_or(0)) + ")";
-  if (result.agrees()) return "the recordings agree on " + Names(result) + test;
+  const std::string misfit = "; the model does not describe all of each recording";
+  if (result.agrees()) {
+    return "the recordings agree on " + Names(result) + test +
+           (LacksFit(runs) ? misfit + ", and the errors are as wide as that makes them" : "");
+  }
   std::string text = "the recordings do not agree on " + Names(result) + test;
   const std::string amplitude = DescribeAmplitude(result);
   if (!result.disagreeing.empty()) text += "; " + DescribeOutliers(result, runs);
   if (result.disagreeing.empty() && !amplitude.empty()) text += "; " + amplitude;
   if (result.disagreeing.empty()) text += "; " + DescribeScatter(result);
   if (LacksFit(runs)) {
-    text += "; the model does not describe all of each recording, so that the errors compared here are too small";
+    text += misfit + ", so that the errors compared here may be too small";
   }
   return text;
 }

@@ -133,7 +133,7 @@ void SetCorrelatedLikelihood(const JointModels& joint, std::size_t m, std::size_
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
     const Recording& used = joint.runs[k].alone.used;
     const FitReport& fit = joint.FitOf(k, m);
-    std::optional<CorrelatedResiduals> data = ResidualsOf(used, fit, options);
+    std::optional<CorrelatedResiduals> data = ResidualsOf(used, fit, options, false);
     std::optional<CorrelatedLikelihood> likelihood;
     if (data) {
       const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
@@ -142,7 +142,7 @@ void SetCorrelatedLikelihood(const JointModels& joint, std::size_t m, std::size_
       likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(joint.FitOf(k, best)));
       std::vector<std::string> names;
       for (const ParameterEstimate& parameter : fit.parameters)
-        if (!parameter.fixed) names.emplace_back(parameter.info.name);
+        if (!parameter.fixed && !parameter.at_bound) names.emplace_back(parameter.info.name);
       if (likelihood) {
         together.Add(names, likelihood->information, likelihood->shift, lowest, highest, joint.joint[m].shared);
       }

@@ -16,7 +16,7 @@ namespace {
 
 void SetCorrelatedLikelihood(const FittedModels& fitted, const FitReport& fit, const Autocorrelation& like,
                              const FitOptions& options, ComparisonRow& row) {
-  const std::optional<CorrelatedResiduals> data = ResidualsOf(fitted.used, fit, options);
+  const std::optional<CorrelatedResiduals> data = ResidualsOf(fitted.used, fit, options, true);
   const auto likelihood = data ? MaximizeCorrelatedLikelihood(*data, like) : std::nullopt;
   if (!likelihood) {
     row.judged = false;

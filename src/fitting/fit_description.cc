@@ -120,6 +120,7 @@ void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Erro
     report.covariance_names.emplace_back(problem.infos[index].name);
     scale[row] = problem.si_per_internal[index];
     report.parameters[index].std_error = scale[row] * std::sqrt(errors.covariance(row, row));
+    report.parameters[index].t95 = errors.t95[row];
   }
   report.covariance = scale.asDiagonal() * errors.covariance * scale.asDiagonal();
   report.std_error_method = errors.runs[0].method;

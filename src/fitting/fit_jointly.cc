@@ -89,15 +89,15 @@ std::string Unexplained(const Work& work) {
 }
 
 Ending EndOf(const Work& work) {
-  const InformationInverse& inverse = work.optimum.inverse;
-  if (!inverse.identifiable) {
-    const std::string names = NamesOf(work.joint, inverse.direction);
-    return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
-  }
   if (const std::string left = Unexplained(work); !left.empty()) {
     return {Termination::kNotConverged, "these are not swings of one pendulum with one " +
                                             NameList(work.joint.shared) + ": the best joint trajectories leave " +
                                             left + " unexplained"};
+  }
+  const InformationInverse& inverse = work.optimum.inverse;
+  if (!inverse.identifiable) {
+    const std::string names = NamesOf(work.joint, inverse.direction);
+    return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
   }
   if (const double shift = RemainingShift(work.optimum); !(shift <= kLargestShift)) {
     return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +

@@ -239,7 +239,9 @@ std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, F
   const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed);
   if (!posterior) return std::nullopt;
   MoveTo(linear, *posterior, fitted, optimum.free, report);
+  constexpr double kNormal = 1.959963984540054;
   errors.covariance = posterior->covariance;
+  errors.t95 = Eigen::VectorXd::Constant(posterior->covariance.rows(), kNormal);
   errors.runs[0].sigma = posterior->sigma_std_dev;
   errors.runs[0].method =
       "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";

@@ -191,20 +191,26 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   return std::max(std::sqrt(rss / std::max(member.samples() - share, 1.0)), smallest);
 }
 
-/// Gives every recording the σ that its residuals have at the solution, unless it has that to a fraction of σ's own
-/// error. False where a motion cannot be traced.
+/// Gives every recording its parameters and readings at the solution. False where a motion cannot be traced.
+bool UpdateReadings(JointProblem& joint, const Solution& solution) {
+  joint.Distribute(solution.parameters);
+  return std::ranges::all_of(joint.members, [](JointMember& member) {
+    return member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr);
+  });
+}
+
+/// Gives every recording the σ that its residuals have at the solution, and its cost too unless that has it to a fraction
+/// of σ's own error: another σ of levels costs a trajectory. False where a motion cannot be traced.
 bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   constexpr double kSame = 3e-3;
   const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
-  joint.Distribute(solution.parameters);
-  if (!optimum || !optimum->inverse.identifiable) return optimum.has_value();
+  if (!optimum || !UpdateReadings(joint, solution)) return false;
+  if (!optimum->inverse.identifiable) return true;
   for (JointMember& member : joint.members) {
-    if (!member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr)) return false;
     const double sigma = SigmaOf(member, *optimum);
     const bool changed = std::abs(std::log(sigma / member.solution.noise.sigma)) > kSame;
-    if (!changed && !member.solution.noise.IsPlain()) continue;  // to change it costs a trajectory
     member.solution.noise.sigma = sigma;
-    member.cost->set_noise(member.solution.noise);
+    if (changed || member.solution.noise.IsPlain()) member.cost->set_noise(member.solution.noise);
   }
   return true;
 }
@@ -219,6 +225,7 @@ void Settle(JointProblem& joint, Solution& solution) {
     if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) < kSettled) return;
     solution = Continue(*joint.cost, solution, joint.solve);
   }
+  solution.usable = solution.usable && UpdateReadings(joint, solution);
 }
 
 /// Whether all trajectories are accurate enough, or no finer tolerance is left to try. Where the fit alone was accurate

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,7 +77,7 @@ class Strip {
   }
 
  private:
-  static constexpr std::size_t kWidth = 29;
+  static constexpr std::size_t kWidth = 21;
 
   std::size_t At(double x) const {
     if (!(high_ > low_)) return kWidth / 2;
@@ -100,7 +101,7 @@ Strip StripOf(const SharedParameter& parameter) {
   return {low, high};
 }
 
-void AddRow(const std::string& name, double value, double error, const std::string& last, const std::string& strip,
+void AddRow(const std::string& name, double value, const std::optional<double>& error, const std::string& last, const std::string& strip,
             Table& table) {
   const QuantityNumbers numbers(value, error);
   // No line is broken within the strip.
@@ -117,7 +118,7 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
   const double mark = joint == nullptr ? parameter.scatter.mean : joint->estimate;
   for (std::size_t k = 0; k < parameter.runs.size(); ++k) {
     const RunEstimate& run = parameter.runs[k];
-    const std::string name = "recording " + std::to_string(k + 1) + " alone";
+    const std::string name = std::to_string(k + 1) + " alone";
     if (!run.value) {
       table.rows.push_back({name, "-", "", "", ""});
       continue;
@@ -126,7 +127,7 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
            strip.Draw(*run.value, kTwoSided95 * *run.std_error, mark), table);
   }
   if (joint != nullptr) {
-    AddRow("joint", joint->estimate, joint->std_error.value_or(0), "",
+    AddRow("joint", joint->estimate, joint->std_error, "",
            strip.Draw(joint->estimate, kTwoSided95 * joint->std_error.value_or(0), mark), table);
   }
   const RandomEffects& scatter = parameter.scatter;

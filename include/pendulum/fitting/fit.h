@@ -74,6 +74,7 @@ struct ParameterEstimate {
   double estimate = 0;
   std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
   std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
+  std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
   std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
   std::optional<double> systematic_std_error;  ///< From rig, clock and calibration; absent without their errors.
   std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).

@@ -31,8 +31,8 @@ const axisLabel = (unit: string): string => `${quantityOf(unit)} [${unitText(uni
 
 const kFewPerPeriod = 12; // samples: below it straight lines between them are no picture of the motion
 
-/** The fitted motion, from the equation where samples are few. */
-function fittedTrace(report: Report, samples: Samples, fit: Fit, i: number): Trace | null {
+/** The fitted motion of fit i, from the equation where samples are few. */
+export function fittedTrace(report: Report, samples: Samples, fit: Fit, i: number): Trace | null {
   const fitted = samples.models.get(fit.model)?.fitted;
   if (!fitted) return null;
   const trace: Trace = {

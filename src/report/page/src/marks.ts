@@ -30,9 +30,19 @@ const kModels: Mark[] = [
 /** Of a model by its rank: the best one is solid blue. Closed forms have colours of their own. */
 export const modelMark = (rank: number): Mark => kModels[rank % kModels.length];
 
+const kDashes = [[], [8, 3], [2, 3], [10, 3, 2, 3]];
+
+/** Of recording k (from 0 on) of several. */
+export const recordingMark = (k: number): Mark => ({
+  colour: `curve-${(k % 6) + 1}`,
+  dash: kDashes[Math.floor(k / 6) % kDashes.length],
+  width: 1.5,
+});
+
 const kSvg = 'http://www.w3.org/2000/svg';
 
-function svg(tag: string, attributes: Record<string, string>): SVGElement {
+/** An element of SVG. */
+export function svg(tag: string, attributes: Record<string, string>): SVGElement {
   const element = document.createElementNS(kSvg, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   return element;

@@ -48,7 +48,7 @@ function degreesText(value: number | null, error: number | null, unit: string): 
     : `(${both}${degrees.unit})`;
 }
 
-function valueCell({ estimate, std_error: error, unit }: Parameter): Cell {
+export function valueCell({ estimate, std_error: error, unit }: Parameter): Cell {
   const degrees = degreesText(estimate, error, unit);
   return [valueText(estimate, error, unit), degrees !== null && el('small', {}, degrees)];
 }
@@ -113,8 +113,8 @@ function derivedTable(fit: Fit): HTMLElement | null {
   );
 }
 
-/** What the recording does not tell, and what to measure. */
-function advice(fit: Fit): HTMLElement | null {
+/** What is not told, and what to measure. */
+function advice(fit: Fit, heading: string): HTMLElement | null {
   const open = (fit.identifiability ?? []).filter((known) => known.verdict !== 'identifiable');
   if (open.length === 0) return null;
   const list = el('ul');
@@ -123,7 +123,7 @@ function advice(fit: Fit): HTMLElement | null {
     const what = `${wordsOf(known.parameter)}: ${known.verdict}${together}${known.advice ? `; ${known.advice}` : ''}.`;
     list.append(el('li', {}, typeset(what)));
   }
-  return el('div', {}, el('h3', {}, 'What the recording does not tell'), list);
+  return el('div', {}, el('h3', {}, heading), list);
 }
 
 function methods(fit: Fit): HTMLElement | null {
@@ -140,14 +140,16 @@ function methods(fit: Fit): HTMLElement | null {
 }
 
 /** Tables of parameters and of what follows from them. */
-export function parameterPart(fit: Fit): HTMLElement {
+export function parameterPart(fit: Fit, untold = 'What the recording does not tell'): HTMLElement {
   const part = el('div', {}, parameterTable(fit));
-  for (const more of [methods(fit), advice(fit), derivedTable(fit)]) if (more) part.append(more);
+  for (const more of [methods(fit), advice(fit, untold), derivedTable(fit)]) if (more) part.append(more);
   return part;
 }
 
-/** The pendulum's own parameters, large. */
-export function keyFigures(fit: Fit): HTMLElement {
+const smallText = (words: string | null): Child => words !== null && el('small', {}, words);
+
+/** The pendulum's own parameters, large; `remark` is what else to say of one. */
+export function keyFigures(fit: Fit, remark: (name: string) => string | null = () => null): HTMLElement {
   const box = el('div', { class: 'figures' });
   for (const [name, parameter] of Object.entries(fit.parameters)) {
     if (kCircumstances.has(name)) continue;
@@ -166,6 +168,7 @@ export function keyFigures(fit: Fit): HTMLElement {
           spacedUnit(parameter.unit).trim() || 'a pure number',
           note !== null && ` · ${note}`,
         ),
+        smallText(remark(name)),
       ),
     );
   }

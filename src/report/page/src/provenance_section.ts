@@ -6,10 +6,10 @@ import { shownFit, type Report } from './report';
 import { plusMinus, significant } from './rounding';
 import { absent, section } from './section';
 import { facts, scrollBox, table, type Cell } from './table';
-import type { Data, Loose, Result, Sampling } from './types';
+import type { Command, Data, Fit, Loose, Result, Sampling } from './types';
 import { rigWords, spacedUnit, unitText, withUnit } from './units';
 
-function rigTable({ rig }: Result): HTMLElement {
+export function rigTable({ rig }: Pick<Result, 'rig'>): HTMLElement {
   if (!rig) return text('No rig file: torques and inertia are in units of the gravity torque G.');
   const rows = Object.entries(rig).map(([name, given]): Cell[] => {
     const [words, unit] = rigWords(name);
@@ -40,7 +40,7 @@ function curveText(calibration: Loose): string | null {
   return `angle = ${terms.join(' + ').replace(/\+ −/g, '− ')}, in ${unit === 'deg' ? 'degrees' : 'rad'}, x in ${plain(input)}`;
 }
 
-function calibrationPart({ calibration }: Result): HTMLElement {
+export function calibrationPart({ calibration }: Pick<Result, 'calibration'>): HTMLElement {
   if (!calibration) return text('No calibration was applied: the readings are in the file’s unit.');
   const curve = curveText(calibration);
   const rest = Object.entries(calibration).filter(([, value]) => value !== null);
@@ -86,10 +86,9 @@ function clockText({ clock_scale: scale, clock_scale_std_dev: error }: Data): st
     : `${plusMinus(scale, error)} true seconds in a second of the file’s clock`;
 }
 
-export function provenanceSection(report: Report): HTMLElement {
-  const { data, tool, schema_version: schema } = report.result;
-  const fit = shownFit(report);
-  const rows: [string, Cell][] = [
+/** Where the samples of a recording come from. */
+export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
+  return [
     ['file', data.path ?? 'not read from a file'],
     ['SHA-256', el('code', { class: 'hash' }, data.sha256 ?? 'unknown')],
     ['window', windowText(data)],
@@ -98,6 +97,12 @@ export function provenanceSection(report: Report): HTMLElement {
     ['clock', clockText(data)],
     ['begins', data.start === 'release' ? 'held, then released' : data.start === 'moving' ? 'in motion' : '–'],
     ['noise model', fit?.noise ? `${fit.noise.model}: ${fit.noise.why}` : '–'],
+  ];
+}
+
+/** What the numbers were made with. */
+export function makingRows({ tool, schema_version: schema }: Result, fit: Fit | null): [string, Cell][] {
+  return [
     [
       'solver',
       fit
@@ -106,8 +111,17 @@ export function provenanceSection(report: Report): HTMLElement {
     ],
     ['made by', `${tool.name} ${tool.version}, result schema ${schema}`],
   ];
-  const command = report.command?.command
-    ? scrollBox('Command', el('pre', {}, el('code', {}, report.command.command)))
+}
+
+export function commandPart(command: Command | null): HTMLElement[] {
+  const words = command?.command
+    ? scrollBox('Command', el('pre', {}, el('code', {}, command.command)))
     : absent('The command is not part of this report.');
-  return section('provenance', 'Where it comes from', facts(rows), el('h3', {}, 'Command'), command);
+  return [el('h3', {}, 'Command'), words];
+}
+
+export function provenanceSection(report: Report): HTMLElement {
+  const fit = shownFit(report);
+  const rows = [...dataRows(report.result.data, fit), ...makingRows(report.result, fit)];
+  return section('provenance', 'Where it comes from', facts(rows), ...commandPart(report.command));
 }

@@ -3,17 +3,16 @@
 
 import { el, text } from './dom';
 import { equationText } from './equation';
-import { headline, type Level } from './headline';
+import { headline, type Headline, type Level } from './headline';
 import { keyFigures, parameterPart } from './parameters';
 import { sentence } from './prose';
 import { shownFit, type Report } from './report';
 import { section } from './section';
-import type { Fit, Result } from './types';
+import type { Result } from './types';
 
 const kSigns: Record<Level, string> = { good: '✓', caution: '!', bad: '✕' };
 
-function banner(report: Report, fit: Fit | null): HTMLElement {
-  const { level, title, sentence: words } = headline(report.result, fit);
+export function banner({ level, title, sentence: words }: Headline): HTMLElement {
   const box = el('div', {}, el('p', { class: 'title' }, title), el('p', {}, words));
   return el(
     'div',
@@ -24,7 +23,7 @@ function banner(report: Report, fit: Fit | null): HTMLElement {
 }
 
 /** Which model and why; nothing where one was fitted. */
-function recommendation({ result }: Report): HTMLElement | null {
+export function recommendation({ result }: Report): HTMLElement | null {
   const { comparison } = result;
   if (!comparison) return null;
   const label =
@@ -32,7 +31,7 @@ function recommendation({ result }: Report): HTMLElement | null {
   return el('p', { class: 'recommendation' }, el('strong', {}, label), ` ${sentence(comparison.reason ?? '')}`);
 }
 
-function warnings({ warnings: list }: Result): HTMLElement | null {
+export function warnings({ warnings: list }: Result): HTMLElement | null {
   if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
   const items = el('ul', { class: 'warnings' });
   for (const { code, message } of list) {
@@ -48,7 +47,7 @@ export function verdictSection(report: Report): HTMLElement {
   return section(
     'verdict',
     'Verdict',
-    banner(report, fit),
+    banner(headline(report.result, fit)),
     recommendation(report),
     usable && keyFigures(fit),
     equation && el('p', { class: 'equation' }, equation),

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The verdict of a joint fit: what was found, and whether the recordings agree. */
+
+import { el, text } from './dom';
+import { equationText } from './equation';
+import { shownJointFit, type JointReport } from './joint';
+import { jointHeadline } from './joint_headline';
+import type { JointFit } from './joint_types';
+import { keyFigures, parameterPart } from './parameters';
+import { plusMinus } from './rounding';
+import { shownFit } from './report';
+import { section } from './section';
+import { banner, recommendation, warnings } from './verdict';
+
+/** Where recordings disagree the random-effects mean, whose error has their scatter in it. */
+function remarkOf({ homogeneity }: JointFit): (name: string) => string | null {
+  return (name) => {
+    const scatter = homogeneity.parameters[name]?.random_effects;
+    if (homogeneity.agrees !== false || !scatter || scatter.mean === null) return null;
+    return `random effects: ${plusMinus(scatter.mean, scatter.std_error)}`;
+  };
+}
+
+export function jointVerdictSection(report: JointReport): HTMLElement {
+  const joint = shownJointFit(report);
+  const fit = shownFit(report.whole);
+  const equation = fit && equationText(fit);
+  const usable = joint && fit && Object.keys(fit.parameters ?? {}).length > 0;
+  return section(
+    'verdict',
+    'Verdict',
+    banner(jointHeadline(report.result, joint)),
+    recommendation(report.whole),
+    usable && keyFigures(fit, remarkOf(joint)),
+    equation && el('p', { class: 'equation' }, equation),
+    warnings(report.whole.result),
+    usable
+      ? parameterPart(fit, 'What the recordings do not tell')
+      : fit && text('There are no parameters to show.', 'absent'),
+  );
+}

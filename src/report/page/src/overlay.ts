@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Curves of all recordings of a joint fit on one clock. */
+
+import { fittedTrace } from './fit_section';
+import type { JointReport } from './joint';
+import { recordingMark } from './marks';
+import { shownFit, type Report } from './report';
+import type { Trace } from './time_plot';
+
+/** One recording: its readings, the fitted motion and their difference, in s since its beginning. */
+export interface Overlaid {
+  k: number;
+  measured: Trace;
+  fitted: Trace | null;
+  residual: Trace | null;
+}
+
+/** The instant a recording counts from, s on its file's clock: its release, or its first used sample. */
+export function beginning(report: Report): { time: number; released: boolean } {
+  const release = shownFit(report)?.parameters?.release_time?.estimate;
+  if (typeof release === 'number') return { time: release, released: true };
+  return { time: report.result.data.window_s[0], released: false };
+}
+
+/** What the times of all are counted from, in words. */
+export function originWords(reports: Report[]): string {
+  const released = reports.filter((report) => beginning(report).released).length;
+  if (released === reports.length) return 'time since the release [s]';
+  return released === 0
+    ? 'time since the first used sample [s]'
+    : 'time since the release or the first used sample [s]';
+}
+
+/** Times on the file's clock as true seconds since the beginning. */
+export function elapsed(time: Float64Array, report: Report): Float64Array {
+  const scale = report.result.data.clock_scale || 1;
+  const { time: start } = beginning(report);
+  return time.map((t) => (t - start) * scale);
+}
+
+/** Null without samples. */
+function overlaid(report: Report, k: number): Overlaid | null {
+  const { samples } = report;
+  if (!samples) return null;
+  const fit = shownFit(report);
+  const time = elapsed(samples.time, report);
+  const mark = recordingMark(k);
+  const fitted = fit && fittedTrace(report, samples, fit, report.shown);
+  const residual = fit && samples.models.get(fit.model)?.residual;
+  const own = { name: `recording ${k + 1}`, shown: true };
+  const points = { ...mark, points: true };
+  return {
+    k,
+    measured: { ...own, time, values: samples.measured, mark: points },
+    fitted: fitted && { ...own, time: fitted.time === samples.time ? time : elapsed(fitted.time, report), values: fitted.values, mark },
+    residual: residual ? { ...own, time, values: residual, mark: points } : null,
+  };
+}
+
+/** Recordings whose reading has the unit of the first; `others`: numbers, from 1 on, of those that cannot lie over it. */
+export function overlay(report: JointReport): { curves: Overlaid[]; unit: string; others: number[] } {
+  const unit = report.recordings.find((one) => one.samples)?.samples?.unit ?? 'rad';
+  const curves: Overlaid[] = [];
+  const others: number[] = [];
+  report.recordings.forEach((one, k) => {
+    const made = one.samples?.unit === unit ? overlaid(one, k) : null;
+    if (made) curves.push(made);
+    else others.push(k + 1);
+  });
+  return { curves, unit, others };
+}
