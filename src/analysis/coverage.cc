@@ -9,8 +9,10 @@
 #include <boost/math/distributions/binomial.hpp>
 
 #include "pendulum/analysis/cramer_rao.h"
+#include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit_jointly.h"
 
 namespace pendulum {
 namespace {
@@ -47,18 +49,14 @@ void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) 
                     outcome.truth <= parameter.upper95.value_or(kUnbounded);
 }
 
-Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {
-  const SyntheticOptions run = ScenarioRun(scenario, seed);
-  const Result<Recording> recording = SimulateRecording(run);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<FitReport> report = FitRecording(*recording, scenario.fit);
+/// What came out of one recording, or set of them, for the parameters that are counted.
+RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>& truth,
+                     const std::vector<std::optional<double>>& bounds, const FitReport* report) {
   const std::vector<ParameterInfo> infos = Parameters(scenario);
-  const std::vector<double> truth = TrueParameters(run);
-  const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording->time);
   RunOutcome outcome;
-  outcome.has_report = report.has_value();
-  outcome.converged = report && report->termination == Termination::kConverged;
-  for (std::size_t i = 0; i < infos.size(); ++i) {
+  outcome.has_report = report != nullptr;
+  outcome.converged = report != nullptr && report->termination == Termination::kConverged;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
     const double unit = ReportUnit(scenario, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
@@ -70,13 +68,54 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   return outcome;
 }
 
+/// The truth of recording k of a set: another release, or start.
+SyntheticOptions RunOfSet(const CoverageScenario& scenario, std::uint64_t seed, int k, int runs) {
+  constexpr double kSmallest = 0.7, kLargest = 1.3;
+  const double factor = kSmallest + (kLargest - kSmallest) * k / (runs - 1);
+  SyntheticOptions run = ScenarioRun(scenario, seed + static_cast<std::uint64_t>(k));
+  run.release_angle *= factor;
+  run.initial_angle *= factor;
+  run.initial_rate *= factor;
+  return run;
+}
+
+Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, int runs) {
+  std::vector<SimulatedRun> simulated;
+  std::vector<Recording> recordings;
+  std::vector<FitReport> alone;
+  for (int k = 0; k < runs; ++k) {
+    SyntheticOptions run = RunOfSet(scenario, seed, k, runs);
+    Result<Recording> recording = SimulateRecording(run);
+    if (!recording) return tl::unexpected(recording.error());
+    simulated.push_back({std::move(run), recording->time});
+    recordings.push_back(*std::move(recording));
+    if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
+  }
+  std::vector<JointRun> joint;
+  for (std::size_t k = 0; k < alone.size(); ++k) joint.push_back({recordings[k], alone[k], scenario.fit});
+  const bool all = alone.size() == recordings.size();
+  const Result<JointFit> fit = FitJointly(joint, PhysicalNames({scenario.fit.model}));
+  const FitReport* const report = all && fit ? &fit->whole : nullptr;
+  return OutcomeOf(scenario, TrueParameters(simulated.front().truth), SharedCramerRaoBounds(simulated), report);
+}
+
+Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {
+  const SyntheticOptions run = ScenarioRun(scenario, seed);
+  const Result<Recording> recording = SimulateRecording(run);
+  if (!recording) return tl::unexpected(recording.error());
+  const Result<FitReport> report = FitRecording(*recording, scenario.fit);
+  return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
+}
+
 /// All recordings, in the order of their seeds whoever fits them.
 std::vector<Result<RunOutcome>> RunAll(const CoverageScenario& scenario, const CoverageOptions& options) {
   std::vector<Result<RunOutcome>> outcomes(static_cast<std::size_t>(options.count));
   std::mutex reporting;
   int done = 0;
   ParallelFor(options.count, options.threads, [&](int i) {
-    outcomes[static_cast<std::size_t>(i)] = RunOne(scenario, options.seed + static_cast<std::uint64_t>(i));
+    const auto first = options.seed + static_cast<std::uint64_t>(i) * static_cast<std::uint64_t>(options.runs);
+    outcomes[static_cast<std::size_t>(i)] =
+        options.runs > 1 ? RunSet(scenario, first, options.runs) : RunOne(scenario, first);
     const std::lock_guard lock(reporting);
     ++done;
     if (options.progress) options.progress(done);
@@ -156,11 +195,14 @@ Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const Cove
   if (options.count < 1) {
     return Error(StatusCode::kInvalidArgument, "count is " + std::to_string(options.count) + "; it must be at least 1");
   }
+  if (options.runs < 1) {
+    return Error(StatusCode::kInvalidArgument, "runs is " + std::to_string(options.runs) + "; it must be at least 1");
+  }
   if (options.threads < 0) {
     return Error(StatusCode::kInvalidArgument,
                  "threads is " + std::to_string(options.threads) + "; it must be 0 or more");
   }
-  CoverageStudy study{scenario, options.count, 0, 0, {}};
+  CoverageStudy study{scenario, options.count, options.runs, 0, 0, {}};
   std::vector<RunOutcome> outcomes;
   for (Result<RunOutcome>& outcome : RunAll(scenario, options)) {
     if (!outcome) return tl::unexpected(outcome.error());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/analysis/cramer_rao.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -91,6 +92,26 @@ std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const 
                       : WhiteInformation(truth, at);
 }
 
+/// Square roots of the diagonal of the inverse; empty where there is none. What no reading depends on stands apart, and
+/// the others keep their bounds.
+std::vector<std::optional<double>> BoundsOf(const Eigen::MatrixXd& information) {
+  std::vector<std::optional<double>> bounds(static_cast<std::size_t>(information.rows()));
+  std::vector<Index> told;
+  for (Index i = 0; i < information.rows(); ++i) {
+    if (information(i, i) > 0) told.push_back(i);
+  }
+  const Eigen::MatrixXd part = information(told, told);
+  const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * part * scale.asDiagonal());
+  if (factor.info() != Eigen::Success) return bounds;
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    const auto row = static_cast<Index>(k);
+    bounds[static_cast<std::size_t>(told[k])] = scale[row] * std::sqrt(inverse(row, row));
+  }
+  return bounds;
+}
+
 }  // namespace
 
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
@@ -99,22 +120,24 @@ std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth
   const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
   const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
   if (!information) return bounds;
-  // A parameter that no reading depends on stands apart, and the others keep their bounds.
-  std::vector<Index> told;
-  for (Index i = 0; i < information->rows(); ++i) {
-    if ((*information)(i, i) > 0) told.push_back(i);
-  }
-  const Eigen::MatrixXd part = (*information)(told, told);
-  const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * part * scale.asDiagonal());
-  if (factor.info() != Eigen::Success) return bounds;
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    const auto row = static_cast<Index>(k);
-    if (static_cast<std::size_t>(told[k]) >= count) continue;
-    bounds[static_cast<std::size_t>(told[k])] = scale[row] * std::sqrt(inverse(row, row));
-  }
+  const std::vector<std::optional<double>> all = BoundsOf(*information);
+  std::copy_n(all.begin(), count, bounds.begin());
   return bounds;
+}
+
+std::vector<std::optional<double>> SharedCramerRaoBounds(const std::vector<SimulatedRun>& runs) {
+  const auto shared = static_cast<Index>(runs.front().truth.parameters.size());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(shared, shared);
+  for (const auto& [truth, time] : runs) {
+    const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
+    const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
+    if (!information) return std::vector<std::optional<double>>(static_cast<std::size_t>(shared));
+    const Index own = information->rows() - shared;
+    const Eigen::MatrixXd mixed = information->bottomLeftCorner(own, shared);
+    sum += information->topLeftCorner(shared, shared) -
+           mixed.transpose() * information->bottomRightCorner(own, own).ldlt().solve(mixed);
+  }
+  return BoundsOf(sum);
 }
 
 }  // namespace pendulum

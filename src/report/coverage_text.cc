@@ -66,9 +66,15 @@ int Misses(const CoverageStudy& study) {
   return misses;
 }
 
+/// What the studies count.
+std::string Counted(std::span<const CoverageStudy> studies) {
+  const int runs = studies.empty() ? 1 : studies.front().runs;
+  return runs > 1 ? "sets of " + std::to_string(runs) : "recordings";
+}
+
 CoverageTable ScenarioTable(std::span<const CoverageStudy> studies) {
   CoverageTable table{
-      {{"scenario"}, {"recordings", true}, {"converged", true}, {"no fit", true}, {"misses", true}, {"what it is"}},
+      {{"scenario"}, {Counted(studies), true}, {"converged", true}, {"no fit", true}, {"misses", true}, {"what it is"}},
       {}};
   for (const CoverageStudy& study : studies) {
     table.rows.push_back({study.scenario.name, std::to_string(study.recordings), std::to_string(study.converged),
@@ -106,6 +112,13 @@ constexpr std::string_view kColumns =
     "recording, by the noise really simulated; `std error/error` is the mean standard error over the rms error. Zero "
     "and release vary from recording to recording, within a count and a sampling interval.";
 
+/// What is another with sets of recordings.
+std::string SetsText(std::span<const CoverageStudy> studies) {
+  return "Here each recording is a set, " + Counted(studies) +
+         " of one rig, released from 0.7 to 1.3 times the scenario's angle and fitted together; the bound is that of "
+         "what they share, from the readings of all.";
+}
+
 /// What passes, from the same numbers as the verdicts.
 std::string Rules(std::span<const CoverageStudy> studies) {
   const CoverageRule usual;
@@ -130,8 +143,9 @@ std::string CoverageText(std::span<const CoverageStudy> studies) {
 }
 
 std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string_view command) {
+  const bool sets = !studies.empty() && studies.front().runs > 1;
   return "# Do the 95 % intervals contain the truth 95 % of the time?\n\n" + Paragraph(kColumns, "", kTableWidth) +
-         "\n" + Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" +
+         (sets ? "\n" + Paragraph(SetsText(studies), "", kTableWidth) : "") + "\n" + Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" +
          MarkdownTable(ParameterTable(studies)) + "\n" + MarkdownTable(ScenarioTable(studies));
 }
 

@@ -17,6 +17,9 @@
 
 DEFINE_string(scenario, "", "Scenarios, name,..., or all; --list shows them.");
 DEFINE_int32(count, 1000, "Recordings of each scenario; default 1000.");
+DEFINE_int32(runs, 1,
+             "Recordings of one rig that are fitted together, released from different angles; --count sets of them are "
+             "made; default 1, each recording alone.");
 DEFINE_uint64(seed, 1, "Seed of the first recording; recording i has seed + i; default 1.");
 DEFINE_int32(threads, 0, "Threads, on which the result does not depend; default 0, as many as there are cores.");
 DEFINE_string(markdown, "", "Where to write the tables as Markdown too; - is standard output; default nowhere.");
@@ -40,6 +43,7 @@ CoverageFlags CurrentFlags(const std::vector<std::string>& positional) {
   CoverageFlags flags;
   flags.scenario = FLAGS_scenario;
   flags.count = FLAGS_count;
+  flags.runs = FLAGS_runs;
   flags.seed = FLAGS_seed;
   flags.threads = FLAGS_threads;
   flags.markdown = FLAGS_markdown;
@@ -51,20 +55,22 @@ CoverageFlags CurrentFlags(const std::vector<std::string>& positional) {
 /// Says on standard error how far a study is, at each tenth of it, and how long it took.
 class Progress {
  public:
-  Progress(std::string scenario, int count) : scenario_(std::move(scenario)), count_(count) {}
+  Progress(std::string scenario, int count, int runs)
+      : scenario_(std::move(scenario)), count_(count), what_(runs > 1 ? "sets" : "recordings") {}
 
   void operator()(int done) const {
     constexpr std::int64_t kParts = 10;
     const bool at_part = done * kParts / count_ != (done - 1) * kParts / count_;
     if (!at_part) return;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    Say(kName, scenario_ + ": " + std::to_string(done) + " of " + std::to_string(count_) + " recordings, " +
+    Say(kName, scenario_ + ": " + std::to_string(done) + " of " + std::to_string(count_) + " " + what_ + ", " +
                    FixedText(elapsed.count(), 1) + " s");
   }
 
  private:
   std::string scenario_;
   int count_;
+  std::string what_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -73,7 +79,7 @@ Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
   std::vector<CoverageStudy> studies;
   for (const CoverageScenario& scenario : options.scenarios) {
     CoverageOptions study_options = options.study;
-    study_options.progress = Progress(scenario.name, study_options.count);
+    study_options.progress = Progress(scenario.name, study_options.count, study_options.runs);
     auto study = StudyCoverage(scenario, study_options);
     if (!study) return tl::unexpected(study.error());
     studies.push_back(*std::move(study));

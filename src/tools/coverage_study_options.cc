@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMostRecordings = 1'000'000;
 constexpr int kMostThreads = 1024;
+constexpr int kMostRuns = 100;
 
 Result<void> CheckWhole(const std::string& flag, int value, int least, int most) {
   if (value >= least && value <= most) return {};
@@ -19,7 +20,7 @@ Result<void> CheckWhole(const std::string& flag, int value, int least, int most)
 
 std::string Command(const CoverageFlags& flags) {
   return "coverage_study --scenario " + flags.scenario + " --count " + std::to_string(flags.count) + " --seed " +
-         std::to_string(flags.seed);
+         std::to_string(flags.seed) + (flags.runs > 1 ? " --runs " + std::to_string(flags.runs) : "");
 }
 
 }  // namespace
@@ -34,6 +35,7 @@ Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags
   if (auto checked = CheckWhole("--count", flags.count, 1, kMostRecordings); !checked) {
     return tl::unexpected(checked.error());
   }
+  if (auto checked = CheckWhole("--runs", flags.runs, 1, kMostRuns); !checked) return tl::unexpected(checked.error());
   if (auto checked = CheckWhole("--threads", flags.threads, 0, kMostThreads); !checked) {
     return tl::unexpected(checked.error());
   }
@@ -46,6 +48,7 @@ Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags
   if (!scenarios) return BadFlag("--scenario: " + scenarios.error().message);
   options.scenarios = *std::move(scenarios);
   options.study.count = flags.count;
+  options.study.runs = flags.runs;
   options.study.seed = flags.seed;
   options.study.threads = flags.threads;
   options.markdown = flags.markdown;

@@ -15,6 +15,7 @@ namespace pendulum {
 struct CoverageFlags {
   std::string scenario;  ///< name,... or all
   int count = 1000;
+  int runs = 1;
   std::uint64_t seed = 1;
   int threads = 0;
   std::string markdown;                 ///< Path, "-" for stdout, or empty for none.

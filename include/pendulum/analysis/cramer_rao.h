@@ -22,4 +22,13 @@ namespace pendulum {
 /// levels, and a motion that cannot be traced; absent, each, where the readings do not tell the parameter.
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time);
 
+/// One of several recordings of one rig: its truth, and the instants of its samples (N, s).
+struct SimulatedRun {
+  SyntheticOptions truth;
+  Eigen::VectorXd time;
+};
+
+/// The bounds of inertia and friction, which all the recordings share, each with a start, zero and noise of its own.
+std::vector<std::optional<double>> SharedCramerRaoBounds(const std::vector<SimulatedRun>& runs);
+
 }  // namespace pendulum

@@ -74,3 +74,30 @@ test('a Stribeck fit has its equation and profiles', async (t) => {
   assert.equal(result.fits.length, 2);
   assert.match(await page.locator('#verdict').textContent(), /asymmetric|stribeck/);
 });
+
+test('a joint fit shows the numbers of its JSON, of all recordings', async (t) => {
+  const data = ['coulomb.csv', 'to_rest.csv'].map((name) => path.join(datasets, name)).join(',');
+  const { url, result } = fit('joint', '--data', data, '--model', 'viscous,coulomb', '--interval', 'covariance');
+  const page = await openFile(t, url);
+  assert.match(await page.locator('h1').textContent(), /^2 recordings/);
+  const recommended = result.comparison.recommended;
+  const shown = result.fits.find((one) => one.model === recommended) ?? result.fits.find((one) => one.status === 'converged');
+  assert.equal(await page.locator('[data-forest]').count(), shown.shared.length);
+  for (const name of shown.shared) {
+    const { runs } = shown.homogeneity.parameters[name];
+    const told = [...runs, shown.parameters[name]].filter((one) => one.std_error !== null && one.estimate > 1e-4);
+    for (const one of told) {
+      const row = page.locator(`[data-forest=${name}] tbody tr`).nth(runs.includes(one) ? runs.indexOf(one) : runs.length);
+      const [value, error] = numbersOf(await row.locator('td').first().textContent());
+      assert.ok(Math.abs(value - one.estimate) <= 0.06 * one.std_error, `${name}: ${value} is not ${one.estimate}`);
+      assert.ok(Math.abs(error - one.std_error) <= 0.15 * one.std_error, `${name}: ± ${error} is not ${one.std_error}`); // 1 or 2 digits
+    }
+  }
+  const agreement = await page.locator('.agreement').textContent();
+  assert.match(agreement, shown.homogeneity.agrees ? /^They agree/ : /disagree|do not agree/);
+  assert.equal(await page.locator('#recordings table').first().locator('tbody tr').count(), 2);
+  const provenance = await page.locator('#provenance').textContent();
+  for (const { sha256 } of result.data) assert.ok(provenance.includes(sha256), sha256);
+  const label = await page.locator('#overlay .plot').first().getAttribute('aria-label');
+  assert.match(label, /^Recordings 1 and 2, measured and fitted/);
+});

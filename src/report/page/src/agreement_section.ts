@@ -17,9 +17,12 @@ const number = 'number' as const;
 
 const capital = (words: string): string => words.slice(0, 1).toUpperCase() + words.slice(1);
 
-/** "χ² = 14.8 with 12 degrees of freedom, p = 0.25" */
-const testText = ({ statistic, dof, p }: Pick<Homogeneity, 'statistic' | 'dof' | 'p'>): string =>
-  `χ² = ${significant(statistic, 3)} with ${dof} degree${dof === 1 ? '' : 's'} of freedom, p = ${probabilityText(p)}`;
+/** "χ² = 14.8 with 12 degrees of freedom, p = 0.25." */
+function testText({ statistic, dof, p }: SharedAgreement): string {
+  const small = probabilityText(p);
+  const freedom = `${dof} degree${dof === 1 ? '' : 's'} of freedom`;
+  return `χ² = ${significant(statistic, 3)} with ${freedom}, p ${small.startsWith('<') ? small : `= ${small}`}.`;
+}
 
 function scatterText({ random_effects: scatter, unit }: SharedAgreement): string {
   const [low, high] = (scatter.between_interval95 ?? [null, null]).map((end) => significant(end, 2));
@@ -46,7 +49,7 @@ function numbers(name: string, unit: string, rows: ForestRow[]): HTMLElement {
     { head: '95 % interval', kind: number },
     { head: 'z', kind: number },
   ];
-  const caption = `${wordsOf(name)}${written === '' ? '' : ` [${written}]`}, by each recording alone and by all`;
+  const caption = `${wordsOf(name)}${written === '' ? '' : ` [${written}]`} by recording`;
   return table(capital(caption), columns, rows.map(rowCells));
 }
 
@@ -55,7 +58,7 @@ function parameterPart(fit: JointFit, name: string): HTMLElement {
   const rows = forestRows(fit, name);
   const told = forestSentence(wordsOf(name), unitText(agreement.unit), rows);
   const plot = forestPlot(told, rows);
-  const words = [`${testText(agreement)}.`, scatterText(agreement), clippedWords(rows)].filter((part) => part !== '');
+  const words = [testText(agreement), scatterText(agreement), clippedWords(rows)].filter((part) => part !== '');
   const part = el('div', { class: 'pair agree', 'data-forest': name });
   part.append(
     plot ? figure(words.join(' '), plot) : absent('No recording tells this parameter.'),

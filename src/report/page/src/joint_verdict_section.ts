@@ -12,11 +12,12 @@ import { shownFit } from './report';
 import { section } from './section';
 import { banner, recommendation, warnings } from './verdict';
 
-/** Where recordings disagree the random-effects mean, whose error has their scatter in it. */
-function remarkOf({ homogeneity }: JointFit): (name: string) => string | null {
+/** Where recordings scatter, and none is told apart: the random-effects mean, whose error has the scatter in it. */
+function remarkOf({ homogeneity, status }: JointFit): (name: string) => string | null {
+  const scattered = status === 'converged' && homogeneity.agrees === false && homogeneity.disagreeing.length === 0;
   return (name) => {
     const scatter = homogeneity.parameters[name]?.random_effects;
-    if (homogeneity.agrees !== false || !scatter || scatter.mean === null) return null;
+    if (!scattered || !scatter || scatter.mean === null) return null;
     return `random effects: ${plusMinus(scatter.mean, scatter.std_error)}`;
   };
 }
@@ -33,9 +34,9 @@ export function jointVerdictSection(report: JointReport): HTMLElement {
     recommendation(report.whole),
     usable && keyFigures(fit, remarkOf(joint)),
     equation && el('p', { class: 'equation' }, equation),
-    warnings(report.whole.result),
     usable
       ? parameterPart(fit, 'What the recordings do not tell')
       : fit && text('There are no parameters to show.', 'absent'),
+    warnings(report.whole.result),
   );
 }
