@@ -24,19 +24,53 @@ std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const So
   return indices;
 }
 
-/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound.
-class StopAtBound final : public ceres::IterationCallback {
+/// The Gauss-Newton step over the parameters that are not held.
+struct NewtonStep {
+  std::vector<int> free;
+  Eigen::VectorXd step;  // empty where the data do not tell them all
+  double length = 0;     // in standard errors
+};
+
+NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, const std::vector<double>& parameters) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(parameters, &sums)) return {};
+  const Eigen::Index size = sums.rows() - 1;
+  NewtonStep newton;
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (!held[i]) newton.free.push_back(i);
+  }
+  const InformationInverse inverse = InvertInformation(sums.topLeftCorner(size, size), newton.free);
+  if (!inverse.identifiable) return {};
+  const Eigen::VectorXd gradient = sums.col(size)(newton.free);
+  newton.step = -inverse.matrix * gradient;
+  newton.length = std::sqrt(std::max(-gradient.dot(newton.step), 0.0));
+  return newton;
+}
+
+/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound. Of
+/// several recordings, which begin near the optimum, also as soon as next to nothing is left to go: to find that out
+/// Ceres would trace them all once more.
+class EndEarly final : public ceres::IterationCallback {
  public:
-  StopAtBound(const std::vector<double>& parameters, const SolveOptions& options, const std::vector<bool>& held)
-      : parameters_(parameters), options_(options), held_(held) {}
+  EndEarly(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
+           const std::vector<bool>& held)
+      : cost_(cost), parameters_(parameters), options_(options), held_(held) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    const bool landed =
-        summary.iteration > 0 && summary.step_is_successful && !AtBound(parameters_, options_, held_).empty();
-    return landed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    if (summary.iteration == 0 || !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
+    const bool done = !AtBound(parameters_, options_, held_).empty() || IsThere();
+    return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  bool IsThere() const {
+    constexpr double kNothing = 1e-3;  // standard errors
+    if (cost_.runs() == 1) return false;
+    const NewtonStep newton = StepFrom(cost_, held_, parameters_);
+    return newton.step.size() > 0 && newton.length < kNothing;
+  }
+
+  const LeastSquares& cost_;
   const std::vector<double>& parameters_;
   const SolveOptions& options_;
   const std::vector<bool>& held_;
@@ -74,7 +108,7 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
     if (std::isfinite(options.lower[i])) problem.SetParameterLowerBound(blocks[i], 0, options.lower[i]);
     if (std::isfinite(options.upper[i])) problem.SetParameterUpperBound(blocks[i], 0, options.upper[i]);
   }
-  StopAtBound stop(solution.parameters, options, held);
+  EndEarly stop(cost, solution.parameters, options, held);
   ceres::Solver::Options solver = SolverOptions(options.max_iterations, cost.runs() > 1);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
@@ -89,20 +123,11 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
 /// small to make leaves them short of it.
 std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& cost, const SolveOptions& options,
                                                            const std::vector<bool>& held, const Solution& solution) {
-  Eigen::MatrixXd sums;
-  if (!cost.Sums(solution.parameters, &sums)) return {};
-  const Eigen::Index size = sums.rows() - 1;
-  std::vector<int> free;
-  for (int i = 0; i < static_cast<int>(size); ++i) {
-    if (!held[i]) free.push_back(i);
-  }
-  const InformationInverse inverse = InvertInformation(sums.topLeftCorner(size, size), free);
-  if (!inverse.identifiable) return {};
-  const Eigen::VectorXd step = -inverse.matrix * sums.col(size)(free);
+  const NewtonStep newton = StepFrom(cost, held, solution.parameters);
   std::vector<std::pair<std::size_t, double>> carried;
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const auto i = static_cast<std::size_t>(free[k]);
-    const int side = BoundSide(options, i, solution.parameters[i] + step[static_cast<Eigen::Index>(k)]);
+  for (Eigen::Index k = 0; k < newton.step.size(); ++k) {
+    const auto i = static_cast<std::size_t>(newton.free[static_cast<std::size_t>(k)]);
+    const int side = BoundSide(options, i, solution.parameters[i] + newton.step[k]);
     if (side != 0) carried.emplace_back(i, side < 0 ? options.lower[i] : options.upper[i]);
   }
   return carried;

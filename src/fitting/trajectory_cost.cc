@@ -150,10 +150,19 @@ class TrajectoryCostFor final : public TrajectoryCost {
     });
   }
 
+  /// The search asks whether the motion comes to rest, the judgement when: at the same point.
   TraceSummary Trace(std::span<const double> p) const override {
+    if (std::ranges::equal(p, traced_.parameters) && traced_.tolerance == tolerance_ &&
+        traced_.samples == used_samples_) {
+      return traced_.summary;
+    }
     ++traces_;
     const std::function<void(const Segment<double>&)> nothing = [](const Segment<double>&) {};
-    return TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing);
+    traced_.summary = TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing);
+    traced_.parameters.assign(p.begin(), p.end());
+    traced_.tolerance = tolerance_;
+    traced_.samples = used_samples_;
+    return traced_.summary;
   }
 
   /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be safe.
@@ -323,6 +332,14 @@ class TrajectoryCostFor final : public TrajectoryCost {
     Eigen::MatrixXd sums;
   };
   mutable SumsAt last_;
+
+  struct TraceAt {
+    std::vector<double> parameters;
+    double tolerance = 0;
+    std::size_t samples = 0;
+    TraceSummary summary;
+  };
+  mutable TraceAt traced_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 int main(int argc, char** argv) {
   pendulum::benchmarks::RegisterTrajectoryBenchmarks();
   pendulum::benchmarks::RegisterFitBenchmarks();
+  pendulum::benchmarks::RegisterJointBenchmarks();
   pendulum::benchmarks::RegisterCeresBenchmarks();
   pendulum::benchmarks::RegisterMemoryBenchmarks();
   benchmark::Initialize(&argc, argv);

@@ -9,6 +9,9 @@ void RegisterTrajectoryBenchmarks();
 /// start_values, fit, parse_csv, file_to_json, and fit/samples:N.
 void RegisterFitBenchmarks();
 
+/// fit_jointly/SCENARIO/recordings:K: K fits alone and the joint one, and how many times one fit that takes.
+void RegisterJointBenchmarks();
+
 /// smoothed_rk4/..., located_rk4/...: the same by hand with Ceres, to compare with.
 void RegisterCeresBenchmarks();
 

@@ -75,29 +75,45 @@ test('a Stribeck fit has its equation and profiles', async (t) => {
   assert.match(await page.locator('#verdict').textContent(), /asymmetric|stribeck/);
 });
 
-test('a joint fit shows the numbers of its JSON, of all recordings', async (t) => {
-  const data = ['coulomb.csv', 'to_rest.csv'].map((name) => path.join(datasets, name)).join(',');
-  const { url, result } = fit('joint', '--data', data, '--model', 'viscous,coulomb', '--interval', 'covariance');
+/** Everything that the page of a joint fit says in numbers, beside its JSON. */
+async function assertJoint(t, ...files) {
+  const data = files.map((name) => path.join(datasets, name)).join(',');
+  const { url, result } = fit(`joint_${files.length}`, '--data', data, '--model', 'viscous,coulomb', '--interval', 'covariance');
   const page = await openFile(t, url);
-  assert.match(await page.locator('h1').textContent(), /^2 recordings/);
+  assert.equal(await page.locator('h1').textContent(), `${files.length} recordings, fitted together`);
   const recommended = result.comparison.recommended;
   const shown = result.fits.find((one) => one.model === recommended) ?? result.fits.find((one) => one.status === 'converged');
   assert.equal(await page.locator('[data-forest]').count(), shown.shared.length);
+  // The error's last digit, which the value is rounded to, is at most 1 / 3.55 of it.
   for (const name of shown.shared) {
     const { runs } = shown.homogeneity.parameters[name];
     const told = [...runs, shown.parameters[name]].filter((one) => one.std_error !== null && one.estimate > 1e-4);
     for (const one of told) {
       const row = page.locator(`[data-forest=${name}] tbody tr`).nth(runs.includes(one) ? runs.indexOf(one) : runs.length);
       const [value, error] = numbersOf(await row.locator('td').first().textContent());
-      assert.ok(Math.abs(value - one.estimate) <= 0.06 * one.std_error, `${name}: ${value} is not ${one.estimate}`);
-      assert.ok(Math.abs(error - one.std_error) <= 0.15 * one.std_error, `${name}: ± ${error} is not ${one.std_error}`); // 1 or 2 digits
+      assert.ok(Math.abs(value - one.estimate) <= 0.15 * one.std_error, `${name}: ${value} is not ${one.estimate}`);
+      assert.ok(Math.abs(error - one.std_error) <= 0.15 * one.std_error, `${name}: ± ${error} is not ${one.std_error}`);
     }
   }
   const agreement = await page.locator('.agreement').textContent();
   assert.match(agreement, shown.homogeneity.agrees ? /^They agree/ : /disagree|do not agree/);
-  assert.equal(await page.locator('#recordings table').first().locator('tbody tr').count(), 2);
+  assert.equal(await page.locator('#recordings table').first().locator('tbody tr').count(), files.length);
   const provenance = await page.locator('#provenance').textContent();
   for (const { sha256 } of result.data) assert.ok(provenance.includes(sha256), sha256);
   const label = await page.locator('#overlay .plot').first().getAttribute('aria-label');
-  assert.match(label, /^Recordings 1 and 2, measured and fitted/);
+  assert.match(label, /^Recordings 1(, \d)* and \d, measured and fitted/);
+  return { page, homogeneity: shown.homogeneity };
+}
+
+test('recordings of one rig agree, and the page has the numbers of the JSON', async (t) => {
+  const { page, homogeneity } = await assertJoint(t, 'runs_1.csv', 'runs_2.csv', 'runs_3.csv');
+  assert.equal(homogeneity.agrees, true);
+  assert.equal(await page.locator('#agreement .no, #recordings .no').count(), 0);
+});
+
+test('a recording of another rig among them is marked', async (t) => {
+  const { page, homogeneity } = await assertJoint(t, 'runs_1.csv', 'runs_2.csv', 'runs_3.csv', 'runs_4.csv');
+  assert.deepEqual(homogeneity.disagreeing, [4]);
+  assert.match(await page.locator('.banner.bad').textContent(), /Recording 4 disagrees with the others/);
+  assert.match(await page.locator('#recordings tbody tr').nth(3).textContent(), /^4disagrees/);
 });

@@ -36,8 +36,8 @@ function rowCells(row: ForestRow): Cell[] {
   return [
     [label, odd],
     estimate === null ? 'not told' : plusMinus(estimate, error),
-    intervalText(interval95, estimate, error),
     z === null ? '–' : fixed(z, 1),
+    intervalText(interval95, estimate, error),
   ];
 }
 
@@ -46,8 +46,8 @@ function numbers(name: string, unit: string, rows: ForestRow[]): HTMLElement {
   const columns: Column[] = [
     { head: 'Told by' },
     { head: 'Value ± standard error', kind: number },
-    { head: '95 % interval', kind: number },
     { head: 'z', kind: number },
+    { head: '95 % interval', kind: number },
   ];
   const caption = `${wordsOf(name)}${written === '' ? '' : ` [${written}]`} by recording`;
   return table(capital(caption), columns, rows.map(rowCells));

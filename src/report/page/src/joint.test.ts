@@ -144,7 +144,7 @@ describe('the verdict of a joint fit', () => {
     expect(of({ homogeneity: scattered })).toMatchObject({ level: 'caution', sentence: 'They scatter.' });
     expect(of({ homogeneity: scattered, status: 'not_converged', reason: 'no; they scatter' })).toEqual({
       level: 'bad',
-      title: 'Refused: these recordings are not of one pendulum with the same constants',
+      title: 'Refused: the recordings are not of one pendulum; these numbers are no result',
       sentence: 'No; they scatter.',
     });
     expect(of({}, lack).title).toMatch(/^Lack of fit: viscous/);

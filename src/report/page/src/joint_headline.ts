@@ -20,7 +20,7 @@ function trouble({ status, homogeneity }: JointFit): string | null {
   if (status === 'not_identifiable') return 'Not identifiable: the recordings do not tell these parameters';
   if (status !== 'not_converged') return null;
   return homogeneity.agrees === false
-    ? 'Refused: these recordings are not of one pendulum with the same constants'
+    ? 'Refused: the recordings are not of one pendulum; these numbers are no result'
     : 'Not converged: these numbers are no result';
 }
 
