@@ -19,10 +19,73 @@ namespace {
 
 using Eigen::Index;
 
-std::vector<FitReport> Wholes(const JointModels& joint) {
-  std::vector<FitReport> wholes;
-  for (const JointFit& fit : joint.joint) wholes.push_back(fit.whole);
-  return wholes;
+/// What is compared: joint fits, or, where the recordings do not share their parameters, the fits to each alone.
+struct Compared {
+  const JointModels& joint;
+  bool apart = false;
+  std::vector<FitReport> wholes = {};  // M, without samples
+  std::vector<int> parameters = {};    // M
+
+  const FitReport& Fit(std::size_t k, std::size_t m) const {
+    return apart ? joint.runs[k].alone.fits[m] : joint.FitOf(k, m);
+  }
+  std::vector<std::string> SharedBy(std::size_t m) const {
+    return apart ? std::vector<std::string>{} : joint.joint[m].shared;
+  }
+};
+
+/// The fits to all recordings alone as one.
+FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters) {
+  FitReport whole;
+  whole.model = joint.joint[m].whole.model;
+  whole.termination = Termination::kConverged;
+  double squares = 0, samples = 0;
+  for (const RunModels& run : joint.runs) {
+    const FitReport& fit = run.alone.fits[m];
+    if (fit.termination != Termination::kConverged) {
+      whole.termination = fit.termination;
+      whole.reason = run.label + ": " + fit.reason;
+    }
+    const auto own = static_cast<double>(fit.residual.size());
+    squares += own * fit.statistics.rms_residual * fit.statistics.rms_residual;
+    samples += own;
+    whole.statistics.log_likelihood += fit.statistics.log_likelihood;
+    whole.statistics.effective_samples += fit.statistics.effective_samples;
+    parameters += DescribeFit(fit).parameters;
+    if (fit.noise.memory.kind != Autocorrelation::Kind::kWhite) whole.noise.memory = fit.noise.memory;
+  }
+  const double k = parameters;
+  whole.statistics.rms_residual = std::sqrt(squares / std::max(samples, 1.0));
+  whole.statistics.aicc =
+      2 * k - 2 * whole.statistics.log_likelihood + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  return whole;
+}
+
+Compared FitsAlone(const JointModels& joint) {
+  Compared compared{joint, true};
+  for (std::size_t m = 0; m < joint.models.size(); ++m) {
+    compared.parameters.push_back(0);
+    compared.wholes.push_back(TogetherAlone(joint, m, compared.parameters.back()));
+  }
+  return compared;
+}
+
+Compared JointFits(const JointModels& joint) {
+  Compared compared{joint, false};
+  for (const JointFit& fit : joint.joint) {
+    compared.wholes.push_back(fit.whole);
+    compared.parameters.push_back(fit.parameters);
+  }
+  return compared;
+}
+
+/// Whether the recordings disagree by the law that describes each of them best: then a joint fit lacks more than a law.
+Compared WhatToCompare(const JointModels& joint) {
+  Compared alone = FitsAlone(joint);
+  const FitReport* const best = BestFit(alone.wholes);
+  const bool disagree =
+      best != nullptr && !joint.homogeneity[static_cast<std::size_t>(best - alone.wholes.data())].agrees();
+  return disagree ? alone : JointFits(joint);
 }
 
 bool SameUnit(const JointModels& joint) {
@@ -31,12 +94,12 @@ bool SameUnit(const JointModels& joint) {
   });
 }
 
-ComparisonRow DescribeJoint(const JointModels& joint, std::size_t m) {
-  const JointFit& fit = joint.joint[m];
-  ComparisonRow row = DescribeFit(fit.whole);
-  row.parameters = fit.parameters;
-  for (std::size_t k = 0; k < fit.runs.size() && fit.whole.termination != Termination::kFailed; ++k) {
-    const FitReport& run = fit.runs[k];
+ComparisonRow DescribeRow(const Compared& compared, std::size_t m) {
+  const FitReport& whole = compared.wholes[m];
+  ComparisonRow row = DescribeFit(whole);
+  row.parameters = compared.parameters[m];
+  for (std::size_t k = 0; k < compared.joint.runs.size() && whole.termination != Termination::kFailed; ++k) {
+    const FitReport& run = compared.Fit(k, m);
     row.lack_of_fit = row.lack_of_fit || run.Warns("lack_of_fit");
     if (std::abs(run.noise.lag1_correlation) > std::abs(row.lag1_correlation))
       row.lag1_correlation = run.noise.lag1_correlation;
@@ -46,21 +109,21 @@ ComparisonRow DescribeJoint(const JointModels& joint, std::size_t m) {
 }
 
 /// The strictest that any recording asks for.
-Likelihood ChooseJointly(const JointModels& joint, std::size_t best) {
+Likelihood ChooseJointly(const Compared& compared, std::size_t best) {
   Likelihood chosen = Likelihood::kIndependent;
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    chosen = std::max(chosen, ChooseLikelihood(joint.FitOf(k, best), joint.runs[k].alone.used.resolution));
+  for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
+    chosen = std::max(chosen, ChooseLikelihood(compared.Fit(k, best), compared.joint.runs[k].alone.used.resolution));
   }
   return chosen;
 }
 
 /// The recording whose residuals ask for that likelihood, for words.
-const FitReport& Speaker(const JointModels& joint, std::size_t best, Likelihood likelihood) {
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    const FitReport& fit = joint.FitOf(k, best);
-    if (ChooseLikelihood(fit, joint.runs[k].alone.used.resolution) == likelihood) return fit;
+const FitReport& Speaker(const Compared& compared, std::size_t best, Likelihood likelihood) {
+  for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
+    const FitReport& fit = compared.Fit(k, best);
+    if (ChooseLikelihood(fit, compared.joint.runs[k].alone.used.resolution) == likelihood) return fit;
   }
-  return joint.FitOf(0, best);
+  return compared.Fit(0, best);
 }
 
 // ---- Likelihood of residuals that remember --------------------------------------------------------------------------
@@ -126,25 +189,26 @@ class SharedShift {
 };
 
 /// Each recording has a memory of the kind and order that its residuals by the best model have.
-void SetCorrelatedLikelihood(const JointModels& joint, std::size_t m, std::size_t best, const FitOptions& options,
+void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_t best, const FitOptions& options,
                              ComparisonRow& row) {
+  const JointModels& joint = compared.joint;
   SharedShift together;
   double sum = 0;
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
     const Recording& used = joint.runs[k].alone.used;
-    const FitReport& fit = joint.FitOf(k, m);
+    const FitReport& fit = compared.Fit(k, m);
     std::optional<CorrelatedResiduals> data = ResidualsOf(used, fit, options, false);
     std::optional<CorrelatedLikelihood> likelihood;
     if (data) {
       const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
       data->lowest.setConstant(-kUnbounded);
       data->highest.setConstant(kUnbounded);
-      likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(joint.FitOf(k, best)));
+      likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)));
       std::vector<std::string> names;
       for (const ParameterEstimate& parameter : fit.parameters)
         if (!parameter.fixed && !parameter.at_bound) names.emplace_back(parameter.info.name);
       if (likelihood) {
-        together.Add(names, likelihood->information, likelihood->shift, lowest, highest, joint.joint[m].shared);
+        together.Add(names, likelihood->information, likelihood->shift, lowest, highest, compared.SharedBy(m));
       }
     }
     if (!likelihood) {
@@ -158,16 +222,17 @@ void SetCorrelatedLikelihood(const JointModels& joint, std::size_t m, std::size_
   row.log_likelihood = sum - together.Loss();
 }
 
-void SetLikelihoods(const JointModels& joint, std::size_t best, const FitOptions& options, Comparison& comparison) {
+void SetLikelihoods(const Compared& compared, std::size_t best, const FitOptions& options, Comparison& comparison) {
+  const JointModels& joint = compared.joint;
   double samples = 0;
   for (const RunModels& run : joint.runs) samples += static_cast<double>(run.alone.used.size());
   for (std::size_t m = 0; m < comparison.rows.size(); ++m) {
     ComparisonRow& row = comparison.rows[m];
     if (!row.judged || comparison.likelihood == Likelihood::kNone) continue;
     if (comparison.likelihood == Likelihood::kIndependent) {
-      row.log_likelihood = joint.joint[m].whole.statistics.log_likelihood;
+      row.log_likelihood = compared.wholes[m].statistics.log_likelihood;
     } else {
-      SetCorrelatedLikelihood(joint, m, best, ForModel(options, joint.models[m], joint.models).options, row);
+      SetCorrelatedLikelihood(compared, m, best, ForModel(options, joint.models[m], joint.models).options, row);
     }
     SetCriteria(samples, comparison.effective_samples, row);
   }
@@ -204,10 +269,11 @@ class PooledPrediction {
   double squares_ = 0, standardized_ = 0;
 };
 
-void SetPredictions(const JointModels& joint, const FitOptions& options, Comparison& comparison) {
+void SetPredictions(const Compared& compared, const FitOptions& options, Comparison& comparison) {
+  const JointModels& joint = compared.joint;
   const bool same = SameUnit(joint);
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
-    if (joint.joint[m].whole.termination != Termination::kConverged) continue;
+    if (compared.wholes[m].termination != Termination::kConverged) continue;
     const FitOptions own = ForModel(options, joint.models[m], joint.models).options;
     PooledPrediction blocks, forward;
     for (const RunModels& run : joint.runs) {
@@ -222,11 +288,12 @@ void SetPredictions(const JointModels& joint, const FitOptions& options, Compari
 }
 
 /// rms of residuals over their σ where units differ.
-void SetUnitlessRms(const JointModels& joint, Comparison& comparison) {
+void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
+  const JointModels& joint = compared.joint;
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     double squares = 0, samples = 0;
     for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-      const FitReport& fit = joint.FitOf(k, m);
+      const FitReport& fit = compared.Fit(k, m);
       const auto own = static_cast<double>(fit.residual.size());
       squares += own * std::pow(fit.statistics.rms_residual / joint.runs[k].alone.fits[m].noise.sigma, 2);
       samples += own;
@@ -235,44 +302,45 @@ void SetUnitlessRms(const JointModels& joint, Comparison& comparison) {
   }
 }
 
-ComparedRuns AsCompared(const JointModels& joint) {
-  ComparedRuns compared;
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    ComparedRun run{joint.runs[k].alone.used, {}};
-    for (std::size_t m = 0; m < joint.models.size(); ++m) run.fits.push_back(&joint.FitOf(k, m));
-    compared.runs.push_back(std::move(run));
+ComparedRuns RunsOf(const Compared& compared) {
+  ComparedRuns runs;
+  for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
+    ComparedRun run{compared.joint.runs[k].alone.used, {}};
+    for (std::size_t m = 0; m < compared.wholes.size(); ++m) run.fits.push_back(&compared.Fit(k, m));
+    runs.runs.push_back(std::move(run));
   }
-  for (const JointFit& fit : joint.joint) {
-    for (const std::string& name : fit.shared) {
-      if (std::ranges::find(compared.shared, name) == compared.shared.end()) compared.shared.push_back(name);
+  for (std::size_t m = 0; m < compared.wholes.size(); ++m) {
+    for (const std::string& name : compared.SharedBy(m)) {
+      if (std::ranges::find(runs.shared, name) == runs.shared.end()) runs.shared.push_back(name);
     }
   }
-  return compared;
+  return runs;
 }
 
 }  // namespace
 
 Comparison CompareJointModels(const JointModels& joint, const FitOptions& options, const CompareOptions& how) {
   Comparison comparison;
-  const std::vector<FitReport> wholes = Wholes(joint);
-  for (std::size_t m = 0; m < joint.models.size(); ++m) comparison.rows.push_back(DescribeJoint(joint, m));
-  if (!SameUnit(joint)) SetUnitlessRms(joint, comparison);
-  const FitReport* const best = BestFit(wholes);
+  const Compared compared = WhatToCompare(joint);
+  for (std::size_t m = 0; m < joint.models.size(); ++m) comparison.rows.push_back(DescribeRow(compared, m));
+  if (!SameUnit(joint)) SetUnitlessRms(compared, comparison);
+  const FitReport* const best = BestFit(compared.wholes);
   if (best == nullptr) {
     comparison.likelihood = Likelihood::kNone;
     comparison.criterion = "none: no fit converged";
     comparison.reason = "no model converged, so none is recommended";
     return comparison;
   }
-  const auto index = static_cast<std::size_t>(best - wholes.data());
-  comparison.likelihood = ChooseJointly(joint, index);
+  const auto index = static_cast<std::size_t>(best - compared.wholes.data());
+  comparison.likelihood = ChooseJointly(compared, index);
   comparison.effective_samples = std::max(best->statistics.effective_samples, std::exp(2.0));
-  comparison.criterion =
-      DescribeLikelihood(comparison.likelihood, Speaker(joint, index, comparison.likelihood)) + ", of all recordings";
-  SetLikelihoods(joint, index, options, comparison);
-  if (how.predict) SetPredictions(joint, options, comparison);
-  comparison.tests = TestNested(AsCompared(joint), comparison.rows, options, comparison.likelihood);
-  Recommend(wholes, comparison);
+  comparison.criterion = DescribeLikelihood(comparison.likelihood, Speaker(compared, index, comparison.likelihood)) +
+                         (compared.apart ? ", each recording with parameters of its own, for they do not share them"
+                                         : ", of all recordings");
+  SetLikelihoods(compared, index, options, comparison);
+  if (how.predict) SetPredictions(compared, options, comparison);
+  comparison.tests = TestNested(RunsOf(compared), comparison.rows, options, comparison.likelihood);
+  Recommend(compared.wholes, comparison);
   return comparison;
 }
 

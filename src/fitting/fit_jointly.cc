@@ -90,9 +90,11 @@ std::string Unexplained(const Work& work) {
 
 Ending EndOf(const Work& work) {
   if (const std::string left = Unexplained(work); !left.empty()) {
-    return {Termination::kNotConverged, "these are not swings of one pendulum with one " +
-                                            NameList(work.joint.shared) + ": the best joint trajectories leave " +
-                                            left + " unexplained"};
+    const bool restricted = work.joint.members.front().problem->restricted;
+    return {Termination::kNotConverged,
+            std::string(restricted ? "not with the values, bounds and priors that were given, or " : "") +
+                "these are not swings of one pendulum with one " + NameList(work.joint.shared) +
+                ": the best joint trajectories leave " + left + " unexplained"};
   }
   const InformationInverse& inverse = work.optimum.inverse;
   if (!inverse.identifiable) {

@@ -119,6 +119,11 @@ Result<Setup> ReadSetup(FitPendulumOptions& options) {
 
 Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count) {
   if (options.IsJoint(setup.paths.size())) {
+    if (count > 1 && IsStandardOutput(options.residuals)) {
+      return Error(StatusCode::kInvalidArgument, "--residuals " + options.residuals +
+                                                     " takes one recording, and there are " + std::to_string(count) +
+                                                     "; name a file, and they are numbered");
+    }
     return CheckOutputs(options.JointOutputs(static_cast<int>(count)), setup.inputs);
   }
   if (count == 1) return {};
