@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -65,7 +66,8 @@ Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
   Line line;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const RunEstimate& run = parameter.runs[k];
-    if (run.value) line.Add(*run.value - parameter.mean, 1, squares[k] - reference, *run.std_error);
+    if (run.value && std::isfinite(squares[k]))
+      line.Add(*run.value - parameter.mean, 1, squares[k] - reference, *run.std_error);
   }
   line.estimates = line.value.size();
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -79,7 +81,7 @@ Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
 
 double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptions& options) {
   constexpr int kPlaces = 60;
-  if (fit.termination == Termination::kFailed) return 0;
+  if (fit.termination == Termination::kFailed) return std::numeric_limits<double>::quiet_NaN();
   const Parts parts(used, fit, options);
   const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
   const double from = release == nullptr ? used.time[0] : release->estimate;
@@ -89,8 +91,8 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
   return std::sqrt(sum / kPlaces);
 }
 
-/// By least squares of numbers with independent errors. What is left tells by how much the errors are too small, if they
-/// are: the F test of the slope is against that, or against the errors themselves where less is left.
+/// By least squares of numbers with independent errors. What is left tells by how much the errors are too small, if
+/// they are: the F test of the slope is against that, or against the errors themselves where less is left.
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes) {
@@ -99,7 +101,7 @@ std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<Run
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const bool windows = TrendWithin(runs[k], parameter.name) != nullptr;
     squares.push_back(windows ? MeanSquare(runs[k], parameter.name) : amplitudes[k] * amplitudes[k]);
-    if (!parameter.runs[k].value) continue;
+    if (!parameter.runs[k].value || !std::isfinite(squares.back())) continue;
     lowest = std::min(lowest, squares.back());
     highest = std::max(highest, squares.back());
     sum += squares.back();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "comparison_parts.h"
+#include "pendulum/analysis/comparison_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +73,8 @@ const FitReport* BestFit(const std::vector<FitReport>& fits) {
   return best;
 }
 
-std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit,
-                                               const FitOptions& options, bool with_bounded) {
+std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit, const FitOptions& options,
+                                               bool with_bounded) {
   const FittedMotion motion(used, fit, options.rig);
   Eigen::MatrixXd jacobian;
   const auto readings = motion.Readings(motion.instants(), &jacobian);

@@ -50,7 +50,8 @@ std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
 
 // ---- Halves --------------------------------------------------------------------------------------------------------
 
-void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& second, const FitReport& fit, Constancy& result) {
+void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& second, const FitReport& fit,
+                      Constancy& result) {
   const VectorXd difference = second.value - first.value;
   const MatrixXd covariance = first.covariance + second.covariance;
   for (Index i = 0; i < difference.size(); ++i) {

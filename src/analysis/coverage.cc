@@ -91,12 +91,13 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
     recordings.push_back(*std::move(recording));
     if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
   }
+  const std::vector<double> truth = TrueParameters(simulated.front().truth);
+  const std::vector<std::optional<double>> bounds = SharedCramerRaoBounds(simulated);
+  if (alone.size() < recordings.size()) return OutcomeOf(scenario, truth, bounds, nullptr);
   std::vector<JointRun> joint;
   for (std::size_t k = 0; k < alone.size(); ++k) joint.push_back({recordings[k], alone[k], scenario.fit});
-  const bool all = alone.size() == recordings.size();
   const Result<JointFit> fit = FitJointly(joint, PhysicalNames({scenario.fit.model}));
-  const FitReport* const report = all && fit ? &fit->whole : nullptr;
-  return OutcomeOf(scenario, TrueParameters(simulated.front().truth), SharedCramerRaoBounds(simulated), report);
+  return OutcomeOf(scenario, truth, bounds, fit ? &fit->whole : nullptr);
 }
 
 Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {

@@ -10,8 +10,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
-#include "homogeneity_words.h"
 #include "pendulum/analysis/amplitude_dependence.h"
+#include "pendulum/analysis/homogeneity_words.h"
 #include "pendulum/analysis/part_fit.h"
 
 namespace pendulum {
@@ -48,10 +48,69 @@ VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
   return reach;
 }
 
+/// Takes out of estimates and covariance what was known beforehand, which the recordings have in common. False where
+/// nothing is left.
+bool WithoutPriors(const ParameterPriors& priors, const std::vector<std::string>& names, VectorXd& value,
+                   MatrixXd& covariance) {
+  if (priors.empty()) return true;
+  MatrixXd precision = covariance.ldlt().solve(MatrixXd::Identity(value.size(), value.size()));
+  VectorXd pull = precision * value;
+  for (Index i = 0; i < value.size(); ++i) {
+    const auto prior = priors.find(names[static_cast<std::size_t>(i)]);
+    if (prior == priors.end()) continue;
+    const double weight = 1 / (prior->second.std_dev * prior->second.std_dev);
+    precision(i, i) -= weight;
+    pull[i] -= weight * prior->second.mean;
+  }
+  const VectorXd scale = precision.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * precision * scale.asDiagonal());
+  if (!scale.allFinite() || factor.info() != Eigen::Success) return false;
+  covariance = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
+  value = covariance * pull;
+  return true;
+}
+
+/// Whether clocks or calibrations with errors are not the same for all: then they let recordings differ.
+bool HaveOwnSources(const std::vector<RunAlone>& runs) {
+  const auto clock = [](const RunAlone& run) { return std::pair(run.used.clock_scale, run.used.clock_scale_std_dev); };
+  const auto calibration = [](const RunAlone& run) {
+    return run.used.calibration ? run.used.calibration->source : nlohmann::ordered_json();
+  };
+  return std::ranges::any_of(runs, [&](const RunAlone& run) {
+    return clock(run) != clock(runs.front()) || calibration(run) != calibration(runs.front());
+  });
+}
+
+/// The systematic covariance of the named parameters, without the rig's, which is all recordings'.
+MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names) {
+  const auto size = static_cast<Index>(names.size());
+  MatrixXd covariance = MatrixXd::Zero(size, size);
+  VectorXd by_rig = VectorXd::Zero(size);
+  const std::vector<std::string>& known = run.fit.systematic_names;
+  for (Index i = 0; i < size; ++i) {
+    const auto row = std::ranges::find(known, names[static_cast<std::size_t>(i)]) - known.begin();
+    for (Index j = 0; j < size; ++j) {
+      const auto column = std::ranges::find(known, names[static_cast<std::size_t>(j)]) - known.begin();
+      const auto count = static_cast<std::ptrdiff_t>(known.size());
+      if (row < count && column < count) covariance(i, j) = run.fit.systematic_covariance(row, column);
+    }
+    const ParameterEstimate& parameter = *run.fit.Find(names[static_cast<std::size_t>(i)]);
+    if (run.options.rig && parameter.info.scales_with_gravity()) {
+      const auto& torque = run.options.rig->gravity_torque;
+      by_rig[i] = parameter.estimate * torque.std_dev / torque.value;
+    }
+  }
+  covariance -= by_rig * by_rig.transpose();
+  covariance.diagonal() = covariance.diagonal().cwiseMax(0.0);
+  return covariance;
+}
+
 /// Estimates and errors as the fit reports them, unless a bound has to do with them.
-std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names) {
+std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names, bool own_sources) {
+  const std::vector<std::string> systematic = own_sources ? names : std::vector<std::string>{};
   const FitReport& fit = run.fit;
-  if (fit.termination != Termination::kConverged) return std::nullopt;
+  // Beside another minimum nearly as good the estimate has no normal distribution.
+  if (fit.termination != Termination::kConverged || fit.Warns("another_minimum")) return std::nullopt;
   const auto size = static_cast<Index>(names.size());
   Told told{0, VectorXd(size), MatrixXd(size, size)};
   const bool bounded = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; });
@@ -68,6 +127,7 @@ std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>&
     all = unbounded->value;
     covariance = unbounded->covariance;
   }
+  if (!bounded && !WithoutPriors(run.options.priors, told_names, all, covariance)) return std::nullopt;
   for (const std::string& name : names) {
     const auto row = std::ranges::find(told_names, name) - told_names.begin();
     if (row == static_cast<std::ptrdiff_t>(told_names.size())) return std::nullopt;
@@ -77,6 +137,7 @@ std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>&
   told.covariance = covariance(rows, rows);
   const VectorXd wider = ReachOf(fit, names);
   told.covariance = (wider.asDiagonal() * told.covariance * wider.asDiagonal()).eval();
+  if (!systematic.empty()) told.covariance += SystematicOf(run, systematic);
   const bool sound = told.value.allFinite() && told.covariance.allFinite() && told.covariance.diagonal().minCoeff() > 0;
   return sound ? std::optional(told) : std::nullopt;
 }
@@ -96,8 +157,7 @@ Pool PoolOf(const std::vector<Told>& told, const std::vector<std::size_t>& membe
   std::vector<MatrixXd> precisions;
   VectorXd sum = VectorXd::Zero(size);
   for (const std::size_t k : members) {
-    const MatrixXd scaled =
-        scale.cwiseInverse().asDiagonal() * told[k].covariance * scale.cwiseInverse().asDiagonal();
+    const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * told[k].covariance * scale.cwiseInverse().asDiagonal();
     precisions.push_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
     pool.precision += precisions.back();
     sum += precisions.back() * told[k].value.cwiseQuotient(scale);
@@ -123,7 +183,9 @@ std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd&
   std::vector<std::size_t> members(told.size());
   std::iota(members.begin(), members.end(), 0);
   std::vector<std::size_t> out;
-  const auto dof = [&](std::size_t count) { return static_cast<double>(scale.size()) * static_cast<double>(count - 1); };
+  const auto dof = [&](std::size_t count) {
+    return static_cast<double>(scale.size()) * static_cast<double>(count - 1);
+  };
   while (2 * (out.size() + 1) < told.size()) {
     std::size_t best = 0;
     double least = kUnbounded;
@@ -142,7 +204,8 @@ std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd&
   return {};
 }
 
-/// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be enough.
+/// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be
+/// enough.
 std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
   constexpr std::size_t kFewest = 4;
   std::vector<std::size_t> far;
@@ -158,8 +221,8 @@ std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
         error[i] = std::sqrt(other.covariance(j, j));
       }
       const RandomEffects others = SummarizeScatter(value, error);
-      const double variance = told[k].covariance(j, j) + others.between * others.between +
-                              others.std_error * others.std_error;
+      const double variance =
+          told[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
       const boost::math::students_t distribution(static_cast<double>(value.size() - 1));
       const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
       const double p = 2 * boost::math::cdf(boost::math::complement(distribution, t));
@@ -219,22 +282,43 @@ std::vector<std::string> FreeNames(const FitReport& fit, const std::vector<std::
   return names;
 }
 
+const FitReport& FirstWithParameters(const std::vector<RunAlone>& runs) {
+  const auto found = std::ranges::find_if(runs, [](const RunAlone& run) { return !run.fit.parameters.empty(); });
+  return (found == runs.end() ? runs.front() : *found).fit;
+}
+
 }  // namespace
+
+bool Homogeneity::is_amplitude() const {
+  bool some = false;
+  for (const SharedParameter& parameter : parameters) {
+    if (parameter.p >= kDisagree) continue;
+    const auto own = std::ranges::find(amplitude_dependence, parameter.name, &AmplitudeDependence::name);
+    if (own == amplitude_dependence.end() || !own->explains()) return false;
+    some = true;
+  }
+  return some;
+}
 
 Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector<std::string>& shared) {
   Homogeneity result;
   for (const RunAlone& run : runs) result.amplitudes.push_back(MeanAmplitude(run.used, run.fit, run.options));
-  const std::vector<std::string> names = FreeNames(runs.front().fit, shared);
+  const FitReport& example = FirstWithParameters(runs);
+  const std::vector<std::string> names = FreeNames(example, shared);
+  const bool own_sources = HaveOwnSources(runs);
   std::vector<Told> told;
   for (std::size_t k = 0; k < runs.size() && !names.empty(); ++k) {
-    if (std::optional<Told> one = TellOne(runs[k], names)) {
+    if (std::optional<Told> one = TellOne(runs[k], names, own_sources)) {
       told.push_back(*std::move(one));
       told.back().run = k;
     }
   }
   if (told.size() < 2) {
-    result.reason = names.empty() ? "all that is shared is fixed: there is nothing to compare"
-                                  : "fewer than two recordings tell all shared parameters alone";
+    const bool none =
+        std::ranges::none_of(shared, [&](const std::string& name) { return example.Find(name) != nullptr; });
+    result.reason = none            ? "the model has none of what is shared"
+                    : names.empty() ? "all that is shared is fixed: there is nothing to compare"
+                                    : "fewer than two recordings tell all shared parameters alone";
     result.verdict = "not tested: " + result.reason;
     return result;
   }
@@ -243,15 +327,18 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
   std::iota(all.begin(), all.end(), 0);
   result.statistic = PoolOf(told, all, scale).statistic;
   result.dof = static_cast<int>(scale.size()) * static_cast<int>(told.size() - 1);
-  if (std::isfinite(result.statistic)) result.p = Tail(result.statistic, result.dof);
+  if (std::isfinite(result.statistic)) {
+    result.p = Tail(result.statistic, result.dof);
+  } else {
+    result.reason = "the recordings' covariances cannot be inverted";
+  }
   for (std::size_t j = 0; j < names.size(); ++j) {
-    result.parameters.push_back(
-        DescribeParameter(*runs.front().fit.Find(names[j]), told, static_cast<Index>(j), runs.size()));
+    result.parameters.push_back(DescribeParameter(*example.Find(names[j]), told, static_cast<Index>(j), runs.size()));
     if (auto dependence = TestAmplitudeDependence(runs, result.parameters.back(), result.amplitudes)) {
       result.amplitude_dependence.push_back(*std::move(dependence));
     }
   }
-  if (!result.agrees()) {
+  if (!result.agrees() && !result.is_amplitude()) {
     std::vector<std::size_t> out = LeaveOut(told, scale);
     if (out.empty()) out = FarFromScatter(told);
     for (const std::size_t k : out) result.disagreeing.push_back(static_cast<int>(told[k].run));

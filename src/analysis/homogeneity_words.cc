@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "homogeneity_words.h"
+#include "pendulum/analysis/homogeneity_words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,19 +18,12 @@ std::string Names(const Homogeneity& result) {
   return NameList(names);
 }
 
-/// The parameter in which a recording is farthest from the others.
-const SharedParameter* Farthest(const Homogeneity& result, std::size_t run) {
-  const SharedParameter* farthest = nullptr;
-  for (const SharedParameter& parameter : result.parameters) {
-    const auto& z = parameter.runs[run].z;
-    if (!z) continue;
-    if (farthest == nullptr || std::abs(*z) > std::abs(*farthest->runs[run].z)) farthest = &parameter;
-  }
-  return farthest;
-}
+/// What all that do not disagree say of a parameter: weighted mean and its variance.
+struct Others {
+  double mean = 0, variance = 0;
+};
 
-/// Weighted mean of all that do not disagree.
-double MeanOfOthers(const Homogeneity& result, const SharedParameter& parameter) {
+Others OthersOf(const Homogeneity& result, const SharedParameter& parameter) {
   double sum = 0, weights = 0;
   for (std::size_t k = 0; k < parameter.runs.size(); ++k) {
     const RunEstimate& run = parameter.runs[k];
@@ -40,7 +33,23 @@ double MeanOfOthers(const Homogeneity& result, const SharedParameter& parameter)
     sum += weight * *run.value;
     weights += weight;
   }
-  return sum / weights;
+  return {sum / weights, 1 / weights};
+}
+
+/// The parameter in which a recording is farthest from those that agree.
+const SharedParameter* Farthest(const Homogeneity& result, std::size_t run) {
+  const SharedParameter* farthest = nullptr;
+  double most = 0;
+  for (const SharedParameter& parameter : result.parameters) {
+    const RunEstimate& own = parameter.runs[run];
+    if (!own.value) continue;
+    const Others others = OthersOf(result, parameter);
+    const double z = std::abs(*own.value - others.mean) / std::hypot(*own.std_error, std::sqrt(others.variance));
+    if (farthest != nullptr && !(z > most)) continue;
+    farthest = &parameter;
+    most = z;
+  }
+  return farthest;
 }
 
 /// "recording 3 (c.csv) disagrees with the others: its inertia is 3.0 % larger".
@@ -48,7 +57,7 @@ std::string DescribeOutlier(const Homogeneity& result, const std::vector<RunAlon
   std::string text = runs[run].label + " disagrees with the others";
   const SharedParameter* const farthest = Farthest(result, run);
   if (farthest == nullptr) return text;
-  const double mean = MeanOfOthers(result, *farthest);
+  const double mean = OthersOf(result, *farthest).mean;
   const double change = *farthest->runs[run].value / mean - 1;
   text += ": its " + farthest->name + " is ";
   if (mean == 0 || !std::isfinite(change)) return text + NumberText(*farthest->runs[run].value, 3);
@@ -68,14 +77,13 @@ std::string DescribeAmplitude(const Homogeneity& result) {
   std::string text;
   for (const AmplitudeDependence& dependence : result.amplitude_dependence) {
     if (!(dependence.p < Homogeneity::kDisagree)) continue;
-    text += (text.empty() ? "" : "; ") + dependence.name + (dependence.span > 0 ? " rises by " : " falls by ") +
-            Percent(dependence.span) + " from the recording of the smallest swings to that of the largest, as a slope " +
-            "with amplitude squared within and between recordings would have it (p " +
-            ProbabilityText(dependence.p) + ")" +
-            (dependence.rest_p < Homogeneity::kDisagree ? ", which is not all that differs"
-                                                        : ", and nothing else differs");
+    text +=
+        (text.empty() ? "" : "; ") + dependence.name + (dependence.span > 0 ? " rises by " : " falls by ") +
+        Percent(dependence.span) + " from the recording of the smallest swings to that of the largest, as a slope " +
+        "with amplitude squared within and between recordings would have it (p " + ProbabilityText(dependence.p) + ")" +
+        (dependence.rest_p < Homogeneity::kDisagree ? ", which is not all that differs" : ", and nothing else differs");
   }
-  return text;
+  return text.empty() ? text : text + "; another law may explain that (--model all)";
 }
 
 /// The parameter that scatters most against its errors.
@@ -88,9 +96,9 @@ std::string DescribeScatter(const Homogeneity& result) {
     return "inertia differs by " + Percent(inertia->scatter.between / inertia->scatter.mean) +
            " (standard deviation): these are not recordings of one rig, or not at one length";
   }
+  const std::string unit = most->unit == "1" ? "" : " " + most->unit;
   return "between recordings " + most->name + " scatters by " +
-         (scatter.mean != 0 ? Percent(scatter.between / scatter.mean)
-                            : NumberText(scatter.between, 2) + " " + most->unit) +
+         (scatter.mean != 0 ? Percent(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
          ", beyond its errors: the rig's constants and their errors are the random-effects means";
 }
 
@@ -101,8 +109,8 @@ bool LacksFit(const std::vector<RunAlone>& runs) {
 }  // namespace
 
 std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs) {
-  const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + std::to_string(result.dof) +
-                           " degrees of freedom, p " + ProbabilityText(result.p.value_or(0)) + ")";
+  const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + FreedomText(result.dof) + ", p " +
+                           ProbabilityText(result.p.value_or(0)) + ")";
   const std::string misfit = "; the model does not describe all of each recording";
   if (result.agrees()) {
     return "the recordings agree on " + Names(result) + test +
@@ -112,7 +120,7 @@ std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<Run
   const std::string amplitude = DescribeAmplitude(result);
   if (!result.disagreeing.empty()) text += "; " + DescribeOutliers(result, runs);
   if (result.disagreeing.empty() && !amplitude.empty()) text += "; " + amplitude;
-  if (result.disagreeing.empty()) text += "; " + DescribeScatter(result);
+  if (result.disagreeing.empty() && !result.is_amplitude()) text += "; " + DescribeScatter(result);
   if (LacksFit(runs)) {
     text += misfit + ", so that the errors compared here may be too small";
   }

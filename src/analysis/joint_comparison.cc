@@ -9,10 +9,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "comparison_parts.h"
-#include "fitting/box_least_squares.h"
+#include "pendulum/analysis/comparison_parts.h"
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
+#include "pendulum/fitting/box_least_squares.h"
 
 namespace pendulum {
 namespace {
@@ -42,7 +42,7 @@ FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters
   double squares = 0, samples = 0;
   for (const RunModels& run : joint.runs) {
     const FitReport& fit = run.alone.fits[m];
-    if (fit.termination != Termination::kConverged) {
+    if (fit.termination != Termination::kConverged && whole.termination == Termination::kConverged) {
       whole.termination = fit.termination;
       whole.reason = run.label + ": " + fit.reason;
     }
@@ -88,10 +88,15 @@ Compared WhatToCompare(const JointModels& joint) {
   return disagree ? alone : JointFits(joint);
 }
 
-bool SameUnit(const JointModels& joint) {
-  return std::ranges::all_of(joint.runs, [&](const RunModels& run) {
-    return run.alone.used.value_unit() == joint.runs.front().alone.used.value_unit();
-  });
+/// What residuals of recording k are divided by, so that those of all are of one unit: nothing, or the least σ of any
+/// model, the same for all of them.
+double UnitOf(const JointModels& joint, std::size_t k) {
+  if (joint.HaveOneUnit()) return 1;
+  double least = kUnbounded;
+  for (const FitReport& fit : joint.runs[k].alone.fits) {
+    if (fit.noise.sigma > 0) least = std::min(least, fit.noise.sigma);
+  }
+  return least;
 }
 
 ComparisonRow DescribeRow(const Compared& compared, std::size_t m) {
@@ -213,7 +218,8 @@ void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_
     }
     if (!likelihood) {
       row.judged = false;
-      row.reason = "the residuals of " + joint.runs[k].label + " have no likelihood with the memory of the best model's";
+      row.reason =
+          "the residuals of " + joint.runs[k].label + " have no likelihood with the memory of the best model's";
       return;
     }
     sum += likelihood->log_likelihood + PerCount(used);
@@ -271,14 +277,14 @@ class PooledPrediction {
 
 void SetPredictions(const Compared& compared, const FitOptions& options, Comparison& comparison) {
   const JointModels& joint = compared.joint;
-  const bool same = SameUnit(joint);
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     if (compared.wholes[m].termination != Termination::kConverged) continue;
     const FitOptions own = ForModel(options, joint.models[m], joint.models).options;
     PooledPrediction blocks, forward;
-    for (const RunModels& run : joint.runs) {
+    for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+      const RunModels& run = joint.runs[k];
       const FitReport& alone = run.alone.fits[m];
-      const double unit = same ? 1.0 : alone.noise.sigma;
+      const double unit = UnitOf(joint, k);
       blocks.Add(CrossValidate(run.alone.used, alone, own), unit, run.label);
       forward.Add(PredictForward(run.alone.used, alone, own), unit, run.label);
     }
@@ -295,7 +301,7 @@ void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
     for (std::size_t k = 0; k < joint.runs.size(); ++k) {
       const FitReport& fit = compared.Fit(k, m);
       const auto own = static_cast<double>(fit.residual.size());
-      squares += own * std::pow(fit.statistics.rms_residual / joint.runs[k].alone.fits[m].noise.sigma, 2);
+      squares += own * std::pow(fit.statistics.rms_residual / UnitOf(joint, k), 2);
       samples += own;
     }
     comparison.rows[m].rms = std::sqrt(squares / std::max(samples, 1.0));
@@ -323,7 +329,7 @@ Comparison CompareJointModels(const JointModels& joint, const FitOptions& option
   Comparison comparison;
   const Compared compared = WhatToCompare(joint);
   for (std::size_t m = 0; m < joint.models.size(); ++m) comparison.rows.push_back(DescribeRow(compared, m));
-  if (!SameUnit(joint)) SetUnitlessRms(compared, comparison);
+  if (!joint.HaveOneUnit()) SetUnitlessRms(compared, comparison);
   const FitReport* const best = BestFit(compared.wholes);
   if (best == nullptr) {
     comparison.likelihood = Likelihood::kNone;

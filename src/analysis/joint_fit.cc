@@ -50,6 +50,11 @@ void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
 
 }  // namespace
 
+bool JointModels::HaveOneUnit() const {
+  const std::string unit = runs.front().alone.used.value_unit();
+  return std::ranges::all_of(runs, [&](const RunModels& run) { return run.alone.used.value_unit() == unit; });
+}
+
 JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, const std::vector<std::string>& models,
                         const std::vector<std::string>& shared) {
   JointModels result{models, std::move(runs), {}, {}};

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "comparison_parts.h"
+#include "pendulum/analysis/comparison_parts.h"
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
 

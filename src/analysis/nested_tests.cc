@@ -60,7 +60,8 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
     for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
       const std::string_view name = fit.parameters[i].info.name;
       if (fit.parameters[i].fixed) continue;
-      if (std::ranges::find(two, name, &ParameterInfo::name) != two.end()) rows.push_back(static_cast<Index>(common.size()));
+      if (std::ranges::find(two, name, &ParameterInfo::name) != two.end())
+        rows.push_back(static_cast<Index>(common.size()));
       (IsIn(compared.shared, name) ? common : own).push_back(static_cast<Index>(i));
     }
     Append(LeftBy(jacobian(Eigen::all, own), jacobian(Eigen::all, common)) / SigmaOf(fit), shared);
@@ -167,9 +168,8 @@ void SetProbability(const ComparedRuns& compared, std::size_t simpler, std::size
                     const FitOptions& options, Likelihood likelihood, NestedTest& test) {
   if (test.statistic < -kRounding && nesting.unidentified.empty()) {
     test.reason = "the richer law's fit is the worse one: its search ended elsewhere";
-  } else if (!std::ranges::all_of(nesting.added, [&](const ParameterInfo& info) {
-               return IsIn(compared.shared, info.name);
-             })) {
+  } else if (!std::ranges::all_of(nesting.added,
+                                  [&](const ParameterInfo& info) { return IsIn(compared.shared, info.name); })) {
     test.reason = "what is added is not shared: each recording adds its own";
   } else if (IsRestricted(nesting, options)) {
     test.reason = "--fix, --bounds or --prior name what is added";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -33,11 +34,12 @@ struct Scatter {
   /// The variance between runs at which the statistic is so large; 0 where it is never so large.
   double BetweenAt(double statistic) const {
     if (!(Statistic(0) > statistic)) return 0;
-    const double highest = (value.array() - value.mean()).square().sum() / statistic;
+    double highest = (value.array() - value.mean()).square().sum() / statistic;
+    while (Statistic(highest) >= statistic) highest *= 2;  // rounding, where errors are next to nothing
     std::uintmax_t most_steps = 200;
-    const auto [low, high] = boost::math::tools::toms748_solve(
-        [&](double between) { return Statistic(between) - statistic; }, 0.0, highest,
-        boost::math::tools::eps_tolerance<double>(40), most_steps);
+    const auto [low, high] =
+        boost::math::tools::toms748_solve([&](double between) { return Statistic(between) - statistic; }, 0.0, highest,
+                                          boost::math::tools::eps_tolerance<double>(40), most_steps);
     return 0.5 * (low + high);
   }
 };
@@ -53,13 +55,13 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
   effects.between = std::sqrt(between);
   const double ratio = std::max(scatter.Statistic(between) / freedom, 1.0);
   effects.std_error = std::sqrt(ratio / scatter.Weights(between).sum());
-  const double length =
-      effects.std_error * boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  const double length = effects.std_error * boost::math::quantile(boost::math::students_t(freedom), 0.975);
   effects.lower95 = effects.mean - length;
   effects.upper95 = effects.mean + length;
   const boost::math::chi_squared distribution(freedom);
   effects.between_lower95 = std::sqrt(scatter.BetweenAt(boost::math::quantile(distribution, 0.975)));
-  effects.between_upper95 = std::sqrt(scatter.BetweenAt(boost::math::quantile(distribution, 0.025)));
+  const double upper = scatter.BetweenAt(boost::math::quantile(distribution, 0.025));
+  effects.between_upper95 = upper > 0 ? std::sqrt(upper) : std::numeric_limits<double>::quiet_NaN();
   return effects;
 }
 

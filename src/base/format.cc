@@ -36,6 +36,10 @@ std::string ProbabilityText(double p) {
   return p < kSmallest ? "< 1e-99" : NumberText(p, 2);
 }
 
+std::string FreedomText(int degrees) {
+  return std::to_string(degrees) + (degrees == 1 ? " degree of freedom" : " degrees of freedom");
+}
+
 std::string Quoted(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown = "\"";

@@ -10,11 +10,11 @@
 
 #include <Eigen/Cholesky>
 
-#include "box_least_squares.h"
 #include "burg.h"
 #include "memory_family.h"
 #include "memory_filter.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/box_least_squares.h"
 
 namespace pendulum {
 namespace {
@@ -303,12 +303,9 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
   }
   const MemoryProcess process = ProcessAt(family, place);
   const Eigen::MatrixXd white = Whitened(FilteredAt(family, place), data.time, data.jacobian);
-  return {log_likelihood,
-          process.memory,
-          std::sqrt(process.variance),
-          shift,
-          static_cast<int>(family.parameters),
-          white.transpose() * white};
+  return {
+      log_likelihood,           process.memory, std::sqrt(process.variance), shift, static_cast<int>(family.parameters),
+      white.transpose() * white};
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions&
   if (!report) return report;
   report->parameters = Embed(*report, problem, OrderOf(problem.model));
   report->model = problem.model;
+  report->start_values = problem.start;
   if (report->termination == Termination::kFailed) return report;
   report->termination = Termination::kNotIdentifiable;
   report->reason = reason;

@@ -13,8 +13,8 @@
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/search.h"
+#include "pendulum/fitting/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
-#include "trace_error.h"
 
 namespace pendulum {
 namespace {

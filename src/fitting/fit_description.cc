@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fit_description.h"
+#include "pendulum/fitting/fit_description.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,11 +7,12 @@
 #include <numeric>
 #include <utility>
 
-#include "fit_description.h"
-#include "joint_problem.h"
 #include "pendulum/base/format.h"
+#include "pendulum/fitting/broken_order.h"
+#include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
+#include "pendulum/fitting/joint_problem.h"
 #include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/profile.h"
 #include "pendulum/fitting/systematic.h"
@@ -30,6 +31,8 @@ struct Work {
   std::vector<Description> descriptions;  // K
   std::vector<Autocorrelation> memories;  // K
   Errors errors;
+  Eigen::MatrixXd systematic;  // P x P, units of G
+  bool from_posteriors = false;
 };
 
 /// The rows of a recording's free parameters among all that are free.
@@ -101,6 +104,10 @@ Ending EndOf(const Work& work) {
     const std::string names = NamesOf(work.joint, inverse.direction);
     return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
   }
+  for (const JointMember& member : work.joint.members) {
+    const std::string broken = BrokenOrder(*member.problem, member.solution.parameters);
+    if (!broken.empty()) return {Termination::kNotIdentifiable, broken};
+  }
   if (const double shift = RemainingShift(work.optimum); !(shift <= kLargestShift)) {
     return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +
                                             " standard errors is left to make; shorter windows or another model may "
@@ -122,11 +129,12 @@ Errors ErrorsAt(const Work& work, const Optimum& optimum) {
 }
 
 /// Whether the joint residuals of a recording are those of its own fit, but for what sharing a few parameters costs.
-bool IsAsAlone(const JointMember& member) {
-  constexpr double kSame = 0.01;
+bool IsAsAlone(const JointMember& member, bool correlated) {
+  constexpr double kFew = 10;  // of the deviance
   const FitReport& alone = *member.alone;
-  return alone.termination == Termination::kConverged &&
-         std::abs(std::log(member.solution.noise.sigma / alone.noise.sigma)) < kSame;
+  const double rise = 2 * member.samples() * std::abs(std::log(member.solution.noise.sigma / alone.noise.sigma));
+  const bool remembers = alone.noise.memory.kind != Autocorrelation::Kind::kWhite;
+  return alone.termination == Termination::kConverged && rise < kFew && (remembers || !correlated);
 }
 
 Errors OwnErrors(const Work& work, std::size_t k) {
@@ -139,14 +147,26 @@ Eigen::MatrixXd SystematicErrors(const Work& work) {
   const auto size = static_cast<Index>(work.joint.solve.fixed.size());
   std::map<std::string, std::pair<SystematicSource, std::size_t>> sources;  // and of how many recordings
   for (const JointMember& member : work.joint.members) {
-    for (const SystematicSource& source : SystematicSources(*member.recording, member.options, *member.problem,
-                                                            *member.cost, member.solution)) {
+    for (const SystematicSource& source :
+         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
       auto& [all, count] = sources[source.identity];
       if (count++ == 0) {
         all = {source.identity, Eigen::VectorXd::Zero(source.powers.size() > 0 ? size : 0),
                Eigen::MatrixXd::Zero(size, source.pull.cols()), source.covariance};
       }
-      if (source.powers.size() > 0) all.powers(member.at) = source.powers;
+      // An angle's friction follows the clock otherwise than a rate's: then no one factor says it, and the pulls do.
+      if (all.powers.size() > 0 && source.powers.size() > 0) {
+        const bool first = count == 1;
+        for (std::size_t i = 0; i < member.at.size() && all.powers.size() > 0; ++i) {
+          const bool shared = member.at[i] < static_cast<int>(work.joint.shared.size());
+          const double power = source.powers[static_cast<Index>(i)];
+          if (shared && !first && all.powers[member.at[i]] != power) {
+            all.powers.resize(0);
+          } else {
+            all.powers[member.at[i]] = power;
+          }
+        }
+      }
       all.pull(member.at, Eigen::all) += source.pull;
     }
   }
@@ -171,23 +191,26 @@ bool HasPosteriors(const JointProblem& joint) {
 }
 
 /// Combines the posteriors of the fits alone as parabolas: quiet recordings have no other likelihood that is one.
-void UsePosteriors(Work& work) {
-  Optimum& optimum = work.optimum;
+/// False, and nothing changed, where they tell too little.
+bool UsePosteriors(Work& work) {
+  Optimum optimum = work.optimum;
   optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
   std::ranges::sort(optimum.free);
   optimum.at_bound.clear();
   CombinedParabolas combined = CombineParabolas(work.joint);
-  const InformationInverse inverse = InvertInformation(combined.information, optimum.free);
-  if (!inverse.identifiable) return;
-  work.solution.parameters = std::move(combined.parameters);
+  optimum.inverse = InvertInformation(combined.information, optimum.free);
+  double sum = 0;
+  if (!optimum.inverse.identifiable || !work.joint.cost->SumOfSquares(combined.parameters, &sum)) return false;
   optimum.information = std::move(combined.information);
-  optimum.inverse = inverse;
   optimum.gradient.setZero();
+  work.optimum = std::move(optimum);
+  work.solution.parameters = std::move(combined.parameters);
   work.joint.Distribute(work.solution.parameters);
   for (JointMember& member : work.joint.members) {
     member.solution.noise.sigma = member.alone->noise.sigma;
-    if (!member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr)) return;
+    member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr);  // known to be traced
   }
+  return true;
 }
 
 // ---- Intervals ------------------------------------------------------------------------------------------------------
@@ -220,7 +243,7 @@ void SetSharedProfiles(Work& work, std::vector<FitReport>& reports) {
 
 // ---- Reports --------------------------------------------------------------------------------------------------------
 
-FitReport ReportOf(const Work& work, std::size_t k, const Eigen::MatrixXd& systematic) {
+FitReport ReportOf(const Work& work, std::size_t k) {
   const JointMember& member = work.joint.members[k];
   FitReport report = work.descriptions[k].report;
   const Optimum& own = work.own_optima[k];
@@ -230,17 +253,16 @@ FitReport ReportOf(const Work& work, std::size_t k, const Eigen::MatrixXd& syste
   report.noise.sigma_std_error = errors.runs[0].sigma;
   SetParameters(*member.recording, member.options, *member.problem, own, member.solution, report);
   SetCovariance(*member.problem, own, errors, report);
-  SetSystematicErrors(*member.problem, systematic(member.at, member.at), report);
+  SetSystematicErrors(*member.problem, work.systematic(member.at, member.at), report);
   SetCovarianceIntervals(*member.problem, member.solution, own, errors, report);
-  if (HasPosteriors(work.joint)) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
+  if (work.from_posteriors) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
   return report;
 }
 
 /// Parameters, errors and intervals of all recordings.
 void SetReports(Work& work, JointFit& fit) {
-  const Eigen::MatrixXd systematic = SystematicErrors(work);
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) fit.runs.push_back(ReportOf(work, k, systematic));
-  if (WantsProfiles(work) && !HasPosteriors(work.joint)) SetSharedProfiles(work, fit.runs);
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) fit.runs.push_back(ReportOf(work, k));
+  if (WantsProfiles(work) && !work.from_posteriors) SetSharedProfiles(work, fit.runs);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     const JointMember& member = work.joint.members[k];
     SetDerived(*member.problem, work.own_optima[k], OwnErrors(work, k), member.solution, fit.runs[k]);
@@ -255,6 +277,7 @@ void SetReportsWithoutErrors(Work& work, JointFit& fit) {
     FitReport report = work.descriptions[k].report;
     SetParameters(*member.recording, member.options, *member.problem, work.own_optima[k], member.solution, report);
     SetDerived(*member.problem, work.own_optima[k], Errors{}, member.solution, report);
+    if (!work.optimum.inverse.identifiable) SetIdentifiability(*member.problem, work.own_optima[k], report);
     fit.runs.push_back(std::move(report));
   }
 }
@@ -337,8 +360,44 @@ void AddWarnings(const Work& work, JointFit& fit) {
     const Description& described = work.descriptions[k];
     fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
                                        described.quantile_residuals, described.correlated, fit.runs[k]);
-    // Of the joint fit, not of a recording; Search of each alone has said which other minima it has.
+    // Of the joint fit, not of each recording.
+    if (k == 0) continue;
     std::erase_if(fit.runs[k].warnings, [](const Warning& warning) { return warning.code == "prior_conflict"; });
+  }
+}
+
+/// What the solution leaves of each recording.
+void DescribeAll(Work& work) {
+  SeeOwn(work);
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    work.descriptions.push_back(Describe(*member.recording, *member.problem, *member.cost, member.solution,
+                                         static_cast<int>(work.own_optima[k].free.size())));
+  }
+}
+
+/// The memory of each recording's residuals, and the covariance that follows.
+void FindErrors(Work& work) {
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const JointMember& member = work.joint.members[k];
+    const Description& described = work.descriptions[k];
+    work.memories.push_back(IsAsAlone(member, described.correlated)
+                                ? member.alone->noise.memory
+                                : MemoryOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
+                                           described.quantile_residuals, described.correlated));
+  }
+  work.errors = ErrorsAt(work, work.optimum);
+  if (work.from_posteriors) work.errors.covariance = work.optimum.inverse.matrix;
+}
+
+/// How it ended, in every report.
+void SetEnding(Work& work, FitReport& whole) {
+  const auto [termination, reason] = EndOf(work);
+  whole.termination = termination;
+  whole.reason = reason;
+  for (Description& described : work.descriptions) {
+    described.report.termination = termination;
+    described.report.reason = reason;
   }
 }
 
@@ -347,7 +406,8 @@ void AddWarnings(const Work& work, JointFit& fit) {
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());
-  Work work{*std::move(joint), {}, {}, {}, {}, {}, {}};
+  Work work;
+  work.joint = *std::move(joint);
   work.solution = SolveJointly(work.joint);
   JointFit fit;
   fit.shared = work.joint.shared;
@@ -356,31 +416,13 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message};
   if (!optimum) return Failed(work.joint, std::move(fit));
   work.optimum = *std::move(optimum);
-  if (HasPosteriors(work.joint)) UsePosteriors(work);
-  SeeOwn(work);
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    work.descriptions.push_back(Describe(*member.recording, *member.problem, *member.cost, member.solution,
-                                         static_cast<int>(work.own_optima[k].free.size())));
-  }
-  const auto [termination, reason] = EndOf(work);
-  fit.whole.termination = termination;
-  fit.whole.reason = reason;
-  for (Description& described : work.descriptions) {
-    described.report.termination = termination;
-    described.report.reason = reason;
-  }
-  if (termination == Termination::kConverged) {
-    for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-      const JointMember& member = work.joint.members[k];
-      const Description& described = work.descriptions[k];
-      work.memories.push_back(
-          IsAsAlone(member) ? member.alone->noise.memory
-                            : MemoryOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
-                                       described.quantile_residuals, described.correlated));
-    }
-    work.errors = ErrorsAt(work, work.optimum);
-    if (HasPosteriors(work.joint)) work.errors.covariance = work.optimum.inverse.matrix;
+  // Before posteriors move σ, on which the optimum's information rests.
+  if (work.optimum.inverse.identifiable) work.systematic = SystematicErrors(work);
+  work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work);
+  DescribeAll(work);
+  SetEnding(work, fit.whole);
+  if (fit.whole.termination == Termination::kConverged) {
+    FindErrors(work);
     SetReports(work, fit);
   } else {
     SetReportsWithoutErrors(work, fit);

@@ -247,6 +247,9 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   const bool drifts = NamesDrift(options);
   problem.infos = FitParameters(*model, start->start, recording.quantity, drifts);
   if (drifts) problem.start.parameters.push_back(0);
+  if (problem.start.parameters.size() != problem.infos.size()) {
+    return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
+  }
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, *start);
   problem.data.drifts = drifts;

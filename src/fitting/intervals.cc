@@ -222,6 +222,7 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
   report.parameters[k].open_interval = interval.open;
   if (interval.lower == problem.solve.lower[k] && interval.upper == problem.solve.upper[k]) {
     report.parameters[k].open_interval = "no value that it may have is excluded";
+    SetInterval(problem, parameter, std::nullopt, std::nullopt, report);
   } else {
     SetInterval(problem, parameter, interval.lower, interval.upper, report);
   }

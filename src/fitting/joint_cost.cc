@@ -53,7 +53,8 @@ void JointCost::AddTo(ceres::Problem& problem, const std::vector<double*>& param
     problem.AddResidualBlock(term.cost, nullptr, own);
   }
   for (std::size_t i = 0; i < priors_.size(); ++i) {
-    problem.AddResidualBlock(prior_costs_[i].get(), nullptr, parameters[static_cast<std::size_t>(priors_[i].parameter)]);
+    problem.AddResidualBlock(prior_costs_[i].get(), nullptr,
+                             parameters[static_cast<std::size_t>(priors_[i].parameter)]);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "joint_problem.h"
+#include "pendulum/fitting/joint_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/search.h"
+#include "pendulum/fitting/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
-#include "trace_error.h"
 
 namespace pendulum {
 namespace {
@@ -64,8 +64,23 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
   member.alone_parameters = solution.parameters;
   solution.noise = NoiseOf(*member.problem, run.alone);
   solution.noise_reason = run.alone.noise.why;
+  member.cost_sigma = solution.noise.sigma;
   member.cost->set_noise(solution.noise);
   return member;
+}
+
+/// One model, and one rig, for parameters are shared in units of its gravity torque.
+Result<void> CheckAlike(std::span<const JointRun> runs) {
+  const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
+  for (std::size_t k = 1; k < runs.size(); ++k) {
+    if (runs[k].alone.model.name != runs[0].alone.model.name) {
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " was fitted with another model than the first");
+    }
+    if (torque(runs[k]) != torque(runs[0])) {
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " is of another rig than the first");
+    }
+  }
+  return {};
 }
 
 /// Names of the model's parameters among those asked for, in the model's order.
@@ -116,41 +131,52 @@ void Assemble(JointProblem& joint) {
   joint.cost = std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), priors);
 }
 
-/// The likelihood of a recording about its own fit: places among all parameters, information (M x M), estimates.
+/// The likelihood of a recording about its own fit, without its priors: places among all parameters (M), information A
+/// (M x M), and A p - gradient.
 struct Parabola {
   std::vector<int> at;
   Eigen::MatrixXd information;
-  Eigen::VectorXd centre;
+  Eigen::VectorXd pull;
 };
+
+/// From the sums where the fit alone ended: its cost has no priors.
+Parabola ParabolaOfSums(const JointMember& member) {
+  const std::vector<double>& own = member.alone_parameters;
+  const auto size = static_cast<Index>(own.size());
+  Parabola parabola{member.at, Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  Eigen::MatrixXd sums;
+  if (!member.cost->Sums(own, &sums)) return parabola;
+  parabola.information = sums.topLeftCorner(size, size);
+  parabola.pull =
+      parabola.information * Eigen::Map<const Eigen::VectorXd>(own.data(), size) - sums.col(size).head(size);
+  return parabola;
+}
 
 /// From the covariance of the fit alone where it has one: the trajectory need not be traced for it.
 Parabola ParabolaOf(const JointMember& member) {
   const FitReport& alone = *member.alone;
-  const std::vector<double>& own = member.alone_parameters;
-  const auto size = static_cast<Index>(own.size());
-  const Eigen::Map<const Eigen::VectorXd> estimates(own.data(), size);
-  if (alone.covariance_names.empty()) {
-    Eigen::MatrixXd sums;
-    if (!member.cost->Sums(own, &sums)) return {member.at, Eigen::MatrixXd::Zero(size, size), estimates};
-    return {member.at, sums.topLeftCorner(size, size), estimates};
-  }
-  std::vector<Index> rows;
-  std::vector<double> units;
-  Parabola parabola;
-  for (const std::string& name : alone.covariance_names) {
-    const auto i = static_cast<std::size_t>(alone.Find(name) - alone.parameters.data());
-    rows.push_back(static_cast<Index>(i));
-    parabola.at.push_back(member.at[i]);
-    units.push_back(member.problem->si_per_internal[i]);
-  }
-  const auto count = static_cast<Index>(rows.size());
-  const Eigen::Map<const Eigen::VectorXd> unit(units.data(), count);
-  std::vector<int> all(rows.size());
+  const auto count = static_cast<Index>(alone.covariance_names.size());
+  std::vector<int> all(alone.covariance_names.size());
   std::iota(all.begin(), all.end(), 0);
-  parabola.information = InvertInformation(alone.covariance, all).matrix;
-  if (parabola.information.size() == 0) parabola.information = Eigen::MatrixXd::Zero(count, count);
-  parabola.information = (unit.asDiagonal() * parabola.information * unit.asDiagonal()).eval();
-  parabola.centre = estimates(rows);
+  const InformationInverse inverse = InvertInformation(alone.covariance, all);
+  if (count == 0 || !inverse.identifiable) return ParabolaOfSums(member);
+  Parabola parabola;
+  Eigen::VectorXd unit(count), estimates(count), prior = Eigen::VectorXd::Zero(count), mean = prior;
+  for (Index row = 0; row < count; ++row) {
+    const auto i = static_cast<std::size_t>(alone.Find(alone.covariance_names[static_cast<std::size_t>(row)]) -
+                                            alone.parameters.data());
+    parabola.at.push_back(member.at[i]);
+    unit[row] = member.problem->si_per_internal[i];
+    estimates[row] = member.alone_parameters[i];
+    for (const PriorTerm& known : member.problem->priors) {
+      if (known.parameter != static_cast<int>(i)) continue;
+      prior[row] = known.weight * known.weight;
+      mean[row] = known.mean;
+    }
+  }
+  parabola.information = unit.asDiagonal() * inverse.matrix * unit.asDiagonal();
+  parabola.pull = parabola.information * estimates - prior.cwiseProduct(mean);
+  parabola.information.diagonal() -= prior;
   return parabola;
 }
 
@@ -199,8 +225,8 @@ bool UpdateReadings(JointProblem& joint, const Solution& solution) {
   });
 }
 
-/// Gives every recording the σ that its residuals have at the solution, and its cost too unless that has it to a fraction
-/// of σ's own error: another σ of levels costs a trajectory. False where a motion cannot be traced.
+/// Gives every recording the σ that its residuals have at the solution, and its cost too unless that has it to a
+/// fraction of σ's own error: another σ of levels costs a trajectory. False where a motion cannot be traced.
 bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   constexpr double kSame = 3e-3;
   const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
@@ -208,9 +234,11 @@ bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   if (!optimum->inverse.identifiable) return true;
   for (JointMember& member : joint.members) {
     const double sigma = SigmaOf(member, *optimum);
-    const bool changed = std::abs(std::log(sigma / member.solution.noise.sigma)) > kSame;
+    const bool changed = std::abs(std::log(sigma / member.cost_sigma)) > kSame;
     member.solution.noise.sigma = sigma;
-    if (changed || member.solution.noise.IsPlain()) member.cost->set_noise(member.solution.noise);
+    if (!changed && !member.solution.noise.IsPlain()) continue;
+    member.cost_sigma = sigma;
+    member.cost->set_noise(member.solution.noise);
   }
   return true;
 }
@@ -281,6 +309,7 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
     return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
                                                    std::string(runs.empty() ? "there is none" : "there is one"));
   }
+  if (Result<void> checked = CheckAlike(runs); !checked) return tl::unexpected(checked.error());
   JointProblem joint;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     Result<JointMember> member = MakeMember(runs[k], k);
@@ -311,7 +340,7 @@ CombinedParabolas CombineParabolas(const JointProblem& joint) {
   for (const JointMember& member : joint.members) {
     const Parabola parabola = ParabolaOf(member);
     sums(parabola.at, parabola.at) += parabola.information;
-    pull(parabola.at) += parabola.information * (parabola.centre - start(parabola.at));
+    pull(parabola.at) += parabola.pull - parabola.information * start(parabola.at);
   }
   std::vector<int> free;
   for (int i = 0; i < static_cast<int>(size); ++i) {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "fit_description.h"
 #include "pendulum/base/format.h"
+#include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
 #include "pendulum/fitting/systematic.h"
@@ -117,14 +117,13 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
                 Solution solution) {
   const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
   if (!optimum) return FailedReport(recording, options, problem, cost, solution);
-  Description described =
-      Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
+  Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
   FitReport& report = described.report;
   SetTermination(problem, *optimum, described.correlated, OnKink(problem, described.trace, solution), report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) {
-    SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals,
-              described.correlated, report);
+    SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
+              report);
   } else {
     SetDerived(problem, *optimum, Errors{}, solution, report);
   }

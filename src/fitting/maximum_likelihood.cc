@@ -124,7 +124,6 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
          densities * std::log(DensityUnit(problem.resolution));
 }
 
-
 /// Below one resolution rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008,
 /// section 5.1).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {

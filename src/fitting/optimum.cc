@@ -83,11 +83,12 @@ bool IsSimple(const FittedRun& run) { return run.solution.noise.IsPlain() && IsW
 
 /// What one recording says of those F of its parameters that are free.
 struct Part {
-  std::vector<Index> rows;          // F: where they stand among all free ones
-  Eigen::MatrixXd bread, meat;      // F x F: information, and the covariance of the scores
-  Eigen::VectorXd mixed;            // F: information of a parameter and log σ
-  double sigma_information = 0;     // of log σ
-  double samples = 0, counted = 0;  // N; parameters that σ² has counted already, as its 1 / (N - counted)
+  std::vector<Index> rows;       // F: where they stand among all free ones
+  Eigen::MatrixXd bread, meat;   // F x F: information, and the covariance of the scores
+  Eigen::VectorXd mixed;         // F: information of a parameter and log σ
+  double sigma_information = 0;  // of log σ
+  bool beside_sigma = false;     // the bread is what is left of the information beside log σ
+  double samples = 0;            // N
 };
 
 /// A recording's parameters that are free, and where those stand among all free ones.
@@ -132,7 +133,8 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
     part.meat = MeatOf(run.problem, noise, terms, jacobian, run.correlation);
   } else {
     // σ is estimated beside the parameters.
-    if (!noise.IsPlain()) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
+    part.beside_sigma = !noise.IsPlain();
+    if (part.beside_sigma) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
     part.meat = part.bread;
   }
   return part;
@@ -182,23 +184,26 @@ double RemainingShift(const Optimum& optimum) {
 namespace {
 
 /// A parameter's own number of effective samples: memory that inflates a mean may leave a swing's phase alone.
-Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& optimum, double samples, bool white) {
+Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& optimum, const Eigen::VectorXd& samples,
+                           bool white) {
   const auto free = static_cast<double>(optimum.free.size());
   Eigen::VectorXd t95(covariance.rows());
   for (Index i = 0; i < t95.size(); ++i) {
     const double share = white ? 1.0 : std::min(optimum.inverse.matrix(i, i) / covariance(i, i), 1.0);
-    const double freedom = std::isfinite(share) ? std::max(share * samples - free, 1.0) : 1.0;
+    const double freedom = std::isfinite(share) ? std::max(share * samples[i] - free, 1.0) : 1.0;
     t95[i] = boost::math::quantile(boost::math::students_t(freedom), 0.975);
   }
   return t95;
 }
 
-/// σ's standard error beside parameters of covariance C.
-std::optional<double> SigmaError(const FittedRun& run, const Part& part, const Eigen::MatrixXd& covariance) {
+/// σ's standard error beside parameters of inverse information C, by the blocks of the inverse of the information of
+/// both.
+std::optional<double> SigmaError(const FittedRun& run, const Part& part, const Eigen::MatrixXd& inverse) {
   const NoiseModel& noise = run.solution.noise;
   if (noise.IsRobust()) return RobustSigmaError(noise, run.problem.data.values(), run.solution.readings);
-  const Eigen::VectorXd traded = part.mixed / part.sigma_information;
-  return noise.sigma * std::sqrt(1 / part.sigma_information + traded.dot(covariance(part.rows, part.rows) * traded));
+  const double traded = part.mixed.dot(inverse(part.rows, part.rows) * part.mixed);
+  const double s = part.sigma_information;
+  return noise.sigma * std::sqrt(part.beside_sigma ? 1 / s + traded / (s * s) : 1 / (s - traded));
 }
 
 NoiseErrors NoiseErrorsOf(const FittedRun& run) {
@@ -231,9 +236,11 @@ void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& par
 
 Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum) {
   Errors errors;
-  double samples = 0;
+  Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Index>(optimum.free.size()));  // that tell the parameter
   for (const FittedRun& run : runs) {
-    samples += static_cast<double>(run.problem.data.time.size());
+    std::vector<Index> rows;
+    FreeColumns(run, optimum, rows);
+    samples(rows).array() += static_cast<double>(run.problem.data.time.size());
     errors.runs.push_back(NoiseErrorsOf(run));
   }
   errors.covariance = optimum.inverse.matrix;

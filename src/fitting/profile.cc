@@ -203,7 +203,9 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
 
 ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
                                  const Optimum& optimum, const Autocorrelation& correlation, int k) {
-  const auto errors_of = [&](const Optimum& freed) { return ComputeErrors(problem, cost, solution, freed, correlation); };
+  const auto errors_of = [&](const Optimum& freed) {
+    return ComputeErrors(problem, cost, solution, freed, correlation);
+  };
   return ProfileParameter(cost, problem.solve, solution, optimum, errors_of,
                           static_cast<double>(problem.data.time.size()), k);
 }

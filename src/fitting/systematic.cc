@@ -95,16 +95,18 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   std::vector<SystematicSource> sources;
   const auto add_scale = [&](const std::string& identity, const Eigen::VectorXd& powers, double relative) {
     if (!(relative > 0)) return;
-    sources.push_back({identity, powers, ScalePull(powers, cost, solution),
-                       Eigen::MatrixXd::Constant(1, 1, relative * relative)});
+    sources.push_back(
+        {identity, powers, ScalePull(powers, cost, solution), Eigen::MatrixXd::Constant(1, 1, relative * relative)});
   };
   if (options.rig) add_scale("rig", gravity, options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value);
   add_scale("clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
             recording.clock_scale_std_dev / recording.clock_scale);
   const std::optional<Calibration>& calibration = recording.calibration;
   if (calibration && calibration->covariance.size() > 0) {
-    sources.push_back({"calibration " + calibration->source.dump(), {},
-                       CalibrationPull(*calibration, problem, cost, solution), calibration->covariance});
+    sources.push_back({"calibration " + calibration->source.dump(),
+                       {},
+                       CalibrationPull(*calibration, problem, cost, solution),
+                       calibration->covariance});
   }
   return sources;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace_error.h"
+#include "pendulum/fitting/trace_error.h"
 
 #include <algorithm>
 

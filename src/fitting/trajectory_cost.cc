@@ -165,7 +165,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return traced_.summary;
   }
 
-  /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be safe.
+  /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be
+  /// safe.
   bool ComesToRest(std::span<const double> p, double torque_change) const override {
     constexpr double kSafe = 4;
     const TraceSummary trace = Trace(p);

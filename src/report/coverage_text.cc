@@ -145,8 +145,9 @@ std::string CoverageText(std::span<const CoverageStudy> studies) {
 std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string_view command) {
   const bool sets = !studies.empty() && studies.front().runs > 1;
   return "# Do the 95 % intervals contain the truth 95 % of the time?\n\n" + Paragraph(kColumns, "", kTableWidth) +
-         (sets ? "\n" + Paragraph(SetsText(studies), "", kTableWidth) : "") + "\n" + Rules(studies) + "\n```sh\n" + std::string(command) + "\n```\n\n" +
-         MarkdownTable(ParameterTable(studies)) + "\n" + MarkdownTable(ScenarioTable(studies));
+         (sets ? "\n" + Paragraph(SetsText(studies), "", kTableWidth) : "") + "\n" + Rules(studies) + "\n```sh\n" +
+         std::string(command) + "\n```\n\n" + MarkdownTable(ParameterTable(studies)) + "\n" +
+         MarkdownTable(ScenarioTable(studies));
 }
 
 std::string CoverageScenarioList(std::span<const CoverageScenario> scenarios) {

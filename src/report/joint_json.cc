@@ -108,10 +108,9 @@ Json RunJson(const RunReport& report, std::size_t index, std::size_t k) {
 
 /// Sums over all recordings.
 Json WholeStatisticsJson(const RunReport& report, const FitReport& fit) {
-  const std::string& unit = report.runs.front().data.unit;
-  const bool same = std::ranges::all_of(report.runs, [&](const RunReport& run) { return run.data.unit == unit; });
+  const std::string& unit = report.data.unit;
   NumberObject json;
-  if (same) json.Set(KeyWithUnit("rms_residual", unit), fit.statistics.rms_residual);
+  if (unit != "sigma") json.Set(KeyWithUnit("rms_residual", unit), fit.statistics.rms_residual);
   return json.Set("log_likelihood", fit.statistics.log_likelihood)
       .Set("aic", fit.statistics.aic)
       .Set("aicc", fit.statistics.aicc)

@@ -41,7 +41,7 @@ Section RecordingSection(const RunReport& report) {
     files.rows.push_back({number, FileText(data, again)});
     table.rows.push_back({number, std::to_string(data.used_samples) + " of " + std::to_string(data.samples),
                           WindowText(data), NumberText(data.sample_rate(), 4), held ? "held" : "in motion",
-                          NumberText(amplitudes[k] * Degrees("rad")->factor, 3)});
+                          std::isfinite(amplitudes[k]) ? NumberText(amplitudes[k] * Degrees("rad")->factor, 3) : "-"});
   }
   Section section{"Recordings", "", {std::move(files), std::move(table)}};
   return section.Say("Amplitudes are root mean squares over the motion.");
@@ -56,7 +56,7 @@ Section FitSection(const RunReport& report, std::size_t index) {
           {Facts{{"model", std::string(fit.model.name) + ":  " + TermsTogether(SymbolicEquation(fit.model))},
                  {"shared", NameList(report.joint[index].shared) + ", by " + count +
                                 " recordings; start, zero and noise are each recording's own"},
-                 {"status", std::string(TerminationName(fit.termination)) + ": " + fit.reason,
+                 {"status", std::string(TerminationName(fit.termination)) + ": " + Printable(fit.reason),
                   converged ? Emphasis::kNone : Emphasis::kAlarm}}}};
 }
 
@@ -101,8 +101,8 @@ Strip StripOf(const SharedParameter& parameter) {
   return {low, high};
 }
 
-void AddRow(const std::string& name, double value, const std::optional<double>& error, const std::string& last, const std::string& strip,
-            Table& table) {
+void AddRow(const std::string& name, double value, const std::optional<double>& error, const std::string& last,
+            const std::string& strip, Table& table) {
   const QuantityNumbers numbers(value, error);
   // No line is broken within the strip.
   std::string drawn;
@@ -139,11 +139,12 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
 std::string ScatterText(const SharedParameter& parameter) {
   const RandomEffects& scatter = parameter.scatter;
   const QuantityNumbers mean(scatter.mean, scatter.std_error);
-  return "Agreement: chi-square " + NumberText(parameter.statistic, 3) + ", " + std::to_string(parameter.dof) +
-         " degrees of freedom, p " + ProbabilityText(parameter.p) + ". Random effects: mean in " +
-         mean.Interval(scatter.lower95, scatter.upper95) + " (95 %); between recordings a standard deviation of " +
-         NumberText(scatter.between, 2) + " " + parameter.unit + ", in [" + NumberText(scatter.between_lower95, 2) +
-         ", " + NumberText(scatter.between_upper95, 2) + "].";
+  const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
+  return "Agreement: chi-square " + NumberText(parameter.statistic, 3) + ", " + FreedomText(parameter.dof) + ", p " +
+         ProbabilityText(parameter.p) + ". Random effects: mean in " + mean.Interval(scatter.lower95, scatter.upper95) +
+         " (95 %); between recordings a standard deviation of " + NumberText(scatter.between, 2) + unit + ", in [" +
+         NumberText(scatter.between_lower95, 2) + ", " +
+         (std::isfinite(scatter.between_upper95) ? NumberText(scatter.between_upper95, 2) : "?") + "].";
 }
 
 // ---- What each has of its own ---------------------------------------------------------------------------------------
@@ -175,10 +176,10 @@ Section NoiseSection(const RunReport& report, std::size_t index) {
     if (fit.termination == Termination::kFailed) continue;
     const bool lacks = fit.Warns("lack_of_fit");
     facts.push_back({"recording " + std::to_string(k + 1),
-                     NoiseText(fit) + "; rms residual " +
-                         ReadingText(fit.statistics.rms_residual, fit.reading_unit) + ", lag-1 correlation " +
-                         FixedText(fit.noise.lag1_correlation, 3) + ", " + fit.noise.memory.Name() +
-                         (lacks ? "; lack of fit" : "") + "; alone: " + report.joint[index].alone[k],
+                     NoiseText(fit) + "; rms residual " + ReadingText(fit.statistics.rms_residual, fit.reading_unit) +
+                         ", lag-1 correlation " + FixedText(fit.noise.lag1_correlation, 3) + ", " +
+                         fit.noise.memory.Name() + (lacks ? "; lack of fit" : "") +
+                         "; alone: " + report.joint[index].alone[k],
                      lacks ? Emphasis::kCaution : Emphasis::kNone});
   }
   const FitStatistics& all = report.fits[index].statistics;
@@ -191,6 +192,10 @@ void AddMainFit(const RunReport& report, std::size_t index, Sections& sections) 
   const FitReport& fit = report.fits[index];
   sections.push_back(FitSection(report, index));
   sections.push_back(AllOfParameters(fit, report.rig, nullptr));
+  if (!report.joint[index].homogeneity.agrees()) {
+    sections.back().Say("The recordings do not agree, and these errors take for granted that they do: see below.",
+                        Emphasis::kCaution);
+  }
   sections.push_back(AgreementSection(report, index));
   sections.push_back(OwnSection(report, index));
   if (!fit.derived.empty()) sections.push_back(DerivedSection(fit));
@@ -207,7 +212,7 @@ Section AgreementSection(const RunReport& report, std::size_t fit) {
   const Homogeneity& homogeneity = report.joint[fit].homogeneity;
   Section section{"Do the recordings agree?"};
   const bool agrees = homogeneity.agrees();
-  section.Say("Verdict: " + homogeneity.verdict + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
+  section.Say("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
   for (const SharedParameter& parameter : homogeneity.parameters) {
     section.Add(ForestTable(parameter, report.fits[fit])).Say(ScatterText(parameter));
   }

@@ -2,6 +2,8 @@
 #include "tools/fit_joint_run.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "pendulum/analysis/joint_comparison.h"
@@ -88,6 +90,21 @@ Result<std::vector<RunModels>> FitAlone(const FitPendulumOptions& options, const
   return runs;
 }
 
+/// What the fit to a recording alone warned of, and a joint fit has no words for: its window, its sampling, other
+/// minima.
+void AddOwnWarnings(const FitReport& alone, const FitReport& joint, RunReport& report) {
+  constexpr std::array<std::string_view, 8> kOfTheFit = {"lack_of_fit",  "correlated_residuals", "zero_drift",
+                                                         "quiet_sensor", "trace_accuracy",       "prior_conflict",
+                                                         "at_bound",     "stop_is_a_kink"};
+  for (const Warning& warning : alone.warnings) {
+    const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
+    if (!of_the_fit && !joint.Warns(warning.code)) report.warnings.push_back(warning);
+  }
+  if (alone.termination == Termination::kConverged) return;
+  report.warnings.push_back(
+      {"not_alone", "fitted alone it is " + std::string(TerminationName(alone.termination)) + ": " + alone.reason});
+}
+
 /// What is said of recording k: the joint fits as it sees them, checked against its closed forms.
 void CompleteRun(const JointModels& joint, std::size_t k, std::size_t main, RunReport& report) {
   const RunModels& run = joint.runs[k];
@@ -101,6 +118,7 @@ void CompleteRun(const JointModels& joint, std::size_t k, std::size_t main, RunR
   report.data = std::move(data);
   for (std::size_t m = 0; m < joint.models.size(); ++m) report.fits.push_back(joint.FitOf(k, m));
   report.constancy = run.constancy;
+  AddOwnWarnings(run.alone.fits[main], report.fits[main], report);
   if (run.alone.swing.undersampled) {
     report.no_closed_forms = "the samples are too far apart to show turning points";
   } else {
@@ -120,12 +138,26 @@ JointPart PartOf(const JointModels& joint, std::size_t m) {
   return part;
 }
 
+/// The same readings twice would count as two recordings, whose errors are independent.
+Result<void> CheckDifferent(const std::vector<Swing>& swings) {
+  for (std::size_t k = 0; k < swings.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      const Recording& one = swings[i].recording;
+      const Recording& other = swings[k].recording;
+      if (one.sha256 != other.sha256 || one.sha256.empty() || swings[i].release != swings[k].release) continue;
+      return Error(StatusCode::kInvalidArgument,
+                   one.path + " and " + other.path + " are the same recording, byte for byte; name it once");
+    }
+  }
+  return {};
+}
+
 /// All recordings have their paths before they are fitted, for labels.
 RunReport LabelsOf(const std::vector<Swing>& swings) {
   RunReport all;
   for (const Swing& swing : swings) {
     all.runs.emplace_back();
-    all.runs.back().data.path = swing.path == "-" ? "" : swing.path;
+    all.runs.back().data.path = swing.recording.path;
     all.runs.back().data.release = swing.release;
   }
   return all;
@@ -139,6 +171,7 @@ Result<FitRun> FitJointRun(const FitPendulumOptions& options, const Setup& setup
   if (const auto checked = CheckNumberedOutputs(options, setup, swings->size()); !checked) {
     return tl::unexpected(checked.error());
   }
+  if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
   const auto rig = RigOf(*swings);
   if (!rig) return tl::unexpected(rig.error());
   FitOptions fit_options = options.fit;
@@ -149,10 +182,8 @@ Result<FitRun> FitJointRun(const FitPendulumOptions& options, const Setup& setup
   FitRun run;
   RunReport& report = run.report;
   report.rig = *rig;
-  const std::string unit = joint.runs.front().alone.used.value_unit();
-  const bool same = std::ranges::all_of(
-      joint.runs, [&](const RunModels& other) { return other.alone.used.value_unit() == unit; });
-  report.data.unit = same ? unit : "sigma";  // of what is told of all recordings together
+  // Of what is told of all recordings together.
+  report.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     report.fits.push_back(joint.joint[m].whole);
     report.joint.push_back(PartOf(joint, m));

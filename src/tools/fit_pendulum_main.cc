@@ -17,6 +17,7 @@
 #include "pendulum/report/series.h"
 #include "pendulum/report/terminal_plot.h"
 #include "pendulum/report/text.h"
+#include "pendulum/report/text_parts.h"
 #include "tools/fit_pendulum_options.h"
 #include "tools/fit_runs.h"
 #include "tools/gnuplot.h"
@@ -28,7 +29,8 @@ const std::string kModelHelp = "Model of the motion, one of " + pendulum::Motion
                                ", several of them between commas to compare, or all; default coulomb.";
 
 DEFINE_string(data, "",
-              "Recording (CSV), or several of one rig between commas, fitted together (--shared); the header names the columns and their units, such as "
+              "Recording (CSV), or several of one rig between commas, fitted together (--shared); the header names the "
+              "columns and their units, such as "
               "time_s,angle_deg; - is standard input.");
 DEFINE_string(calibration, "",
               "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
@@ -64,7 +66,8 @@ DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: hu
 DEFINE_string(interval, "auto",
               "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
 DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
-DEFINE_string(threads, "", "Threads of the bootstrap and of several recordings, 0 for all cores; the result does not depend on it; "
+DEFINE_string(threads, "",
+              "Threads of the bootstrap and of several recordings, 0 for all cores; the result does not depend on it; "
               "default 0.");
 DEFINE_bool(closed_form_only, false,
             "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
@@ -90,7 +93,8 @@ constexpr const char* kUsage =
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
     "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
-    "Of several fits those that can be made are written, and the largest code counts. Several recordings are taken for\n"
+    "Of several fits those that can be made are written, and the largest code counts. Several recordings are taken "
+    "for\n"
     "one rig's and fitted together; --shared none fits each by itself.\n"
     "\n";
 
@@ -187,7 +191,7 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const FitRun& run)
     const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
     const auto drawn = RunGnuplot(TerminalPlot(run.used[k], report.fits[main]));
     if (!drawn) return tl::unexpected(drawn.error());
-    text += (run.report.is_joint() ? RecordingLabel(run.report, k) + "\n" : "") + PictureText(*drawn) + "\n";
+    text += (run.report.is_joint() ? Printable(RecordingLabel(run.report, k)) + "\n" : "") + PictureText(*drawn) + "\n";
   }
   return text + ToText(run.report, {.colour = WantsColour(STDOUT_FILENO)});
 }

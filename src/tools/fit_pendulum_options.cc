@@ -310,8 +310,9 @@ Result<void> ParseShared(const FitPendulumFlags& flags, FitPendulumOptions& opti
 Result<void> CheckJoint(const FitPendulumFlags& flags, const FitPendulumOptions& options) {
   const bool joint = options.IsJoint(options.data.size()) || (!flags.data_list.empty() && options.IsJoint(2));
   if (!joint || options.fit.interval != IntervalMethod::kBootstrap) return {};
-  return BadFlag("--interval bootstrap is for recordings one by one (--shared none); several together have covariance "
-                 "and profile");
+  return BadFlag(
+      "--interval bootstrap is for recordings one by one (--shared none); several together have covariance "
+      "and profile");
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ struct FitPendulumOptions {
   std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
   std::string report;     ///< Path of the page that shows all of it; "-" is standard output; empty for none.
   std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
-  bool terminal_plot = false;       ///< Draws the recording on standard output.
-  bool closed_form_only = false;    ///< No fit is made; of `fit`, the model counts.
+  bool terminal_plot = false;     ///< Draws the recording on standard output.
+  bool closed_form_only = false;  ///< No fit is made; of `fit`, the model counts.
   Sharing sharing = Sharing::kByDefault;
   std::vector<std::string> shared;  ///< Names of the parameters that several recordings share.
   std::vector<std::string> models;  ///< In the order asked for; several are compared.

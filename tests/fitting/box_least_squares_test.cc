@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fitting/box_least_squares.h"
+#include "pendulum/fitting/box_least_squares.h"
 
 #include <cmath>
 #include <cstdint>

@@ -155,9 +155,7 @@ class BlindCost final : public TrajectoryCost {
     return cost_.Readings(p, readings, jacobian);
   }
   TraceSummary Trace(std::span<const double> p) const override { return cost_.Trace(p); }
-  bool ComesToRest(std::span<const double> p, double change) const override {
-    return cost_.ComesToRest(p, change);
-  }
+  bool ComesToRest(std::span<const double> p, double change) const override { return cost_.ComesToRest(p, change); }
   bool Evaluate(double const* const*, double*, double**) const override { return false; }
   void set_tolerance(double) override {}
   void set_used_samples(std::size_t) override {}

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/text.h"
-#include "tests/report/example_report.h"
+#include "tests/report/example_joint_report.h"
 
 namespace pendulum::markdown_test {
 namespace {
@@ -95,6 +95,34 @@ TEST(ToMarkdown, SaysFirstThatAFitDidNotConverge) {
                          "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));
 }
 
+TEST(ToMarkdown, OfAJointFitBeginsWithWhetherTheRecordingsAgree) {
+  EXPECT_THAT(ToMarkdown(ExampleJointReport()), StartsWith(R"(# Pendulum: 2 recordings of one rig
+
+## Verdict
+
+- Model coulomb, converged: the step left to make is below 0.1 standard errors
+- the recordings agree on inertia, viscous
+
+## Result
+
+| name | value ± std error | unit | 95 % interval |
+| --- | --: | --- | --- |
+| inertia | 0.07900 ± 0.00025 | kg m^2 | [0.07850, 0.07950] |
+| viscous | 0.0030 ± 0.0005 | N m s/rad | [0.0020, 0.0040] |
+| coulomb | 0 (at bound) | N m | [0, 0.000125] |
+
+## Warnings
+
+- recording 1 (run.csv): there is a gap of 0.5 s after 7 s
+)"));
+}
+
+// The stars and bars of a strip would be emphasis and cells.
+TEST(ToMarkdown, OfAJointFitShowsStripsAsTheyAre) {
+  EXPECT_THAT(ToMarkdown(ExampleJointReport()),
+              HasSubstr("| 1 alone | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));
+}
+
 TEST(ToMarkdown, GoesWithoutAFit) {
   RunReport report = ExampleReport();
   report.fits.clear();
@@ -119,7 +147,8 @@ std::vector<std::string> TitlesOf(const std::string& text, const std::string& be
 }
 
 TEST(ToMarkdown, HasEverySectionOfTheText) {
-  for (const RunReport& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport()}) {
+  for (const RunReport& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport(),
+                                  ExampleComparedJointReport(), ExampleFailedJointReport()}) {
     EXPECT_THAT(TitlesOf(ToText(report), "[[", "]]"), IsSubsetOf(TitlesOf(ToMarkdown(report), "\n## ", "\n\n")));
   }
 }

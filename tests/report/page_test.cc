@@ -8,7 +8,7 @@
 
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
-#include "tests/report/example_report.h"
+#include "tests/report/example_joint_report.h"
 
 namespace pendulum::page_test {
 namespace {
@@ -34,7 +34,7 @@ Recording ExampleSamples() {
 
 TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
   const RunReport report = ExampleReport();
-  const std::string html = ToHtml(ExampleSamples(), report, "fit_pendulum --data run.csv");
+  const std::string html = ToHtml({ExampleSamples()}, report, "fit_pendulum --data run.csv");
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
   EXPECT_EQ(Embedded(html, "result"), ToJson(report));
   EXPECT_EQ(Embedded(html, "series").at("time_s").size(), 8);
@@ -42,10 +42,21 @@ TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
   EXPECT_THAT(html, Not(HasSubstr("@RESULT@")));
 }
 
+TEST(ToHtml, HoldsEachRecordingOfAJointFit) {
+  const RunReport report = ExampleJointReport();
+  Recording second = ExampleSamples();
+  second.value[0] = 0.5;
+  const std::string html = ToHtml({ExampleSamples(), second}, report, "");
+  EXPECT_EQ(Embedded(html, "result"), ToJson(report));
+  const Json series = Embedded(html, "series");
+  ASSERT_EQ(series.size(), 2);
+  EXPECT_EQ(series[1].at("measured").at(0), 0.5);
+}
+
 TEST(ToHtml, LetsNoNameEndItsScript) {
   RunReport report = ExampleReport();
   report.data.path = "</script><script>alert(1)</script>@SERIES@.csv";
-  const std::string html = ToHtml(ExampleSamples(), report, "<!--");
+  const std::string html = ToHtml({ExampleSamples()}, report, "<!--");
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
   EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.data.path);
   EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
@@ -53,7 +64,7 @@ TEST(ToHtml, LetsNoNameEndItsScript) {
 
 // No address of a server, and no way to load one.
 TEST(ToHtml, FetchesNothing) {
-  const std::string html = ToHtml(ExampleSamples(), ExampleReport(), "");
+  const std::string html = ToHtml({ExampleSamples()}, ExampleReport(), "");
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, Not(HasSubstr(" src=\"http")));
   EXPECT_THAT(html, Not(HasSubstr("<link")));

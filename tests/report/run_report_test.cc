@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/recording/window.h"
-#include "tests/report/example_report.h"
+#include "tests/report/example_joint_report.h"
 
 namespace pendulum::run_report_test {
 namespace {
@@ -57,6 +57,36 @@ TEST(AllWarnings, AreThoseOfTheRecordingWithoutAFit) {
   RunReport report = ExampleReport();
   report.fits.clear();
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
+}
+
+TEST(AllWarnings, OfAJointFitSaysFirstWhatIsSaidOfAllThenWhoseTheOthersAre) {
+  RunReport report = ExampleJointReport();
+  report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
+  report.runs[1].warnings = report.runs[0].warnings;
+  EXPECT_THAT(AllWarnings(report),
+              ElementsAre(Field(&Warning::message, "they do not agree"),
+                          Field(&Warning::message, "recording 1 (run.csv): there is a gap of 0.5 s after 7 s"),
+                          Field(&Warning::code, "lack_of_fit"),
+                          Field(&Warning::message, "recording 2 (b c.csv): there is a gap of 0.5 s after 7 s")));
+}
+
+TEST(RecordingLabel, IsItsNumberAndItsFile) {
+  RunReport report = ExampleJointReport();
+  EXPECT_TRUE(report.is_joint());
+  EXPECT_FALSE(ExampleReport().is_joint());
+  EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv)");
+  report.runs[1].data.path.clear();
+  EXPECT_EQ(RecordingLabel(report, 1), "recording 2");
+}
+
+TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
+  RunReport report = ExampleJointReport();
+  report.runs[1].data.path = "run.csv";
+  report.runs[1].data.release = 3;
+  EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv, free swing 1)");
+  EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv, free swing 3)");
+  report.runs[1].data.release = 0;  // a window as it was asked for
+  EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 
 TEST(Correlation, IsCovarianceOverBothStandardErrors) {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/example_report.h"
+#include "tests/report/example_joint_report.h"
 
 namespace pendulum::series_test {
 namespace {
@@ -151,9 +151,23 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
 
 TEST(ToSeriesJsonText, IsOneLineOfTheSame) {
   const RunReport report = ReportOfThreeSamples();
-  const std::string text = ToSeriesJsonText(ThreeSamples(), report);
+  const std::string text = ToSeriesJsonText({ThreeSamples()}, report);
   EXPECT_EQ(text.find('\n'), text.size() - 1);
   EXPECT_EQ(Json::parse(text), SeriesJson(ThreeSamples(), report));
+}
+
+TEST(SeriesJson, OfAJointFitIsAnArrayOfItsRecordings) {
+  RunReport report = ExampleJointReport();
+  report.runs = {ReportOfThreeSamples(), ReportOfThreeSamples()};
+  report.runs[1].fits[0].fitted[0] = 0.75;
+  Recording second = ThreeSamples();
+  second.time[2] = 0.25;
+  const Json series = SeriesJson({ThreeSamples(), second}, report);
+  ASSERT_EQ(series.size(), 2);
+  EXPECT_EQ(series[0], SeriesJson(ThreeSamples(), report.runs[0]));
+  EXPECT_EQ(series[1]["time_s"].dump(), "[0.0,0.1,0.25]");
+  EXPECT_EQ(series[1]["models"]["coulomb"]["fitted"].dump(), "[0.75,0.0,0.5]");
+  EXPECT_EQ(Json::parse(ToSeriesJsonText({ThreeSamples(), second}, report)), series);
 }
 
 }  // namespace

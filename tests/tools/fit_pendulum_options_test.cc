@@ -104,7 +104,7 @@ TEST(MakeFitPendulumOptions, RefusesWithClosedFormsOnlyWhatOnlyAFitNeeds) {
       {&FitPendulumFlags::bounds, "--bounds viscous=0:1"}, {&FitPendulumFlags::prior, "--prior viscous=1:1"},
       {&FitPendulumFlags::noise, "--noise gaussian"},      {&FitPendulumFlags::loss, "--loss huber"},
       {&FitPendulumFlags::interval, "--interval profile"}, {&FitPendulumFlags::seed, "--seed 2"},
-      {&FitPendulumFlags::threads, "--threads 1"}};
+      {&FitPendulumFlags::threads, "--threads 1"},         {&FitPendulumFlags::shared, "--shared all"}};
   for (const auto& [member, text] : of_a_fit) {
     const std::size_t blank = text.find(' ');
     FitPendulumFlags flags = WithData();
@@ -314,6 +314,85 @@ TEST(MakeFitPendulumOptions, RefusesToHoldAParameterThatAnotherFlagNames) {
   flags.bounds.clear();
   flags.prior = "viscous=0.003:0.001";
   EXPECT_EQ(Refusal(flags), "--fix holds viscous, and --prior names it too; leave one of them out");
+}
+
+FitPendulumFlags WithTwoRecordings() {
+  FitPendulumFlags flags;
+  flags.data = "a.csv,b.csv";
+  return flags;
+}
+
+TEST(MakeFitPendulumOptions, FitsSeveralRecordingsTogetherUnlessItIsToldNotTo) {
+  FitPendulumFlags flags = WithTwoRecordings();
+  EXPECT_TRUE(MakeFitPendulumOptions(flags)->IsJoint(2));
+  EXPECT_FALSE(MakeFitPendulumOptions(flags)->IsJoint(1));  // a list of one
+  flags.shared = "none";
+  EXPECT_FALSE(MakeFitPendulumOptions(flags)->IsJoint(2));
+  flags.shared.clear();
+  flags.closed_form_only = true;
+  EXPECT_FALSE(MakeFitPendulumOptions(flags)->IsJoint(2));
+  flags = WithData();
+  flags.release = "all";
+  EXPECT_FALSE(MakeFitPendulumOptions(flags)->IsJoint(1));
+  flags.shared = "all";
+  EXPECT_TRUE(MakeFitPendulumOptions(flags)->IsJoint(1));
+}
+
+TEST(MakeFitPendulumOptions, SharesInertiaAndFrictionOfAllModelsUnlessNamed) {
+  FitPendulumFlags flags = WithTwoRecordings();
+  EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("inertia", "viscous", "coulomb"));
+  flags.model = "viscous,drag";
+  EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("inertia", "viscous", "coulomb", "drag"));
+  flags.shared = "all";
+  EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("inertia", "viscous", "coulomb", "drag"));
+  flags.shared = "drag,inertia";
+  EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("drag", "inertia"));
+}
+
+TEST(MakeFitPendulumOptions, NamesWhatCanBeShared) {
+  FitPendulumFlags flags = WithTwoRecordings();
+  for (const std::string wrong : {"release_angle", "zero_angle", "drag", "", "All"}) {
+    flags.shared = wrong.empty() ? "inertia,," : "inertia," + wrong;
+    EXPECT_EQ(Refusal(flags), "--shared names '" + wrong +
+                                  "', which recordings cannot share; they can share inertia, viscous, coulomb, or all, "
+                                  "or none");
+  }
+  flags.shared = "inertia,viscous,inertia";
+  EXPECT_EQ(Refusal(flags), "--shared names inertia twice");
+}
+
+TEST(MakeFitPendulumOptions, MakesNoBootstrapOfSeveralRecordingsTogether) {
+  FitPendulumFlags flags = WithTwoRecordings();
+  const std::string refusal =
+      "--interval bootstrap is for recordings one by one (--shared none); several together have covariance and profile";
+  flags.interval = "bootstrap";
+  EXPECT_EQ(Refusal(flags), refusal);
+  flags.shared = "none";
+  EXPECT_EQ(Refusal(flags), "");
+  flags.shared.clear();
+  flags.data.clear();
+  flags.data_list = "list.txt";
+  EXPECT_EQ(Refusal(flags), refusal);
+  flags = WithData();
+  flags.interval = "bootstrap";
+  EXPECT_EQ(Refusal(flags), "");
+  flags.release = "all";
+  EXPECT_EQ(Refusal(flags), "");
+  flags.shared = "all";
+  EXPECT_EQ(Refusal(flags), refusal);
+}
+
+TEST(JointOutputs, AreNumberedWhereEachRecordingHasItsOwn) {
+  FitPendulumFlags flags = WithTwoRecordings();
+  flags.json = "fit.json";
+  flags.residuals = "r.csv";
+  flags.report = "page.html";
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options);
+  EXPECT_THAT(
+      options->JointOutputs(2),
+      ElementsAre(testing::FieldsAre("--json", "fit.json"), testing::FieldsAre("--report", "page.html"),
+                  testing::FieldsAre("--residuals", "r_001.csv"), testing::FieldsAre("--residuals", "r_002.csv")));
 }
 
 }  // namespace

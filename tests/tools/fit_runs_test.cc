@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fit_runs.h"
 
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace pendulum::fit_runs_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Options for a recording of the textbook's rig, held until 1.9 s, whose truth is I_O = 0.079 kg m² and G = 1.8033 N
@@ -36,7 +42,8 @@ TEST(FitAll, PutsClosedFormsAndTheirCheckBesideAFit) {
   EXPECT_EQ(report.closed_forms_model, "coulomb");
   ASSERT_EQ(report.checks.size(), 1);
   EXPECT_FALSE(report.checks[0].rows.empty());
-  EXPECT_EQ(report.checks[0].overlay.linear.size(), run->used.size());
+  ASSERT_EQ(run->used.size(), 1);
+  EXPECT_EQ(report.checks[0].overlay.linear.size(), run->used[0].size());
   ASSERT_TRUE(report.sampling);
   EXPECT_NEAR(report.sampling->rate_hz, 100, 1e-6);
 }
@@ -83,6 +90,123 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
   const auto checked = CheckNumberedOutputs(options, {}, 2);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().message, "--series - takes one fit, and there are 2; name a file, and they are numbered");
+}
+
+// ---- Joint fits -----------------------------------------------------------------------------------------------------
+
+/// Options for recordings of datasets/README.md: of one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
+/// released from 0.2 and 0.45 rad.
+FitPendulumOptions TwoRunsOptions() {
+  FitPendulumFlags flags;
+  flags.data = "datasets/runs_1.csv,datasets/runs_2.csv";
+  flags.rig = "datasets/textbook_rig.json";
+  return *MakeFitPendulumOptions(flags);
+}
+
+TEST(FitAll, MakesOneRunOfSeveralRecordings) {
+  const auto run = OnlyRun(TwoRunsOptions());
+  ASSERT_TRUE(run) << run.error().message;
+  const RunReport& report = run->report;
+  ASSERT_TRUE(report.is_joint());
+  ASSERT_EQ(report.runs.size(), 2);
+  ASSERT_EQ(run->used.size(), 2);
+  ASSERT_EQ(report.joint.size(), 1);
+  EXPECT_EQ(report.runs[0].data.path, "datasets/runs_1.csv");
+  EXPECT_EQ(report.runs[1].data.path, "datasets/runs_2.csv");
+  EXPECT_EQ(report.data.unit, "rad");
+  EXPECT_EQ(report.fits[0].termination, Termination::kConverged);
+  EXPECT_THAT(report.joint[0].shared, ElementsAre("inertia", "viscous", "coulomb"));
+  EXPECT_THAT(report.joint[0].alone, ElementsAre("converged", "converged"));
+  const std::vector<std::pair<std::string, double>> truth = {
+      {"inertia", 0.079}, {"viscous", 0.002}, {"coulomb", 0.004}};
+  for (const auto& [name, value] : truth) {
+    const ParameterEstimate* const estimate = report.fits[0].Find(name);
+    ASSERT_NE(estimate, nullptr) << name;
+    EXPECT_NEAR(estimate->estimate, value, 4 * estimate->std_error.value()) << name;
+    for (const RunReport& own : report.runs) {
+      EXPECT_EQ(own.fits[0].Find(name)->estimate, estimate->estimate) << name;
+      EXPECT_EQ(own.fits[0].Find(name)->std_error, estimate->std_error) << name;
+    }
+  }
+}
+
+// What is known of two recordings, known of each: a shared parameter is told at least as well as by either.
+TEST(FitAll, TellsSharedParametersBetterTogetherThanAlone) {
+  const auto together = OnlyRun(TwoRunsOptions());
+  ASSERT_TRUE(together);
+  for (const char* path : {"datasets/runs_1.csv", "datasets/runs_2.csv"}) {
+    FitPendulumOptions options = TwoRunsOptions();
+    options.data = {path};
+    const auto alone = OnlyRun(options);
+    ASSERT_TRUE(alone) << alone.error().message;
+    EXPECT_FALSE(alone->report.is_joint());
+    for (const char* name : {"inertia", "viscous", "coulomb"}) {
+      EXPECT_LT(together->report.fits[0].Find(name)->std_error.value(),
+                alone->report.fits[0].Find(name)->std_error.value())
+          << path << " " << name;
+    }
+  }
+}
+
+TEST(FitAll, PutsClosedFormsAndSamplingBesideEachRecordingOfAJointFit) {
+  const auto run = OnlyRun(TwoRunsOptions());
+  ASSERT_TRUE(run);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const RunReport& own = run->report.runs[k];
+    EXPECT_TRUE(own.closed_forms) << own.no_closed_forms;
+    EXPECT_EQ(own.checks.size(), 1);
+    EXPECT_EQ(own.constancy.size(), 1);
+    ASSERT_TRUE(own.sampling);
+    EXPECT_NEAR(own.sampling->rate_hz, 100, 1e-6);
+    EXPECT_EQ(own.data.used_samples, run->used[k].size());
+    EXPECT_EQ(own.fits[0].residual.size(), run->used[k].size());
+  }
+}
+
+TEST(FitAll, FitsEachRecordingByItselfWhenNothingIsShared) {
+  FitPendulumOptions options = TwoRunsOptions();
+  options.sharing = Sharing::kNothing;
+  const auto setup = ReadSetup(options);
+  ASSERT_TRUE(setup);
+  const auto runs = FitAll(options, *setup);
+  ASSERT_TRUE(runs);
+  ASSERT_EQ(runs->size(), 2);
+  for (const auto& run : *runs) EXPECT_FALSE(run.value().report.is_joint());
+}
+
+TEST(FitAll, MakesNoJointFitWhereOneRecordingCannotBeFitted) {
+  FitPendulumOptions options = TwoRunsOptions();
+  options.data.emplace_back("datasets/nowhere.csv");
+  const auto run = OnlyRun(options);
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kNotFound);
+  EXPECT_EQ(run.error().message, "datasets/nowhere.csv: there is no such file; check the path");
+}
+
+TEST(FitAll, SharesNothingOfOneSwing) {
+  FitPendulumFlags flags;
+  flags.data = "datasets/runs_1.csv";
+  flags.shared = "all";
+  const auto run = OnlyRun(*MakeFitPendulumOptions(flags));
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(run.error().message,
+            "--shared is for several recordings, or the releases of one (--release all), and there is one swing");
+}
+
+TEST(CheckNumberedOutputs, LetsAJointResultBeOnStandardOutput) {
+  FitPendulumOptions options = TwoRunsOptions();
+  options.json = "-";
+  const auto setup = ReadSetup(options);
+  ASSERT_TRUE(setup);
+  EXPECT_TRUE(CheckNumberedOutputs(options, *setup, 2));
+  options.json.clear();
+  options.residuals = "-";  // of each recording
+  const auto checked = CheckNumberedOutputs(options, *setup, 2);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(checked.error().message,
+            "--residuals - takes one recording, and there are 2; name a file, and they are numbered");
 }
 
 }  // namespace

@@ -131,18 +131,39 @@ class Schema(unittest.TestCase):
     def test_wants_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
 
+    def test_is_of_one_recording_or_of_several(self):
+        for key in ("data", "closed_forms", "calibration"):
+            self.assert_refused(lambda result, key=key: result.update({key: [result[key], result[key]]}))
+        self.assert_refused(lambda result: result["fits"][0].update(shared=["inertia"]))
+        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0], "rms_residual"))
+        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0]["cross_validation"], "rms"))
+
+    @staticmethod
+    def with_sigma(part, name):
+        """The number is told as of readings with different units."""
+        part[name + "_sigma"] = part.pop(name + "_rad")
+
+
+def result_of(recordings, *flags, rig=None):
+    """What the tool writes of the texts of recordings."""
+    names = [f"run_{k + 1}.csv" for k in range(len(recordings))]
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in zip(names, recordings, strict=True):
+            (pathlib.Path(folder) / name).write_text(text, encoding="utf-8")
+        if rig:
+            (pathlib.Path(folder) / "rig.json").write_text(json.dumps(rig), encoding="utf-8")
+            flags = (*flags, "--rig", "rig.json")
+        run = subprocess.run([TOOL, "--data", ",".join(names), "--json", "-", *flags], cwd=folder, capture_output=True,
+                             text=True, encoding="utf-8", timeout=60, check=False)
+    if run.returncode not in (0, 1):
+        raise AssertionError(run.stderr)
+    return json.loads(run.stdout)
+
 
 class Results(unittest.TestCase):
-    def assert_valid(self, data, *flags, rig=None):
-        with tempfile.TemporaryDirectory() as folder:
-            (pathlib.Path(folder) / "run.csv").write_text(data, encoding="utf-8")
-            if rig:
-                (pathlib.Path(folder) / "rig.json").write_text(json.dumps(rig), encoding="utf-8")
-                flags = (*flags, "--rig", "rig.json")
-            run = subprocess.run([TOOL, "--data", "run.csv", "--json", "-", *flags], cwd=folder, capture_output=True,
-                                 text=True, encoding="utf-8", timeout=60, check=False)
-        self.assertIn(run.returncode, (0, 1), run.stderr)
-        VALIDATOR.validate(json.loads(run.stdout))
+    @staticmethod
+    def assert_valid(data, *flags, rig=None):
+        VALIDATOR.validate(result_of([data], *flags, rig=rig))
 
     def test_angle_without_a_rig(self):
         self.assert_valid(swing.angle_csv(), "--model", "viscous")
@@ -164,6 +185,177 @@ class Results(unittest.TestCase):
         frictionless = {**swing.TRUTH, "viscous": 0.0, "coulomb": 0.0}
         self.assert_valid(swing.angle_csv(truth=frictionless), "--model", "drag", "--fix", "zero_angle=0.01",
                           "--from", "0", "--to", "12")
+
+
+LOW = dict(swing.TRUTH, release_angle=0.25, release_time=1.4, zero_angle=-0.02)
+
+
+class JointSchema(unittest.TestCase):
+    """Of two recordings, with two models; the second recording is too short a swing for constancy to be looked into."""
+
+    @classmethod
+    def setUpClass(cls):
+        second = swing.angle_csv(duration=5.0, sigma=0.002, truth=LOW, seed=31)
+        cls.result = result_of([swing.angle_csv(), second], "--model", "viscous,coulomb",
+                               rig={**swing.RIG, "bob_mass": {"value": 0.38, "std_dev": 0.001}})
+
+    def assert_refused(self, change):
+        """The result is no longer valid once `change` has been at it."""
+        result = copy.deepcopy(self.result)
+        change(result)
+        self.assertNotEqual(result, self.result)
+        self.assertFalse(VALIDATOR.is_valid(result))
+
+    def assert_holds(self, change):
+        result = copy.deepcopy(self.result)
+        change(result)
+        VALIDATOR.validate(result)
+
+    def test_holds_for_the_result(self):
+        VALIDATOR.validate(self.result)
+        self.assertEqual(len(self.result["data"]), 2)
+
+    def test_wants_every_key_and_no_other(self):
+        homogeneity = ["fits", 1, "homogeneity"]
+        for path in ([], ["data", 1], ["fits", 1], ["fits", 1, "parameters", "viscous"], ["fits", 1, "statistics"],
+                     ["fits", 1, "covariance"], ["fits", 1, "solver"], homogeneity,
+                     [*homogeneity, "parameters", "inertia"], [*homogeneity, "parameters", "inertia", "random_effects"],
+                     [*homogeneity, "parameters", "inertia", "runs", 0], ["fits", 1, "runs", 1],
+                     ["fits", 1, "runs", 1, "parameters", "zero_angle"], ["fits", 1, "runs", 1, "noise"],
+                     ["fits", 1, "runs", 1, "statistics"], ["comparison", "rows", 0], ["closed_forms", 1]):
+            for key in Schema.at(self.result, path):
+                with self.subTest(path=path, missing=key):
+                    if key == "rms_residual_rad" and path == ["fits", 1, "statistics"]:  # of one unit only
+                        continue
+                    self.assert_refused(lambda result, key=key: Schema.at(result, path).pop(key))
+            with self.subTest(path=path, unknown=True):
+                self.assert_refused(lambda result: Schema.at(result, path).update(unknown=1))
+
+    def test_wants_all_of_it_to_be_of_several(self):
+        for key in ("data", "calibration", "closed_forms"):
+            self.assert_refused(lambda result, key=key: result.update({key: result[key][0]}))
+            self.assert_refused(lambda result, key=key: result[key].pop())
+        self.assert_refused(lambda result: result["fits"].append(copy.deepcopy(EXAMPLE["fits"][0])))
+        self.assert_refused(lambda result: result.update(fits=[]))
+        self.assert_refused(lambda result: result["fits"][0]["runs"].pop())
+        self.assert_refused(lambda result: result["data"][0].update(start=None))
+
+    def test_wants_a_reason_for_missing_closed_forms(self):
+        self.assert_refused(lambda result: result["closed_forms"].__setitem__(1, None))
+
+        def with_reason(result):
+            result["closed_forms"][1] = None
+            result["reason"] = "recording 2 (run_2.csv): only 2 turning points can be located"
+
+        self.assert_holds(with_reason)
+
+    def test_wants_a_reason_for_a_missing_test(self):
+        none = {"statistic": None, "p": None, "agrees": None, "parameters": {}, "amplitude_dependence": []}
+        self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none))
+        self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(reason="there is one"))
+        none["reason"] = "all that is shared is fixed: there is nothing to compare"
+        self.assert_holds(lambda result: result["fits"][0]["homogeneity"].update(none))
+        self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none, agrees=True))
+
+    def test_wants_a_reason_for_what_a_recording_does_not_tell(self):
+        inertia = ["fits", 0, "homogeneity", "parameters", "inertia", "runs", 0]
+        none = {"estimate": None, "std_error": None, "z": None}
+        self.assert_refused(lambda result: Schema.at(result, inertia).update(none))
+        none["reason"] = "the recording alone does not tell it"
+        self.assert_holds(lambda result: Schema.at(result, inertia).update(none))
+
+    def test_knows_how_a_recording_alone_ends(self):
+        run = ["fits", 0, "runs", 0]
+        self.assert_holds(lambda result: Schema.at(result, run).update(alone="not_converged: too few iterations"))
+        for wrong in ("ok", "not_converged", "converged: so it is"):
+            self.assert_refused(lambda result, wrong=wrong: Schema.at(result, run).update(alone=wrong))
+
+    def test_wants_no_statistics_of_a_failed_fit(self):
+        self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
+
+    def test_wants_one_unit_for_residuals(self):
+        self.assert_refused(lambda result: result["fits"][0]["statistics"].update(rms_residual_rad_s=0.1))
+        self.assert_holds(lambda result: result["fits"][0]["statistics"].pop("rms_residual_rad"))
+        self.assert_holds(lambda result: Schema.with_sigma(result["comparison"]["rows"][0], "rms_residual"))
+
+
+class JointResults(unittest.TestCase):
+    def assert_valid(self, recordings, *flags, status="converged", rig=None):
+        result = result_of(recordings, *flags, rig=rig)
+        VALIDATOR.validate(result)
+        self.assertEqual(result["fits"][-1]["status"], status)
+        return result
+
+    @classmethod
+    def setUpClass(cls):
+        cls.first = swing.angle_csv()
+        cls.second = swing.angle_csv(sigma=0.002, truth=LOW, seed=31)
+
+    def test_recordings_that_agree(self):
+        (fit,) = self.assert_valid([self.first, self.second], rig=swing.RIG)["fits"]
+        self.assertIs(fit["homogeneity"]["agrees"], True)
+
+    def test_recordings_that_disagree(self):
+        other = swing.angle_csv(sigma=0.002, truth=dict(LOW, coulomb=0.006), seed=33)
+        (fit,) = self.assert_valid([self.first, self.second, other])["fits"]
+        self.assertEqual(fit["homogeneity"]["disagreeing"], [3])
+
+    def test_two_pendulums(self):
+        other = swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.05))
+        result = self.assert_valid([self.first, other], "--model", "viscous,coulomb", status="not_converged")
+        self.assertEqual([row["judged"] for row in result["comparison"]["rows"]], [True, True])  # the fits alone
+
+    def test_angle_and_rate(self):
+        result = self.assert_valid([self.first, swing.rate_csv()], "--model", "viscous,coulomb")
+        self.assertNotIn("rms_residual_rad", result["fits"][1]["statistics"])
+        self.assertIn("rms_residual_sigma", result["comparison"]["rows"][0])
+
+    def test_some_parameters_shared(self):
+        self.assert_valid([self.first, self.second], "--shared", "inertia", rig=swing.RIG)
+
+    def test_a_model_without_what_is_shared_fails(self):
+        result = self.assert_valid([self.first, self.second], "--model", "viscous,coulomb", "--shared", "coulomb")
+        self.assertEqual(result["fits"][0]["status"], "failed")
+        self.assertNotIn("fixed", result["fits"][0]["homogeneity"]["reason"])
+
+    def test_recordings_that_cannot_be_traced(self):
+        (fit,) = self.assert_valid([self.first, self.second], "--fix", "viscous=1e6", status="failed")["fits"]
+        self.assertIsNone(fit["runs"][0]["amplitude_rad"])
+
+    def test_all_that_is_shared_held(self):
+        self.assert_valid([self.first, self.second], "--fix", "inertia=0.0438,viscous=0.0017,coulomb=0.0022")
+
+    def test_at_a_bound(self):
+        undamped = [swing.angle_csv(truth=dict(truth, coulomb=0.0), seed=seed)
+                    for seed, truth in ((36, swing.TRUTH), (37, LOW))]
+        result = self.assert_valid(undamped, "--bounds", "viscous=0.004:", rig=swing.RIG)
+        self.assertIs(result["fits"][0]["parameters"]["viscous"]["at_bound"], True)
+
+    def test_windows_too_short_for_constancy(self):
+        (fit,) = self.assert_valid([self.first, self.second], "--model", "drag", "--to", "4.5")["fits"]
+        self.assertIn("constancy_reason", fit["runs"][0])
+
+    def test_a_recording_that_alone_does_not_tell_friction(self):
+        (fit,) = self.assert_valid([self.first, self.second], "--model", "stribeck")["fits"]
+        self.assertRegex(fit["runs"][1]["alone"], "^not_identifiable: ")
+        self.assertIsNone(fit["homogeneity"]["p"])
+
+    def test_starts_that_are_held_where_one_is_not(self):
+        (fit,) = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")["fits"]
+        self.assertIs(fit["runs"][1]["parameters"]["release_angle"]["fixed"], True)
+
+    def test_profiles(self):
+        self.assert_valid([self.first, self.second], "--interval", "profile", rig=swing.RIG)
+
+    def test_counts_and_their_calibration(self):
+        counts = [text.replace("angle_deg", "adc_counts") for text in (self.first, self.second)]
+        calibration = '# calibration: {"schema_version": 1, "input": "counts", "angle_unit": "deg", "coefficients": [0, 1]}\n'
+        result = self.assert_valid([calibration + counts[0], self.second])
+        self.assertEqual([calibration is None for calibration in result["calibration"]], [False, True])
+        self.assert_valid(counts, "--model", "linear")
+
+    def test_releases_of_one_recording(self):
+        self.assert_valid([swing.two_releases()], "--release", "all", "--shared", "all")
 
 
 if __name__ == "__main__":

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on several recordings, and on one with several releases: each fit is that of its own run.
+"""Runs fit_pendulum on several recordings, each by itself (--shared none), and on one with several releases: each fit is
+that of its own run.
 
   several_fits_cli_test.py PATH/TO/fit_pendulum
 """
 
 import json
-import math
 import pathlib
-import random
 import subprocess
 import sys
 import tempfile
@@ -18,23 +17,12 @@ import swing
 
 TOOL = ""  # path of the binary, from the command line
 
+EACH = ("--shared", "none")
 FLAT = "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500))
 FLAT_SENTENCE = ("flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose another "
                  "column")
 NO_HOLD = ("no held part at the start: the first fall dates the release before the first sample; --start moving fits it "
            "so")
-
-
-def two_releases():
-    """Held and released, taken back by hand within 2 s, held and released once more."""
-    noise = random.Random(22)
-    released = [angle for _, angle, _ in swing.swing(10.0)]
-    end = released[-1]
-    back = [end + (released[0] - end) * s * s * (3 - 2 * s) for s in (k / 200 for k in range(1, 200))]
-    lines = ["time_s,angle_deg"]
-    for k, angle in enumerate(released + back + released):
-        lines.append(f"{k / 100:.3f},{math.degrees(angle + noise.gauss(0, 0.002)):.5f}")
-    return "\n".join(lines) + "\n"
 
 
 def without_hold(text):
@@ -50,7 +38,7 @@ class SeveralFits(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.write("a.csv", swing.angle_csv())
         self.write("b.csv", swing.angle_csv(sigma=0.002, truth=dict(swing.TRUTH, coulomb=0.006)))
-        self.write("two.csv", two_releases())
+        self.write("two.csv", swing.two_releases())
 
     def write(self, name, text):
         (self.folder / name).write_text(text, encoding="utf-8")
@@ -84,7 +72,7 @@ class SeveralFits(unittest.TestCase):
         for name in "ab":
             self.fit("--data", f"{name}.csv", "--json", f"{name}.json", "--residuals", f"{name}_residuals.csv")
         before = self.names()
-        run = self.fit(*flags, "--json", "fit.json", "--residuals", "r.csv")
+        run = self.fit(*flags, *EACH, "--json", "fit.json", "--residuals", "r.csv")
         self.assertEqual(self.names() - before, {"fit_001.json", "fit_002.json", "r_001.csv", "r_002.csv"})
         for number, name in ((1, "a"), (2, "b")):
             self.assertEqual(self.read(f"fit_00{number}.json"), self.read(f"{name}.json"))
@@ -122,19 +110,20 @@ class SeveralFits(unittest.TestCase):
 
     def test_several_fits_have_no_place_on_one_stream(self):
         sentence = " - takes one fit, and there are 2; name a file, and they are numbered"
-        self.assert_refused(2, "--json" + sentence, "--data", "a.csv,b.csv", "--json", "-")
+        self.assert_refused(2, "--json" + sentence, "--data", "a.csv,b.csv", *EACH, "--json", "-")
         self.assert_refused(2, "--residuals" + sentence, "--data", "two.csv", "--release", "all", "--json", "fit.json",
                             "--residuals", "-")
 
     def test_the_stream_is_refused_before_any_recording_is_read(self):
         sentence = "--json - takes one fit, and there are 2; name a file, and they are numbered"
         self.write("junk.csv", "junk\n")
-        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", "--json", "-")
-        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", "--release", "all", "--json", "-")
+        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--json", "-")
+        self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--release", "all", "--json",
+                            "-")
 
     def assert_first_and_last_written(self, code, sentence, *flags):
         """Runs with flags that name a.csv, one that cannot be fitted, and b.csv."""
-        run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "r.csv")
+        run = self.run_tool(*flags, *EACH, "--json", "fit.json", "--residuals", "r.csv")
         self.assertEqual(run.returncode, code, run.stderr)
         self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
         for name in "ab":
@@ -160,7 +149,7 @@ class SeveralFits(unittest.TestCase):
 
     def test_the_exit_code_is_the_largest(self):
         self.write("flat.csv", FLAT)
-        run = self.run_tool("--data", "flat.csv,nowhere.csv,a.csv", "--json", "fit.json")
+        run = self.run_tool("--data", "flat.csv,nowhere.csv,a.csv", *EACH, "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
         self.assertEqual(len(run.stderr.splitlines()), 2)
         self.assertIn("fit_003.json", self.names())
@@ -169,17 +158,17 @@ class SeveralFits(unittest.TestCase):
         self.write("flat.csv", FLAT)
         self.assert_refused(5, FLAT_SENTENCE, "--data", "flat.csv", "--json", "fit.json")
         self.assert_refused(5, FLAT_SENTENCE + "\nfit_pendulum: nowhere.csv: there is no such file; check the path",
-                            "--data", "flat.csv,nowhere.csv", "--json", "fit.json")
+                            "--data", "flat.csv,nowhere.csv", *EACH, "--json", "fit.json")
 
     def test_all_releases_of_several_recordings_are_numbered_on(self):
         self.write("flat.csv", FLAT)
-        run = self.run_tool("--data", "flat.csv,two.csv,a.csv", "--release", "all", "--json", "fit.json")
+        run = self.run_tool("--data", "flat.csv,two.csv,a.csv", *EACH, "--release", "all", "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
         written = {name: json.loads(self.read(name))["data"]["path"] for name in self.names() if "fit_" in name}
         self.assertEqual(written, {"fit_002.json": "two.csv", "fit_003.json": "two.csv", "fit_004.json": "a.csv"})
 
     def test_one_release_that_cannot_be_fitted_leaves_the_other(self):
-        self.write("two.csv", without_hold(two_releases()))
+        self.write("two.csv", without_hold(swing.two_releases()))
         run = self.run_tool("--data", "two.csv", "--release", "all", "--start", "release", "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
         self.assertEqual(run.stderr, "fit_pendulum: two.csv: free swing 1: " + NO_HOLD + "\n")
@@ -196,12 +185,12 @@ class SeveralFits(unittest.TestCase):
         self.write("fit_002.json", swing.angle_csv())
         self.write("list.txt", "a.csv\nfit_002.json\n")
         self.write("one.txt", "a.csv\n")
-        self.assert_kept("fit_002.json", "--data", "--data", "a.csv,fit_002.json", "--json", "fit.json")
-        self.assert_kept("fit_002.json", "--data_list", "--data_list", "list.txt", "--json", "fit.json")
+        self.assert_kept("fit_002.json", "--data", "--data", "a.csv,fit_002.json", *EACH, "--json", "fit.json")
+        self.assert_kept("fit_002.json", "--data_list", "--data_list", "list.txt", *EACH, "--json", "fit.json")
         self.assert_kept("a.csv", "--data_list", "--data_list", "one.txt", "--json", "a.csv")
 
     def test_no_release_is_written_over_an_input(self):
-        self.write("fit_002.json", two_releases())
+        self.write("fit_002.json", swing.two_releases())
         self.assert_kept("fit_002.json", "--data", "--data", "fit_002.json", "--release", "all", "--json", "fit.json")
 
     def test_flags_given_twice(self):

@@ -37,19 +37,31 @@ def swing(duration=12.0, rate_hz=100, truth=TRUTH):
     return samples
 
 
-def angle_csv(duration=12.0, sigma=0.003, truth=TRUTH):
+def angle_csv(duration=12.0, sigma=0.003, truth=TRUTH, seed=20):
     """The text of a recording in degrees with white noise of so many radians, the same at every call."""
-    noise = random.Random(20)
+    noise = random.Random(seed)
     lines = ["time_s,angle_deg"]
     for time, angle, _ in swing(duration, truth=truth):
         lines.append(f"{time:.3f},{math.degrees(angle + truth['zero_angle'] + noise.gauss(0, sigma)):.5f}")
     return "\n".join(lines) + "\n"
 
 
-def rate_csv(duration=12.0, sigma=0.01):
+def rate_csv(duration=12.0, sigma=0.01, truth=TRUTH):
     """The text of a gyro's recording in rad/s with a bias of 0.02 rad/s."""
     noise = random.Random(21)
     lines = ["time_s,gyro_rad_s"]
-    for time, _, rate in swing(duration):
+    for time, _, rate in swing(duration, truth=truth):
         lines.append(f"{time:.3f},{rate + 0.02 + noise.gauss(0, sigma):.6f}")
+    return "\n".join(lines) + "\n"
+
+
+def two_releases():
+    """The text of a recording: held and released, taken back by hand within 2 s, held and released once more."""
+    noise = random.Random(22)
+    released = [angle for _, angle, _ in swing(10.0)]
+    end = released[-1]
+    back = [end + (released[0] - end) * s * s * (3 - 2 * s) for s in (k / 200 for k in range(1, 200))]
+    lines = ["time_s,angle_deg"]
+    for k, angle in enumerate(released + back + released):
+        lines.append(f"{k / 100:.3f},{math.degrees(angle + noise.gauss(0, 0.002)):.5f}")
     return "\n".join(lines) + "\n"

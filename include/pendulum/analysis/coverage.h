@@ -14,10 +14,10 @@ namespace pendulum {
 
 /// How a coverage study is made.
 struct CoverageOptions {
-  int count = 1000;                        ///< Recordings, or sets of them; at least 1.
-  int runs = 1;                            ///< Recordings of a set, fitted together; 1: each alone.
-  std::uint64_t seed = 1;                  ///< Recording i (0-based) has seed + i, number k of set i seed + i · runs + k.
-  int threads = 0;                         ///< 0: as many as there are cores. The result does not depend on it.
+  int count = 1000;        ///< Recordings, or sets of them; at least 1.
+  int runs = 1;            ///< Recordings of a set, fitted together; 1: each alone.
+  std::uint64_t seed = 1;  ///< Recording i (0-based) has seed + i, number k of set i seed + i · runs + k.
+  int threads = 0;         ///< 0: as many as there are cores. The result does not depend on it.
   std::function<void(int done)> progress;  ///< Called with the recordings done so far, by one thread at a time.
 };
 
@@ -41,8 +41,8 @@ struct CoverageRow {
 /// A scenario, simulated and fitted again and again.
 struct CoverageStudy {
   CoverageScenario scenario;
-  int recordings = 0;             ///< Or sets.
-  int runs = 1;                   ///< Recordings of a set.
+  int recordings = 0;  ///< Or sets.
+  int runs = 1;        ///< Recordings of a set.
   int converged = 0;
   int failed = 0;                 ///< Without any report; the others have one and did not converge.
   std::vector<CoverageRow> rows;  ///< P, in FitParameters' order.

@@ -19,8 +19,8 @@ struct RunAlone {
   std::string label;  ///< For sentences: "recording 2 (b.csv)".
   const Recording& used;
   const FitReport& fit;
-  const FitOptions& options;    ///< Those of the fit.
-  const Constancy* constancy;   ///< Of the fit; nullptr: unknown.
+  const FitOptions& options;   ///< Those of the fit.
+  const Constancy* constancy;  ///< Of the fit; nullptr: unknown.
 };
 
 /// A shared parameter as one recording alone has it, not cut off at a bound.
@@ -35,7 +35,7 @@ struct SharedParameter {
   std::vector<RunEstimate> runs;  ///< K
   double mean = 0;                ///< Weighted with 1 / std_error², as if they agreed.
   double std_error = 0;           ///< Of that mean.
-  double statistic = 0;           ///< Σ ((value - mean) / std_error)², χ² of `dof` where they agree (W. G. Cochran 1954)
+  double statistic = 0;  ///< Σ ((value - mean) / std_error)², χ² of `dof` where they agree (W. G. Cochran 1954)
   int dof = 0;
   double p = 1;
   RandomEffects scatter;
@@ -50,15 +50,17 @@ struct AmplitudeDependence {
   double p = 1;       ///< That no slope explains as much, by the F test against what is left.
   double span = 0;    ///< slope · (largest - smallest amplitude² of a recording) over the mean.
   double rest_p = 1;  ///< Of what still differs between recordings beside the slope, by χ².
+
+  bool explains() const { return p < 0.01 && rest_p >= 0.01; }
 };
 
 /// Whether K recordings are of one rig, as far as their fits alone tell.
 struct Homogeneity {
   double statistic = 0;  ///< χ² of all shared parameters together (MODEL.md eq. (58)).
   int dof = 0;
-  std::optional<double> p;                   ///< Absent when fewer than two recordings tell them; `reason` says why.
-  std::vector<SharedParameter> parameters;   ///< Those that are not fixed.
-  std::vector<double> amplitudes;            ///< K, rad: rms over the motion.
+  std::optional<double> p;                  ///< Absent when fewer than two recordings tell them; `reason` says why.
+  std::vector<SharedParameter> parameters;  ///< Those that are not fixed.
+  std::vector<double> amplitudes;           ///< K, rad: rms over the motion.
   std::vector<AmplitudeDependence> amplitude_dependence;
   std::vector<int> disagreeing;  ///< 0-based; recordings that disagree with all others, which agree. Often empty.
   std::string reason;            ///< Why there is no test; empty when there is.
@@ -66,10 +68,14 @@ struct Homogeneity {
 
   bool agrees() const { return p.value_or(1) >= kDisagree; }
 
+  /// Whether each parameter that differs does so with amplitude, and in nothing else.
+  bool is_amplitude() const;
+
   static constexpr double kDisagree = 0.01;  ///< So often recordings of one rig are said to disagree.
 };
 
-/// Compares what each recording alone says of the shared parameters: joint test of all, which recording disagrees, what
+/// Compares what each recording alone says of the shared parameters, priors taken out and systematic errors of what
+/// is not common to all (clocks, calibrations) added: joint test of all, which recording disagrees, what
 /// amplitude explains, and the scatter between recordings.
 Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector<std::string>& shared);
 

@@ -13,9 +13,9 @@ namespace pendulum {
 
 /// Several recordings of one rig.
 struct RunModels {
-  std::string label;                  ///< For sentences: "recording 2 (b.csv)".
-  FittedModels alone;                 ///< What each model makes of the recording alone.
-  std::vector<Constancy> constancy;   ///< Of these fits, in their order.
+  std::string label;                 ///< For sentences: "recording 2 (b.csv)".
+  FittedModels alone;                ///< What each model makes of the recording alone.
+  std::vector<Constancy> constancy;  ///< Of these fits, in their order.
 };
 
 /// K recordings and M models: each fitted to all recordings at once.
@@ -27,6 +27,9 @@ struct JointModels {
 
   /// Model m's joint fit as recording k sees it.
   const FitReport& FitOf(std::size_t k, std::size_t m) const { return joint[m].runs[k]; }
+
+  /// Whether the readings of all recordings are of one unit.
+  bool HaveOneUnit() const;
 };
 
 /// Fits every model to all recordings together, from where the fits alone ended (FitJointly), and asks whether they

@@ -11,7 +11,7 @@ struct RandomEffects {
   double mean = 0, std_error = 0;
   double lower95 = 0, upper95 = 0;                  ///< Of the mean.
   double between = 0;                               ///< Standard deviation between runs; 0: errors explain all.
-  double between_lower95 = 0, between_upper95 = 0;  ///< Of `between`.
+  double between_lower95 = 0, between_upper95 = 0;  ///< Of `between`; NaN: values lie too close to tell an end.
 };
 
 /// From values and their standard errors (K >= 2, positive): `between` of R. C. Paule and J. Mandel, J. Res. NBS 87:377

@@ -15,6 +15,9 @@ std::string NumberText(double value);
 /// A probability for a sentence: "0.03", "< 1e-99".
 std::string ProbabilityText(double p);
 
+/// "1 degree of freedom", "8 degrees of freedom".
+std::string FreedomText(int degrees);
+
 /// A lower-case hexadecimal digit; `digit` below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
 

@@ -22,11 +22,11 @@ struct CorrelatedResiduals {
 
 /// The largest likelihood of such residuals over δ, the scale of z and its memory of a given kind and order.
 struct CorrelatedLikelihood {
-  double log_likelihood = 0;  ///< of densities, 1/rad or 1/(rad/s)
-  Autocorrelation memory;     ///< of z
-  double sigma = 0;           ///< standard deviation of z, same unit as the residuals
-  Eigen::VectorXd shift;      ///< F, δ
-  int parameters = 0;         ///< of memory and scale
+  double log_likelihood = 0;    ///< of densities, 1/rad or 1/(rad/s)
+  Autocorrelation memory;       ///< of z
+  double sigma = 0;             ///< standard deviation of z, same unit as the residuals
+  Eigen::VectorXd shift;        ///< F, δ
+  int parameters = 0;           ///< of memory and scale
   Eigen::MatrixXd information;  ///< F x F, of δ at that memory
 };
 

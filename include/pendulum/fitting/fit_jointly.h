@@ -33,11 +33,11 @@ struct JointFit {
 
 /// Fits one model to K >= 2 recordings of one rig, each with a start, zero and σ of its own, and with those physical
 /// parameters shared that are named and that the model has (MODEL.md eq. (56)). It begins where the fits alone lead;
-/// sensors, rates, resolutions and kinds of start may differ, the rig may not. Converged means what Judge says, and that
-/// every recording is explained as a fit alone must explain it: what shares no parameters is not of one rig. Where the
-/// errors alone come from posteriors, the joint estimates combine these, as parabolas.
-/// kInvalidArgument: fewer than two recordings, or no shared parameter. kFailedPrecondition: a recording that cannot be
-/// fitted alone. Cost: about half of the fits alone.
+/// sensors, rates, resolutions and kinds of start may differ, the rig may not. Converged means what Judge says, and
+/// that every recording is explained as a fit alone must explain it: what shares no parameters is not of one rig. Where
+/// the errors alone come from posteriors, the joint estimates combine these, as parabolas. kInvalidArgument: fewer than
+/// two recordings, or no shared parameter. kFailedPrecondition: a recording that cannot be fitted alone. Cost: about
+/// half of the fits alone.
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -13,9 +13,9 @@ namespace pendulum {
 
 /// Something that is not known exactly, and how it pulls at the fit of one recording.
 struct SystematicSource {
-  std::string identity;        ///< Recordings of the same identity share the source, and its error.
-  Eigen::VectorXd powers;      ///< P, of a common factor (C = 1): its power in each parameter; empty for another source.
-  Eigen::MatrixXd pull;        ///< P x C, by how much the scores of the problem's parameters follow its C numbers.
+  std::string identity;    ///< Recordings of the same identity share the source, and its error.
+  Eigen::VectorXd powers;  ///< P, of a common factor (C = 1): its power in each parameter; empty for another source.
+  Eigen::MatrixXd pull;    ///< P x C, by how much the scores of the problem's parameters follow its C numbers.
   Eigen::MatrixXd covariance;  ///< C x C, of these numbers; of a factor relative.
 };
 

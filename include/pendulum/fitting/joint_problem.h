@@ -20,6 +20,7 @@ struct JointMember {
   std::unique_ptr<FitProblem> problem;   // the cost looks into it
   std::unique_ptr<TrajectoryCost> cost;  // without priors
   double tolerance = 0;                  // of its trajectory, rad
+  double cost_sigma = 0;                 // σ that the cost has, rad or rad/s
   std::vector<double> alone_parameters;  // P_k, where its own fit ended
   Solution solution;                     // its own P_k parameters, and its noise
   std::vector<int> at;                   // P_k: where they stand among all P

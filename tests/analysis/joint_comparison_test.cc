@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/joint_comparison.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/analysis/joint_models.h"
+#include "tests/fitting/correlated_noise.h"
+
+namespace pendulum::joint_comparison_test {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr CompareOptions kCriteriaOnly = {.predict = false};
+
+struct Compared {
+  JointModels joint;
+  Comparison comparison;
+};
+
+Compared Compare(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
+                 const CompareOptions& how = kCriteriaOnly) {
+  JointModels joint = FitJointModels(recordings, models, PlainOptions());
+  Comparison comparison = CompareJointModels(joint, PlainOptions(), how);
+  return {std::move(joint), std::move(comparison)};
+}
+
+/// log L of Gaussian residuals with their likeliest σ.
+double GaussianLogLikelihood(const Eigen::VectorXd& residual) {
+  const auto n = static_cast<double>(residual.size());
+  return -0.5 * n * (std::log(2 * kPi * residual.squaredNorm() / n) + 1);
+}
+
+// ---- Criteria ------------------------------------------------------------------------------------------------------
+
+// As of one recording (model_comparison_test.cc), summed over three of 1000 samples; each has two of its start, a zero
+// and a σ. Without memory all samples count.
+TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
+  const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "coulomb", 1)), {"viscous", "coulomb"});
+  ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);
+  ASSERT_THAT(comparison.rows, SizeIs(2));
+  for (std::size_t m = 0; m < 2; ++m) {
+    const ComparisonRow& row = comparison.rows[m];
+    double log_likelihood = 0;
+    for (std::size_t k = 0; k < 3; ++k) log_likelihood += GaussianLogLikelihood(joint.FitOf(k, m).residual);
+    const int parameters = (m == 0 ? 2 : 3) + 3 * (2 + 1 + 1);
+    EXPECT_EQ(row.parameters, parameters);
+    EXPECT_NEAR(*row.log_likelihood, log_likelihood, 0.01);
+    EXPECT_NEAR(*row.aic, 2 * parameters - 2 * *row.log_likelihood, 1e-6);
+    EXPECT_NEAR(*row.bic, parameters * std::log(comparison.effective_samples) - 2 * *row.log_likelihood, 1e-6);
+  }
+  EXPECT_NEAR(comparison.effective_samples, 3000, 1);
+  EXPECT_THAT(comparison.criterion, HasSubstr(", of all recordings"));
+}
+
+// The same recording twice has its optimum where one has it, and twice the likelihood.
+TEST(CompareJointModels, OfARecordingTwiceHasTwiceItsLogLikelihood) {
+  const Recording recording = Must(SimulateRecording(NoisyRun()));
+  const auto [joint, comparison] = Compare({recording, recording}, kThreeLaws);
+  const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), kThreeLaws));
+  const Comparison alone = CompareModels(once, PlainOptions(), kCriteriaOnly);
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_NEAR(*comparison.rows[m].log_likelihood, 2 * *alone.rows[m].log_likelihood, 0.02) << kThreeLaws[m];
+  }
+}
+
+TEST(CompareJointModels, NestsLikelihoods) {
+  const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", 11)), kThreeLaws);
+  EXPECT_GE(*comparison.rows[1].log_likelihood, *comparison.rows[0].log_likelihood - 1e-3);
+  EXPECT_GE(*comparison.rows[2].log_likelihood, *comparison.rows[1].log_likelihood - 1e-3);
+}
+
+// ---- Recommendation ------------------------------------------------------------------------------------------------
+
+TEST(CompareJointModels, RecommendsTheTrueLaw) {
+  for (const std::string& law : kThreeLaws) {
+    SCOPED_TRACE(law);
+    std::vector<SyntheticOptions> runs = ShortRuns(3, law, 21);
+    for (SyntheticOptions& run : runs) {
+      run.release_angle += 0.4;
+      run.duration = 20;
+      if (law == "drag") run.parameters[3] *= 4;  // 0.002 N m s²/rad², as in recommendation_cases.h
+    }
+    const auto [joint, comparison] = Compare(Simulate(runs), kThreeLaws);
+    EXPECT_EQ(comparison.recommended, law) << comparison.reason;
+  }
+}
+
+TEST(CompareJointModels, RecommendsNothingWhereNothingConverged) {
+  JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
+  for (JointFit& fit : joint.joint) fit.whole.termination = Termination::kNotConverged;
+  const Comparison none = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  EXPECT_EQ(none.likelihood, Likelihood::kNone);
+  EXPECT_THAT(none.recommended, IsEmpty());
+  EXPECT_EQ(none.reason, "no model converged, so none is recommended");
+}
+
+TEST(CompareJointModels, JudgesOnlyWhatConverged) {
+  JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
+  joint.joint[1].whole.termination = Termination::kNotConverged;
+  joint.joint[1].whole.reason = "made so";
+  const Comparison comparison = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  EXPECT_EQ(comparison.recommended, "viscous");
+  EXPECT_FALSE(comparison.rows[1].judged || comparison.rows[1].bic);
+  EXPECT_THAT(comparison.rows[1].reason, HasSubstr("made so"));
+}
+
+// ---- Nested tests --------------------------------------------------------------------------------------------------
+
+// One term is added, whatever the number of recordings: half χ²(0), half χ²(1), whose tail is erfc(√(x/2)) / 2.
+TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
+  for (const std::uint64_t seed : {11, 21, 31}) {
+    const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", seed)), {"viscous", "coulomb"});
+    ASSERT_THAT(comparison.tests, SizeIs(1));
+    const NestedTest& test = comparison.tests[0];
+    EXPECT_EQ(test.simpler, "viscous");
+    EXPECT_EQ(test.richer, "coulomb");
+    EXPECT_THAT(test.added, ElementsAre("coulomb"));
+    EXPECT_EQ(test.null, "half χ²(0), half χ²(1)");
+    const double statistic = 2 * std::max(*comparison.rows[1].log_likelihood - *comparison.rows[0].log_likelihood, 0.0);
+    EXPECT_THAT(test.statistic, DoubleNear(statistic, 1e-9));
+    ASSERT_TRUE(test.p);
+    if (statistic > 1e-6) {
+      EXPECT_THAT(*test.p, DoubleNear(0.5 * std::erfc(std::sqrt(statistic / 2)), 1e-9));
+    }
+    EXPECT_GT(*test.p, 1e-4);
+  }
+}
+
+// Three recordings of too little each tell together what is in all of them: statistics of independent recordings of one
+// truth add up, but for what they disagree about, of expectation 2 and hardly ever above 20.
+TEST(CompareJointModels, AddsUpWhatRecordingsTellOfATerm) {
+  std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 41);
+  for (SyntheticOptions& run : runs) run.noise = 0.006;
+  const auto recordings = Simulate(runs);
+  const auto [joint, comparison] = Compare(recordings, {"viscous", "coulomb"});
+  double sum = 0;
+  for (const RunModels& run : joint.runs) {
+    sum += CompareModels(run.alone, PlainOptions(), kCriteriaOnly).tests.at(0).statistic;
+  }
+  EXPECT_GT(comparison.tests.at(0).statistic, sum - 20);
+  EXPECT_LT(comparison.tests.at(0).p.value_or(1), 1e-6);
+}
+
+TEST(CompareJointModels, TestsNothingThatEachRecordingAddsForItself) {
+  const std::vector<std::string> models = {"viscous", "coulomb"};
+  const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
+  const JointModels joint =
+      FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"inertia", "viscous"});
+  const Comparison comparison = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  ASSERT_THAT(comparison.tests, SizeIs(1));
+  EXPECT_FALSE(comparison.tests[0].p);
+  EXPECT_EQ(comparison.tests[0].reason, "what is added is not shared: each recording adds its own");
+  EXPECT_EQ(comparison.rows[1].parameters, 2 + 2 * (1 + 3 + 1));  // a dry friction of its own in each
+}
+
+// ---- Noise that remembers ------------------------------------------------------------------------------------------
+
+/// Noise-free recordings of dry friction with AR(1) noise of 0.9, 4 mrad.
+std::vector<Recording> RememberingRecordings(int count, std::uint64_t seed) {
+  std::vector<SyntheticOptions> runs = ShortRuns(count, "coulomb", seed);
+  for (SyntheticOptions& run : runs) {
+    run.noise = 0;
+    run.duration = 15;
+  }
+  std::vector<Recording> recordings = Simulate(runs);
+  for (Recording& recording : recordings) {
+    recording.value += 0.004 * FirstOrderNoise(recording.size(), 0.9, 0, ++seed);
+  }
+  return recordings;
+}
+
+// Innovations of an AR(1) of 0.9 are sqrt(1 - 0.81) of its standard deviation: ln L of N samples is larger by
+// -N/2 ln 0.19, of all recordings together. Each has a memory of its own, one parameter or more.
+TEST(CompareJointModels, TakesTheMemoryOfEachRecordingIntoAccount) {
+  const auto [joint, comparison] = Compare(RememberingRecordings(3, 5), kThreeLaws);
+  EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
+  EXPECT_THAT(comparison.criterion, HasSubstr("remember"));
+  EXPECT_LT(comparison.effective_samples, 2250);
+  double independent = 0;
+  for (std::size_t k = 0; k < 3; ++k) independent += GaussianLogLikelihood(joint.FitOf(k, 1).residual);
+  EXPECT_THAT(*comparison.rows[1].log_likelihood - independent, DoubleNear(-0.5 * 4500 * std::log(0.19), 0.1 * 4500));
+  EXPECT_GE(comparison.rows[1].parameters, joint.joint[1].parameters + 3);
+  EXPECT_GE(*comparison.rows[1].log_likelihood, *comparison.rows[0].log_likelihood - 0.1);
+  EXPECT_EQ(comparison.recommended, "coulomb") << comparison.reason;
+}
+
+// Twice the same memory and the same optimum: twice the likelihood.
+TEST(CompareJointModels, OfARememberingRecordingTwiceHasTwiceItsLogLikelihood) {
+  const Recording recording = RememberingRecordings(1, 9).front();
+  const auto [joint, comparison] = Compare({recording, recording}, {"viscous", "coulomb"});
+  const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), {"viscous", "coulomb"}));
+  const Comparison alone = CompareModels(once, PlainOptions(), kCriteriaOnly);
+  ASSERT_EQ(alone.likelihood, Likelihood::kCorrelated);
+  ASSERT_EQ(comparison.likelihood, Likelihood::kCorrelated);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_NEAR(*comparison.rows[m].log_likelihood, 2 * *alone.rows[m].log_likelihood, 0.1) << m;
+  }
+}
+
+// ---- Predictions and units -----------------------------------------------------------------------------------------
+
+TEST(CompareJointModels, PredictsEachRecordingFromItself) {
+  std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 51);
+  for (SyntheticOptions& run : runs) run.duration = 20;
+  const auto [joint, comparison] = Compare(Simulate(runs), {"viscous", "coulomb"}, CompareOptions{});
+  const Prediction& pooled = comparison.rows[1].forward;
+  double squares = 0, samples = 0;
+  for (const RunModels& run : joint.runs) {
+    const Prediction own = PredictForward(run.alone.used, run.alone.fits[1], PlainOptions());
+    squares += static_cast<double>(own.samples) * own.rms * own.rms;
+    samples += static_cast<double>(own.samples);
+  }
+  EXPECT_EQ(static_cast<double>(pooled.samples), samples);
+  EXPECT_THAT(pooled.rms, DoubleNear(std::sqrt(squares / samples), 1e-12));
+  EXPECT_THAT(comparison.rows[1].cross_validation.standardized, DoubleNear(1, 0.1));
+  EXPECT_GT(comparison.rows[0].forward.rms, 1.3 * pooled.rms);
+  EXPECT_EQ(comparison.recommended, "coulomb");
+}
+
+// An angle and a rate have no common unit; over their σ the true law's residuals have an rms of 1.
+TEST(CompareJointModels, HasResidualsOverTheirDeviationWhereUnitsDiffer) {
+  std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 61);
+  runs[1].quantity = Quantity::kRate;
+  runs[1].noise = 0.01;
+  const auto [joint, comparison] = Compare(Simulate(runs), {"viscous", "coulomb"});
+  EXPECT_THAT(comparison.rows[1].rms, DoubleNear(1, 0.02));
+  EXPECT_GT(comparison.rows[0].rms, 0);
+  const auto [same, in_radians] = Compare(Simulate(ShortRuns(2, "coulomb", 61)), {"coulomb"});
+  EXPECT_THAT(in_radians.rows[0].rms, DoubleNear(0.002, 2e-4));
+}
+
+}  // namespace
+}  // namespace pendulum::joint_comparison_test

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings of the textbook's rig with the fits of several models to each, as joint fits take them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/analysis/joint_fit.h"
+#include "tests/analysis/joint_runs.h"
+#include "tests/analysis/whole_swing.h"
+
+namespace pendulum {
+
+inline const std::vector<std::string> kThreeLaws = {"viscous", "coulomb", "drag"};
+
+/// Intervals from covariances, without a rig.
+inline FitOptions PlainOptions() {
+  FitOptions options;
+  options.interval = IntervalMethod::kCovariance;
+  return options;
+}
+
+/// Every model fitted to each recording alone.
+inline std::vector<RunModels> FitEach(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
+                                      const FitOptions& options) {
+  std::vector<RunModels> runs;
+  for (const Recording& recording : recordings) {
+    const std::string label = "recording " + std::to_string(runs.size() + 1);
+    runs.push_back({label, Must(FitModels(recording, Whole(recording), options, models)), {}});
+  }
+  return runs;
+}
+
+inline std::vector<Recording> Simulate(const std::vector<SyntheticOptions>& runs) {
+  std::vector<Recording> recordings;
+  for (const SyntheticOptions& run : runs) recordings.push_back(Must(SimulateRecording(run)));
+  return recordings;
+}
+
+/// 10 s each of releases at 0.4, 0.5 ... rad.
+inline std::vector<SyntheticOptions> ShortRuns(int count, std::string_view model, std::uint64_t seed) {
+  std::vector<SyntheticOptions> runs = SeveralRuns(count, seed, model);
+  for (SyntheticOptions& run : runs) {
+    run.release_angle += 0.1;
+    run.duration = 10;
+  }
+  return runs;
+}
+
+/// All physical parameters shared.
+inline JointModels FitJointModels(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
+                                  const FitOptions& options) {
+  return FitTogether(FitEach(recordings, models, options), options, models, PhysicalNames(models));
+}
+
+}  // namespace pendulum

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/joint_problem.h"
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/optimum.h"
+#include "tests/fitting/joint_recordings.h"
+
+namespace pendulum::joint_problem_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+/// Two recordings with the fits alone; a problem looks into them.
+struct TwoRuns {
+  FitOptions options;
+  Recordings recordings = {Must(SimulateRecording(Released(0.3, 1))), Must(SimulateRecording(Released(0.6, 2)))};
+  std::vector<FitReport> alone;
+
+  explicit TwoRuns(FitOptions given = RigOptions()) : options(given), alone(FitAlone(recordings, given)) {}
+
+  JointProblem Problem(const std::vector<std::string>& shared = kPhysical) const {
+    const std::vector<JointRun> runs = {{recordings[0], alone[0], options}, {recordings[1], alone[1], options}};
+    return Must(MakeJointProblem(runs, shared));
+  }
+};
+
+// ---- Places --------------------------------------------------------------------------------------------------------
+
+TEST(MakeJointProblem, PutsWhatIsSharedOnceAndFirst) {
+  const TwoRuns runs;
+  const JointProblem joint = runs.Problem({"coulomb", "viscous", "inertia"});
+  EXPECT_EQ(joint.shared, kPhysical);  // in the model's order
+  ASSERT_EQ(joint.members.size(), 2);
+  EXPECT_THAT(joint.members[0].at, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(joint.members[1].at, ElementsAre(0, 1, 2, 6, 7, 8));
+  EXPECT_EQ(joint.solve.fixed.size(), 9);
+  EXPECT_EQ(joint.samples(), 2000);  // 10 s at 100 Hz, twice
+}
+
+TEST(MakeJointProblem, GivesEachRecordingWhatIsNotShared) {
+  const TwoRuns runs;
+  const JointProblem joint = runs.Problem({"coulomb"});
+  EXPECT_THAT(joint.members[0].at, ElementsAre(1, 2, 0, 3, 4, 5));
+  EXPECT_THAT(joint.members[1].at, ElementsAre(6, 7, 0, 8, 9, 10));
+}
+
+TEST(MakeJointProblem, CountsAPriorOfWhatIsSharedOnce) {
+  FitOptions options = RigOptions();
+  options.priors["inertia"] = {0.079, 0.001};
+  options.priors["zero_angle"] = {0.012, 0.01};
+  const TwoRuns runs(options);
+  const JointProblem joint = runs.Problem();
+  std::vector<int> places;
+  for (const PriorTerm& prior : joint.cost->priors()) places.push_back(prior.parameter);
+  EXPECT_THAT(places, UnorderedElementsAre(0, 5, 8));
+}
+
+TEST(MakeJointProblem, RefusesOneRecordingAndWhatSharesNothing) {
+  const TwoRuns runs;
+  const std::vector<JointRun> one = {{runs.recordings[0], runs.alone[0], runs.options}};
+  const auto single = MakeJointProblem(one, kPhysical);
+  ASSERT_FALSE(single);
+  EXPECT_EQ(single.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(single.error().message, "a joint fit needs two recordings or more; there is one");
+  const std::vector<JointRun> two = {one[0], {runs.recordings[1], runs.alone[1], runs.options}};
+  const auto nothing = MakeJointProblem(two, {"stiction"});
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().message, "model coulomb has none of the parameters that are to be shared");
+}
+
+TEST(JointProblem, NamesTheRecordingOfWhatIsNotShared) {
+  const TwoRuns runs;
+  const JointProblem joint = runs.Problem();
+  EXPECT_EQ(joint.NameOf(0), "inertia");
+  EXPECT_EQ(joint.NameOf(3), "release_angle of recording 1");
+  EXPECT_EQ(joint.NameOf(8), "zero_angle of recording 2");
+  EXPECT_THAT(joint.members[1].Own({2, 4, 7}), ElementsAre(2, 4));
+}
+
+// ---- Solution ------------------------------------------------------------------------------------------------------
+
+// Of independent estimates with normal errors the best combination is the mean weighted with inverse covariances.
+TEST(CombineParabolas, IsTheWeightedMeanOfTheFitsAlone) {
+  const TwoRuns runs;
+  const Estimates mean = Combine({EstimatesOf(runs.alone[0], kPhysical), EstimatesOf(runs.alone[1], kPhysical)});
+  const CombinedParabolas combined = CombineParabolas(runs.Problem());
+  const Eigen::MatrixXd covariance = combined.information.inverse();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double std_error = std::sqrt(mean.covariance(i, i));
+    const double estimate = kTextbookTorque * combined.parameters[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(estimate, mean.value[i], 1e-6 * std_error) << kPhysical[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(kTextbookTorque * std::sqrt(covariance(i, i)), std_error, 1e-6 * std_error);
+  }
+}
+
+TEST(SolveJointly, EndsWithNoStepWorthMaking) {
+  const TwoRuns runs;
+  JointProblem joint = runs.Problem();
+  const Solution solution = SolveJointly(joint);
+  ASSERT_TRUE(solution.usable) << solution.message;
+  const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
+  ASSERT_TRUE(optimum);
+  EXPECT_LT(RemainingShift(*optimum), 0.01);
+  EXPECT_EQ(optimum->free.size(), 9);
+}
+
+TEST(SolveJointly, GivesTheMembersWhatTheyShareAndTheirOwnNoise) {
+  const TwoRuns runs;
+  JointProblem joint = runs.Problem();
+  const Solution solution = SolveJointly(joint);
+  for (const JointMember& member : joint.members) {
+    ASSERT_EQ(member.solution.parameters.size(), 6);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(member.solution.parameters[i], solution.parameters[i]) << i;
+    EXPECT_NEAR(member.solution.noise.sigma, 0.002, 4 * 0.002 / std::sqrt(2 * 1000));  // σ's error is σ / sqrt(2 N)
+    const double rss = (member.recording->value - member.solution.readings).squaredNorm();
+    EXPECT_NEAR(std::sqrt(rss / 1000), member.solution.noise.sigma, 0.01 * member.solution.noise.sigma);
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::joint_problem_test

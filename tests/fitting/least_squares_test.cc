@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/least_squares.h"
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+namespace pendulum::least_squares_test {
+namespace {
+
+// Of parameters 0 and 2 out of three. By hand at (1, 7, 3): residuals (1 - 2) · 3 = -3 and (3 + 1) · 0.5 = 2.
+const std::vector<PriorTerm> kPriors = {{0, 2.0, 3.0}, {2, -1.0, 0.5}};
+const std::vector<double> kParameters = {1, 7, 3};
+
+TEST(PriorSum, IsTheSumOfSquaredDistancesInStandardDeviations) {
+  EXPECT_DOUBLE_EQ(PriorSum(kPriors, kParameters), 9.0 + 4.0);
+  const std::vector<double> means = {2, 7, -1};
+  EXPECT_EQ(PriorSum(kPriors, means), 0);
+  EXPECT_EQ(PriorSum({}, kParameters), 0);
+}
+
+TEST(AddPriors, AddsInformationGradientAndDeviance) {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Ones(4, 4);
+  AddPriors(kPriors, kParameters, &sums);
+  // w² on the diagonal, w r in the last row and column, r² in the corner.
+  const Eigen::Matrix4d added{{9, 0, 0, -9}, {0, 0, 0, 0}, {0, 0, 0.25, 1}, {-9, 0, 1, 13}};
+  EXPECT_TRUE(sums.isApprox(Eigen::Matrix4d::Ones() + added, 1e-15)) << sums;
+}
+
+TEST(AddPriors, AddsNothingWithoutPriors) {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Constant(4, 4, 2.5);
+  AddPriors({}, kParameters, &sums);
+  EXPECT_EQ(sums, Eigen::MatrixXd::Constant(4, 4, 2.5));
+}
+
+// Two measurements of one quantity, 2 ± 1/3 and 1 ± 1/4, about 0: 9 + 16 of information, pulls -3 · 6 and -4 · 4.
+TEST(AddPriors, AddsUpWhatIsSaidTwiceOfAParameter) {
+  const std::vector<PriorTerm> twice = {{0, 2.0, 3.0}, {0, 1.0, 4.0}};
+  const std::vector<double> at = {0};
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(2, 2);
+  AddPriors(twice, at, &sums);
+  EXPECT_DOUBLE_EQ(sums(0, 0), 25);
+  EXPECT_DOUBLE_EQ(sums(0, 1), -34);
+  EXPECT_DOUBLE_EQ(sums(1, 0), -34);
+  EXPECT_DOUBLE_EQ(sums(1, 1), 52);
+}
+
+// A sum of squares is a parabola, so that central differences are exact: ∂/∂p Σ r² = 2 J'r.
+TEST(AddPriors, HasHalfTheGradientOfThePriorSum) {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(4, 4);
+  AddPriors(kPriors, kParameters, &sums);
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::vector<double> lower = kParameters, upper = kParameters;
+    lower[i] -= 0.5;
+    upper[i] += 0.5;
+    const double slope = PriorSum(kPriors, upper) - PriorSum(kPriors, lower);
+    EXPECT_NEAR(2 * sums(static_cast<Eigen::Index>(i), 3), slope, 1e-12) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::least_squares_test

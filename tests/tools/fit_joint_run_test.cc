@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fit_joint_run.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace pendulum::fit_joint_run_test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Result<FitRun> Joined(const std::string& data, const std::string& rig = "") {
+  FitPendulumFlags flags;
+  flags.data = data;
+  flags.rig = rig;
+  flags.interval = "covariance";
+  flags.shared = "all";
+  FitPendulumOptions options = *MakeFitPendulumOptions(flags);
+  const auto setup = ReadSetup(options);
+  if (!setup) return tl::unexpected(setup.error());
+  return FitJointRun(options, *setup);
+}
+
+// datasets/README.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
+TEST(FitJointRun, TellsTheRigOfSeveralRecordings) {
+  const auto run = Joined("datasets/runs_2.csv,datasets/runs_3.csv", "datasets/textbook_rig.json");
+  ASSERT_TRUE(run) << run.error().message;
+  const RunReport& report = run->report;
+  ASSERT_EQ(report.fits.size(), 1);
+  EXPECT_EQ(report.fits[0].termination, Termination::kConverged) << report.fits[0].reason;
+  const ParameterEstimate* const inertia = report.fits[0].Find("inertia");
+  ASSERT_TRUE(inertia != nullptr && inertia->std_error);
+  EXPECT_NEAR(inertia->estimate, 0.079, 4 * *inertia->std_error);
+  ASSERT_EQ(report.runs.size(), 2);
+  EXPECT_EQ(report.runs[0].data.path, "datasets/runs_2.csv");
+  EXPECT_EQ(report.runs[1].data.samples, 1500);  // 15 s at 100 Hz
+  ASSERT_EQ(report.joint.size(), 1);
+  EXPECT_THAT(report.joint[0].alone, ElementsAre("converged", "converged"));
+  EXPECT_TRUE(report.joint[0].homogeneity.agrees()) << report.joint[0].homogeneity.verdict;
+}
+
+TEST(FitJointRun, RefusesARecordingThatIsNamedTwice) {
+  const auto run = Joined("datasets/runs_1.csv,datasets/../datasets/runs_1.csv");
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(run.error().message,
+            "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording, byte for byte; name it "
+            "once");
+}
+
+TEST(FitJointRun, RefusesOneSwing) {
+  const auto run = Joined("datasets/runs_1.csv");
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(run.error().message, HasSubstr("there is one swing"));
+}
+
+TEST(FitJointRun, NamesTheRecordingThatCannotBeRead) {
+  const auto run = Joined("datasets/runs_1.csv,datasets/nowhere.csv");
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kNotFound);
+  EXPECT_THAT(run.error().message, StartsWith("datasets/nowhere.csv: "));
+}
+
+/// Copies of two recordings, each with a rig of its own.
+class DifferentRigs : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(first_) << "# rig: {\"gravity_torque\": 1.8}\n" << std::ifstream("datasets/runs_1.csv").rdbuf();
+    std::ofstream(second_) << "# rig: {\"gravity_torque\": 1.9}\n" << std::ifstream("datasets/runs_2.csv").rdbuf();
+  }
+  void TearDown() override {
+    std::filesystem::remove(first_);
+    std::filesystem::remove(second_);
+  }
+
+  const std::string start_ = testing::TempDir() + "fit_joint_run_test_" + std::to_string(getpid());
+  const std::string first_ = start_ + "_1.csv", second_ = start_ + "_2.csv";
+};
+
+TEST_F(DifferentRigs, AreRefused) {
+  const auto run = Joined(first_ + "," + second_);
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(run.error().message,
+              AllOf(StartsWith(first_ + " and " + second_ + " describe different rigs"), HasSubstr("--rig")));
+}
+
+TEST_F(DifferentRigs, GiveWayToTheOneOfTheCommandLine) {
+  const auto run = Joined(first_ + "," + second_, "datasets/textbook_rig.json");
+  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run->report.rig);
+  EXPECT_NEAR(run->report.rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, datasets/README.md
+}
+
+}  // namespace
+}  // namespace pendulum::fit_joint_run_test

@@ -1,0 +1,334 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs fit_pendulum on several recordings of one rig: one fit of all of them.
+
+  joint_fit_cli_test.py PATH/TO/fit_pendulum
+"""
+
+import csv
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import swing
+
+TOOL = ""  # path of the binary, from the command line
+
+PHYSICAL = ("inertia", "viscous", "coulomb")
+LOW = dict(swing.TRUTH, release_angle=0.25, release_time=1.4, zero_angle=-0.02)
+A = swing.angle_csv()
+B = swing.angle_csv(sigma=0.002, truth=LOW, seed=31)
+OTHER = swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.05), seed=32)
+FLAT = "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500))
+
+
+class JointTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("a.csv", A)
+        self.write("b.csv", B)
+        self.write("rig.json", json.dumps(swing.RIG))
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+
+    def read(self, name):
+        return (self.folder / name).read_text(encoding="utf-8")
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()}
+
+    def run_tool(self, *flags, stdin=None):
+        return subprocess.run([TOOL, *flags], cwd=self.folder, capture_output=True, text=True, encoding="utf-8",
+                              input=stdin, timeout=60, check=False)
+
+    def fit(self, *flags, stdin=None):
+        run = self.run_tool(*flags, stdin=stdin)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run
+
+    def joint(self, *flags, data="a.csv,b.csv", stdin=None):
+        """The result of a joint fit that converges."""
+        return json.loads(self.fit("--data", data, "--rig", "rig.json", *flags, "--json", "-", stdin=stdin).stdout)
+
+    def assert_refused(self, code, sentence, *flags):
+        """The tool stops with the code and that sentence, and no file is new."""
+        before = self.names()
+        run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "r.csv")
+        self.assertEqual(run.returncode, code, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
+        self.assertEqual(self.names(), before)
+
+    def assert_near(self, parameter, truth):
+        self.assertLess(abs(parameter["estimate"] - truth), 4 * parameter["std_error"])
+
+
+class JointFit(JointTest):
+    def test_is_one_result_of_all_recordings(self):
+        result = self.joint()
+        (fit,) = result["fits"]
+        self.assertEqual(fit["status"], "converged")
+        self.assertEqual([data["path"] for data in result["data"]], ["a.csv", "b.csv"])
+        self.assertEqual([run["path"] for run in fit["runs"]], ["a.csv", "b.csv"])
+        self.assertEqual(fit["shared"], list(PHYSICAL))
+        self.assertEqual(list(fit["parameters"]), list(PHYSICAL))
+        self.assertIs(fit["homogeneity"]["agrees"], True)
+        for name in PHYSICAL:
+            self.assert_near(fit["parameters"][name], swing.TRUTH[name])
+
+    def test_each_recording_has_its_own_start_and_zero(self):
+        (fit,) = self.joint()["fits"]
+        for run, truth in zip(fit["runs"], (swing.TRUTH, LOW), strict=True):
+            for name in ("release_angle", "release_time", "zero_angle"):
+                self.assert_near(run["parameters"][name], truth[name])
+            for name in PHYSICAL:
+                self.assertEqual(run["parameters"][name], fit["parameters"][name])
+
+    def test_the_order_of_recordings_is_that_of_their_names(self):
+        result = self.joint(data="b.csv,a.csv")
+        self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["b.csv", "a.csv"])
+        for name in PHYSICAL:
+            first = self.joint()["fits"][0]["parameters"][name]
+            other = result["fits"][0]["parameters"][name]
+            self.assertLess(abs(first["estimate"] - other["estimate"]), 0.1 * first["std_error"])
+
+    def test_recordings_alone_are_what_their_own_fits_say(self):
+        homogeneity = self.joint()["fits"][0]["homogeneity"]
+        for k, name in enumerate(("a.csv", "b.csv")):
+            alone = self.joint(data=name)["fits"][0]["parameters"]["inertia"]
+            of_joint = homogeneity["parameters"]["inertia"]["runs"][k]
+            self.assertAlmostEqual(of_joint["estimate"] / alone["estimate"], 1, delta=1e-9)
+
+    def test_outputs_of_each_recording_are_numbered(self):
+        before = self.names()
+        self.fit("--data", "a.csv,b.csv", "--json", "fit.json", "--residuals", "r.csv", "--series", "series.json",
+                 "--report", "page.html", "--markdown", "fit.md")
+        self.assertEqual(self.names() - before,
+                         {"fit.json", "r_001.csv", "r_002.csv", "series.json", "page.html", "fit.md"})
+        series = json.loads(self.read("series.json"))
+        self.assertEqual(len(series), 2)
+        for k, name in enumerate(("a.csv", "b.csv")):
+            readings = list(csv.DictReader(self.read(name).splitlines()))
+            rows = list(csv.DictReader(self.read(f"r_00{k + 1}.csv").splitlines()))
+            self.assertEqual(len(rows), len(readings))
+            self.assertEqual(len(series[k]["time_s"]), len(readings))
+            for i in (0, 700):
+                measured = math.radians(float(readings[i]["angle_deg"]))
+                self.assertAlmostEqual(float(rows[i]["measured_rad"]), measured, delta=1e-12)
+                self.assertAlmostEqual(series[k]["measured"][i], measured, delta=1e-12)
+                residual = float(rows[i]["measured_rad"]) - float(rows[i]["fitted_rad"])
+                self.assertAlmostEqual(float(rows[i]["residual_rad"]), residual, delta=1e-12)
+
+    def test_text_markdown_and_page_tell_of_all(self):
+        run = self.fit("--data", "a.csv,b.csv", "--rig", "rig.json", "--report", "page.html", "--markdown", "fit.md")
+        for text in (run.stdout, self.read("fit.md")):
+            for words in ("a.csv", "b.csv", "Do the recordings agree?", "Each recording's own"):
+                self.assertIn(words, text)
+        self.assertLessEqual(max(len(line) for line in run.stdout.splitlines()), 80)
+        self.assertTrue(self.read("fit.md").startswith("# Pendulum: 2 recordings of one rig\n"))
+        self.assertIn('"path":"b.csv"', self.read("page.html"))
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot draws the picture")
+    def test_terminal_plot_draws_each_recording(self):
+        run = self.fit("--data", "a.csv,b.csv", "--terminal_plot")
+        first = run.stdout.index("recording 1 (a.csv)\n")
+        second = run.stdout.index("recording 2 (b.csv)\n")
+        self.assertLess(first, second)
+        self.assertLess(second, run.stdout.index("[[Recordings]]"))
+
+    def test_a_list_is_fitted_together(self):
+        self.write("list.txt", "# two\na.csv\n\nb.csv\n")
+        listed = self.fit("--data_list", "list.txt", "--rig", "rig.json", "--json", "-").stdout
+        self.assertEqual(json.loads(listed), self.joint())
+
+    def test_standard_input_is_one_of_several(self):
+        result = self.joint(data="-,b.csv", stdin=A)
+        self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["standard input", "b.csv"])
+        self.assertEqual(result["fits"][0]["parameters"], self.joint()["fits"][0]["parameters"])
+
+    def test_names_with_blanks_and_letters_of_all_kinds(self):
+        names = ("my run ①.csv", "Mañana_τ.csv")
+        self.write(names[0], A)
+        self.write(names[1], B)
+        self.assertEqual([data["path"] for data in self.joint(data=",".join(names))["data"]], list(names))
+        run = self.fit("--data", ",".join(names), "--residuals", "ré s.csv")
+        for name in names:
+            self.assertIn(name, run.stdout)
+        self.assertLessEqual({"ré s_001.csv", "ré s_002.csv"}, self.names())
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot draws the picture")
+    def test_no_name_steers_a_terminal(self):
+        self.write("a\x1B[2J.csv", A)  # ECMA-48: clears it
+        run = self.fit("--data", "a\x1B[2J.csv,b.csv", "--terminal_plot")
+        self.assertEqual([line for line in run.stdout.splitlines() if "\x1B" in line], [])
+        self.assertIn("recording 1 (a?[2J.csv)\n", run.stdout)
+
+    def test_threads_change_nothing(self):
+        texts = {self.fit("--data", "a.csv,b.csv", "--model", "viscous,coulomb", "--threads", threads, "--json", "-").stdout
+                 for threads in ("1", "2")}
+        self.assertEqual(len(texts), 1)
+
+    def test_several_models_are_compared_by_all_recordings(self):
+        result = self.joint("--model", "viscous,coulomb")
+        self.assertEqual([fit["model"] for fit in result["fits"]], ["viscous", "coulomb"])
+        self.assertEqual([row["model"] for row in result["comparison"]["rows"]], ["viscous", "coulomb"])
+        self.assertEqual(result["comparison"]["recommended"], "coulomb")
+
+    def test_models_are_compared_by_the_fits_alone_where_recordings_disagree(self):
+        self.write("b.csv", OTHER)
+        run = self.run_tool("--data", "a.csv,b.csv", "--model", "viscous,coulomb", "--json", "fit.json")
+        self.assertEqual(run.returncode, 1, run.stderr)
+        comparison = json.loads(self.read("fit.json"))["comparison"]
+        self.assertEqual(comparison["recommended"], "coulomb")
+        k = [len(json.loads(self.fit("--data", name, "--model", "coulomb", "--json", "-").stdout)["fits"][0]["parameters"])
+             for name in ("a.csv", "b.csv")]
+        self.assertEqual(comparison["rows"][1]["parameters"], sum(k) + 2)  # all of each, and both sigmas
+
+    def test_angles_and_rates_are_fitted_together(self):
+        self.write("gyro.csv", swing.rate_csv())
+        (fit,) = self.joint(data="a.csv,gyro.csv")["fits"]
+        self.assertEqual(fit["status"], "converged")
+        self.assertIn("zero_angle", fit["runs"][0]["parameters"])
+        self.assert_near(fit["runs"][1]["parameters"]["rate_bias"], 0.02)
+        for name in PHYSICAL:
+            self.assert_near(fit["parameters"][name], swing.TRUTH[name])
+
+    def test_the_releases_of_one_recording(self):
+        self.write("two.csv", swing.two_releases())
+        result = self.joint("--release", "all", "--shared", "all", data="two.csv")
+        (fit,) = result["fits"]
+        self.assertEqual([(run["path"], run["release"]) for run in fit["runs"]], [("two.csv", 1), ("two.csv", 2)])
+        starts = [run["parameters"]["release_time"]["estimate"] for run in fit["runs"]]
+        self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
+        self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s held, and a sample each
+        self.assert_near(fit["parameters"]["inertia"], swing.TRUTH["inertia"])
+
+
+class SharedParameters(JointTest):
+    def test_what_is_not_shared_is_each_recordings_own(self):
+        (fit,) = self.joint("--shared", "inertia")["fits"]
+        self.assertEqual(list(fit["parameters"]), ["inertia"])
+        self.assertIsNone(fit["equation"])
+        inertia, viscous = ([run["parameters"][name]["estimate"] for run in fit["runs"]]
+                            for name in ("inertia", "viscous"))
+        self.assertEqual(inertia[0], inertia[1])
+        self.assertNotEqual(viscous[0], viscous[1])
+        for run in fit["runs"]:
+            self.assert_near(run["parameters"]["viscous"], swing.TRUTH["viscous"])
+
+    def test_friction_that_differs_is_not_shared(self):
+        self.write("b.csv", swing.angle_csv(sigma=0.002, truth=dict(LOW, coulomb=0.006), seed=33))
+        self.assertIs(self.joint()["fits"][0]["homogeneity"]["agrees"], False)
+        (fit,) = self.joint("--shared", "inertia")["fits"]
+        self.assertIs(fit["homogeneity"]["agrees"], True)
+        self.assert_near(fit["runs"][0]["parameters"]["coulomb"], 0.004)
+        self.assert_near(fit["runs"][1]["parameters"]["coulomb"], 0.006)
+
+    def test_a_shared_parameter_is_held(self):
+        (fit,) = self.joint("--fix", "coulomb=0.004")["fits"]
+        self.assertEqual(list(fit["homogeneity"]["parameters"]), ["inertia", "viscous"])
+        for parameters in (fit["parameters"], *(run["parameters"] for run in fit["runs"])):
+            self.assertEqual(parameters["coulomb"]["estimate"], 0.004)
+            self.assertIs(parameters["coulomb"]["fixed"], True)
+        self.assert_near(fit["parameters"]["viscous"], swing.TRUTH["viscous"])
+
+    def test_nothing_is_compared_when_all_is_held(self):
+        (fit,) = self.joint("--fix", "inertia=0.079,viscous=0.003,coulomb=0.004")["fits"]
+        self.assertIsNone(fit["homogeneity"]["p"])
+        self.assertEqual(fit["homogeneity"]["reason"], "all that is shared is fixed: there is nothing to compare")
+
+    # Inverse variances add up: a prior as good as the data halves the variance, whatever the number of recordings.
+    def test_a_prior_on_what_is_shared_counts_once(self):
+        flags = ("--fix", "viscous=0.003,coulomb=0.004")
+        (without,) = self.joint(*flags)["fits"]
+        error = without["parameters"]["inertia"]["std_error"]
+        mean = without["parameters"]["inertia"]["estimate"] + error
+        (with_prior,) = self.joint(*flags, "--prior", f"inertia={mean!r}:{error!r}")["fits"]
+        inertia = with_prior["parameters"]["inertia"]
+        self.assertAlmostEqual(inertia["std_error"] / error, math.sqrt(0.5), delta=0.02)
+        self.assertAlmostEqual((inertia["estimate"] - without["parameters"]["inertia"]["estimate"]) / error, 0.5, delta=0.05)
+
+
+class Refusals(JointTest):
+    def test_two_pendulums_are_written_and_said_to_be_two(self):
+        self.write("b.csv", OTHER)
+        run = self.run_tool("--data", "a.csv,b.csv", "--json", "fit.json")
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertRegex(run.stderr, r"\Afit_pendulum: not_converged: these are not swings of one pendulum [^\n]+\n\Z")
+        (fit,) = json.loads(self.read("fit.json"))["fits"]
+        self.assertEqual(fit["status"], "not_converged")
+        self.assertIs(fit["homogeneity"]["agrees"], False)
+        self.assertIsNone(fit["parameters"]["inertia"]["std_error"])
+
+    def test_the_one_that_is_of_another_rig_is_named(self):
+        self.write("c.csv", swing.angle_csv(truth=dict(LOW, release_angle=0.35), seed=34))
+        self.write("other.csv", swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.0794), seed=35))
+        result = self.joint(data="a.csv,other.csv,b.csv,c.csv")
+        homogeneity = result["fits"][0]["homogeneity"]
+        self.assertEqual(homogeneity["disagreeing"], [2])
+        # 0.0794 / 0.079 = 1.005
+        self.assertRegex(homogeneity["verdict"],
+                         r"; recording 2 \(other.csv\) disagrees with the others: its inertia is 0\.(49|5|51) % larger; ")
+        self.assertIn("recordings_disagree", [warning["code"] for warning in result["warnings"]])
+        result = self.joint(data="a.csv,-,b.csv,c.csv", stdin=self.read("other.csv"))
+        self.assertIn("; recording 2 (standard input) disagrees ", result["fits"][0]["homogeneity"]["verdict"])
+
+    def test_a_missing_file_among_several(self):
+        self.assert_refused(3, "nowhere.csv: there is no such file; check the path", "--data", "a.csv,nowhere.csv,b.csv")
+
+    def test_a_file_without_a_swing_among_several(self):
+        self.write("flat.csv", FLAT)
+        self.assert_refused(5, "flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose "
+                            "another column", "--data", "a.csv,flat.csv")
+
+    def test_there_is_nothing_to_share_in_one_swing(self):
+        self.assert_refused(2, "--shared is for several recordings, or the releases of one (--release all), and there is "
+                            "one swing", "--data", "a.csv", "--shared", "all")
+
+    def test_a_name_that_cannot_be_shared(self):
+        self.assert_refused(2, "--shared names 'mass', which recordings cannot share; they can share inertia, viscous, "
+                            "coulomb, or all, or none", "--data", "a.csv,b.csv", "--shared", "inertia,mass")
+
+    def test_no_bootstrap_of_several(self):
+        self.assert_refused(2, "--interval bootstrap is for recordings one by one (--shared none); several together have "
+                            "covariance and profile", "--data", "a.csv,b.csv", "--interval", "bootstrap")
+
+    def test_residuals_of_several_have_no_place_on_one_stream(self):
+        run = self.run_tool("--data", "a.csv,b.csv", "--residuals", "-")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(run.stderr, "fit_pendulum: --residuals - takes one recording, and there are 2; name a file, and "
+                         "they are numbered\n")
+
+    def test_no_residuals_are_written_over_an_input(self):
+        self.write("r_002.csv", B)
+        self.assert_refused(2, "--residuals r_002.csv would overwrite the input of --data", "--data", "a.csv,r_002.csv")
+
+    def test_recordings_that_tell_of_different_rigs(self):
+        self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
+        self.write("b.csv", f"# rig: {json.dumps(dict(swing.RIG, bob_mass=0.4))}\n" + B)
+        self.assert_refused(4, "a.csv and b.csv describe different rigs (# rig), and one rig's recordings are fitted together; "
+                            "give the one of all with --rig, or fit them apart with --shared none", "--data", "a.csv,b.csv")
+        self.joint()  # --rig wins
+
+    def test_recordings_that_tell_of_one_rig(self):
+        expected = self.joint()["fits"]
+        self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
+        for text in (B, f"# rig: {json.dumps(swing.RIG)}\n" + B):  # one tells, or both
+            self.write("b.csv", text)
+            result = json.loads(self.fit("--data", "a.csv,b.csv", "--json", "-").stdout)
+            self.assertEqual(result["fits"][0]["parameters"], expected[0]["parameters"])
+            self.assertEqual(result["rig"], swing.RIG)
+
+
+if __name__ == "__main__":
+    TOOL = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
