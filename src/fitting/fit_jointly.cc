@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include "pendulum/base/format.h"
@@ -12,10 +10,10 @@
 #include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
+#include "pendulum/fitting/joint_errors.h"
 #include "pendulum/fitting/joint_problem.h"
 #include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/profile.h"
-#include "pendulum/fitting/systematic.h"
 
 namespace pendulum {
 namespace {
@@ -140,77 +138,6 @@ bool IsAsAlone(const JointMember& member, bool correlated) {
 Errors OwnErrors(const Work& work, std::size_t k) {
   const std::vector<Index> rows = RowsOf(work, k);
   return {work.errors.covariance(rows, rows), work.errors.t95(rows), {work.errors.runs[k]}};
-}
-
-/// Rig, clock and calibration: sources that recordings have in common move all of them together. P x P, units of G.
-Eigen::MatrixXd SystematicErrors(const Work& work) {
-  const auto size = static_cast<Index>(work.joint.solve.fixed.size());
-  std::map<std::string, std::pair<SystematicSource, std::size_t>> sources;  // and of how many recordings
-  for (const JointMember& member : work.joint.members) {
-    for (const SystematicSource& source :
-         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
-      auto& [all, count] = sources[source.identity];
-      if (count++ == 0) {
-        all = {source.identity, Eigen::VectorXd::Zero(source.powers.size() > 0 ? size : 0),
-               Eigen::MatrixXd::Zero(size, source.pull.cols()), source.covariance};
-      }
-      // An angle's friction follows the clock otherwise than a rate's: then no one factor says it, and the pulls do.
-      if (all.powers.size() > 0 && source.powers.size() > 0) {
-        const bool first = count == 1;
-        for (std::size_t i = 0; i < member.at.size() && all.powers.size() > 0; ++i) {
-          const bool shared = member.at[i] < static_cast<int>(work.joint.shared.size());
-          const double power = source.powers[static_cast<Index>(i)];
-          if (shared && !first && all.powers[member.at[i]] != power) {
-            all.powers.resize(0);
-          } else {
-            all.powers[member.at[i]] = power;
-          }
-        }
-      }
-      all.pull(member.at, Eigen::all) += source.pull;
-    }
-  }
-  const SourceContext context{work.solution.parameters, work.joint.solve.fixed, work.joint.cost->priors(),
-                              work.optimum};
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  for (const auto& [identity, source] : sources) {
-    covariance += SourceCovariance(source.first, source.second == work.joint.members.size(), context);
-  }
-  return covariance;
-}
-
-// ---- Estimates from posteriors --------------------------------------------------------------------------------------
-
-bool IsFromPosterior(const FitReport& fit) { return fit.interval_method == kPosteriorIntervals; }
-
-/// Whether a fit alone rests on a posterior; then all of them must have errors.
-bool HasPosteriors(const JointProblem& joint) {
-  const auto& members = joint.members;
-  return std::ranges::any_of(members, [](const JointMember& m) { return IsFromPosterior(*m.alone); }) &&
-         std::ranges::all_of(members, [](const JointMember& m) { return !m.alone->covariance_names.empty(); });
-}
-
-/// Combines the posteriors of the fits alone as parabolas: quiet recordings have no other likelihood that is one.
-/// False, and nothing changed, where they tell too little.
-bool UsePosteriors(Work& work) {
-  Optimum optimum = work.optimum;
-  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
-  std::ranges::sort(optimum.free);
-  optimum.at_bound.clear();
-  CombinedParabolas combined = CombineParabolas(work.joint);
-  optimum.inverse = InvertInformation(combined.information, optimum.free);
-  double sum = 0;
-  if (!optimum.inverse.identifiable || !work.joint.cost->SumOfSquares(combined.parameters, &sum)) return false;
-  optimum.information = std::move(combined.information);
-  optimum.gradient.setZero();
-  work.optimum = std::move(optimum);
-  work.solution.parameters = std::move(combined.parameters);
-  work.joint.Distribute(work.solution.parameters);
-  for (JointMember& member : work.joint.members) {
-    member.solution.noise.sigma = member.alone->noise.sigma;
-    member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr);  // known to be traced
-  }
-  return true;
 }
 
 // ---- Intervals ------------------------------------------------------------------------------------------------------
@@ -417,8 +344,8 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   if (!optimum) return Failed(work.joint, std::move(fit));
   work.optimum = *std::move(optimum);
   // Before posteriors move σ, on which the optimum's information rests.
-  if (work.optimum.inverse.identifiable) work.systematic = SystematicErrors(work);
-  work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work);
+  if (work.optimum.inverse.identifiable) work.systematic = SystematicErrors(work.joint, work.solution, work.optimum);
+  work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work.joint, work.solution, work.optimum);
   DescribeAll(work);
   SetEnding(work, fit.whole);
   if (fit.whole.termination == Termination::kConverged) {

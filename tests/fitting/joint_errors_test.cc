@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of joint fits beyond those of parabolas: profiles, what rig and clock leave open, posteriors.
+#include "pendulum/fitting/joint_errors.h"
+
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -219,7 +221,8 @@ TEST(JointPosterior, CountsAPriorOnWhatIsSharedOnce) {
   const JointFit fit = FitAllJointly(recordings, options);
   EXPECT_EQ(fit.whole.std_error_method, "posteriors of the recordings alone, combined as parabolas");
   ASSERT_TRUE(fit.whole.Find("inertia")->std_error);
-  EXPECT_THAT(*fit.whole.Find("inertia")->std_error / error, DoubleNear(std::sqrt(0.5), 0.03));
+  // Posteriors are no parabolas, from which a prior could be taken out exactly. Counted twice it would leave 0.58.
+  EXPECT_THAT(*fit.whole.Find("inertia")->std_error / error, DoubleNear(std::sqrt(0.5), 0.06));
 }
 
 }  // namespace

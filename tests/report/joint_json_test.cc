@@ -159,7 +159,7 @@ TEST(JointFitJson, HasAnRmsWhereReadingsHaveOneUnit) {
   EXPECT_EQ(JointFitJson(report, 0)["statistics"].dump(),
             R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
             R"("effective_samples":1200.25})");
-  report.runs[1].data.unit = "rad/s";
+  report.data.unit = "sigma";  // readings of different units
   EXPECT_THAT(Keys(JointFitJson(report, 0)["statistics"]),
               ElementsAre("log_likelihood", "aic", "aicc", "bic", "effective_samples"));
 }

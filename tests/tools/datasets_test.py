@@ -17,7 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATASETS = ROOT / "datasets"
 RECORDINGS = ["coulomb", "textbook_rig", "to_rest"]
 FOREIGN = ["excel_export.csv", "excel_export_truth.json", "potentiometer_calibration.json", "serial_monitor.txt",
-           "serial_monitor_truth.json"]
+           "serial_monitor_truth.json",
+           *(f"runs_{run}{end}" for run in range(1, 5) for end in (".csv", "_truth.json"))]  # by the script alone
 BINARY = pathlib.Path()
 
 

@@ -25,6 +25,11 @@ void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parame
 /// where some motion cannot be traced.
 class LeastSquares {
  public:
+  LeastSquares() = default;
+  LeastSquares(const LeastSquares&) = delete;
+  LeastSquares& operator=(const LeastSquares&) = delete;
+  LeastSquares(LeastSquares&&) = delete;
+  LeastSquares& operator=(LeastSquares&&) = delete;
   virtual ~LeastSquares() = default;
 
   virtual bool SumOfSquares(std::span<const double> parameters, double* sum) const = 0;
