@@ -95,6 +95,7 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
   const std::vector<std::optional<double>> bounds = SharedCramerRaoBounds(simulated);
   if (alone.size() < recordings.size()) return OutcomeOf(scenario, truth, bounds, nullptr);
   std::vector<JointRun> joint;
+  joint.reserve(alone.size());
   for (std::size_t k = 0; k < alone.size(); ++k) joint.push_back({recordings[k], alone[k], scenario.fit});
   const Result<JointFit> fit = FitJointly(joint, PhysicalNames({scenario.fit.model}));
   return OutcomeOf(scenario, truth, bounds, fit ? &fit->whole : nullptr);

@@ -158,7 +158,7 @@ Pool PoolOf(const std::vector<Told>& told, const std::vector<std::size_t>& membe
   VectorXd sum = VectorXd::Zero(size);
   for (const std::size_t k : members) {
     const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * told[k].covariance * scale.cwiseInverse().asDiagonal();
-    precisions.push_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
+    precisions.emplace_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
     pool.precision += precisions.back();
     sum += precisions.back() * told[k].value.cwiseQuotient(scale);
   }

@@ -14,6 +14,7 @@ std::string Percent(double share) { return NumberText(100 * std::abs(share), 2) 
 
 std::string Names(const Homogeneity& result) {
   std::vector<std::string> names;
+  names.reserve(result.parameters.size());
   for (const SharedParameter& parameter : result.parameters) names.push_back(parameter.name);
   return NameList(names);
 }

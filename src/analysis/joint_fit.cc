@@ -26,6 +26,7 @@ JointFit FailedFit(const std::vector<RunModels>& runs, std::size_t m, const std:
 JointFit FitModel(const std::vector<RunModels>& runs, std::size_t m, const FitOptions& options,
                   const std::vector<std::string>& shared) {
   std::vector<JointRun> joint;
+  joint.reserve(runs.size());
   for (const RunModels& run : runs) joint.push_back({run.alone.used, run.alone.fits[m], options});
   Result<JointFit> fit = FitJointly(joint, shared);
   return fit ? *std::move(fit) : FailedFit(runs, m, fit.error().message);

@@ -71,6 +71,7 @@ struct Ending {
 
 std::string NamesOf(const JointProblem& joint, const std::vector<int>& parameters) {
   std::vector<std::string> names;
+  names.reserve(parameters.size());
   for (const int i : parameters) names.push_back(joint.NameOf(i));
   return NameList(names);
 }

@@ -49,6 +49,7 @@ bool JointCost::Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) 
 void JointCost::AddTo(ceres::Problem& problem, const std::vector<double*>& parameters) {
   for (const JointTerm& term : terms_) {
     std::vector<double*> own;
+    own.reserve(term.at.size());
     for (const int i : term.at) own.push_back(parameters[static_cast<std::size_t>(i)]);
     problem.AddResidualBlock(term.cost, nullptr, own);
   }

@@ -121,6 +121,7 @@ void Assemble(JointProblem& joint) {
     }
   }
   std::vector<JointTerm> terms;
+  terms.reserve(joint.members.size());
   for (const JointMember& member : joint.members) terms.push_back({member.cost.get(), member.at});
   const FitProblem& first = *joint.members.front().problem;
   const int holding = first.solve.holding_parameter;

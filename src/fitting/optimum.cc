@@ -247,6 +247,7 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
   const bool simple = std::ranges::all_of(runs, IsSimple) || optimum.free.empty();
   if (!simple) {
     std::vector<Part> parts;
+    parts.reserve(runs.size());
     for (const FittedRun& run : runs) parts.push_back(PartOf(run, optimum));
     SetCovariance(runs, parts, PriorInformation(priors, optimum.free), errors);
   }

@@ -15,8 +15,8 @@ Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solu
 /// Whether the fit to a recording alone rests on a posterior, and all of them have errors.
 bool HasPosteriors(const JointProblem& joint);
 
-/// Combines the posteriors of the fits alone as parabolas, into solution, members and optimum: quiet recordings have no
-/// other likelihood that is one. False, and nothing changed, where they tell too little.
-bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& optimum);
+/// Combines the posteriors of the fits alone as parabolas, into solution, members and the known optimum: quiet
+/// recordings have no other likelihood that is one. False, and nothing changed, where they tell too little.
+bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known);
 
 }  // namespace pendulum
