@@ -60,14 +60,38 @@ struct Line {
   }
 };
 
-/// About a reference amplitude² and value, so that no digits are lost.
-Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter, const std::vector<double>& squares,
-            double reference) {
+/// amplitude² of each recording, and of those that tell the parameter its range and mean.
+struct Squares {
+  std::vector<double> of_run;
+  double lowest = kUnbounded, highest = 0, mean = 0;
+};
+
+Squares SquaresOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
+                  const std::vector<double>& amplitudes) {
+  Squares squares;
+  double sum = 0, count = 0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const bool windows = TrendWithin(runs[k], parameter.name) != nullptr;
+    const double square = windows ? MeanSquare(runs[k], parameter.name) : amplitudes[k] * amplitudes[k];
+    squares.of_run.push_back(square);
+    if (!parameter.runs[k].value || !std::isfinite(square)) continue;
+    squares.lowest = std::min(squares.lowest, square);
+    squares.highest = std::max(squares.highest, square);
+    sum += square;
+    ++count;
+  }
+  squares.mean = sum / count;
+  return squares;
+}
+
+/// About mean amplitude² and value, so that no digits are lost.
+Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter, const Squares& squares) {
   Line line;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const RunEstimate& run = parameter.runs[k];
-    if (run.value && std::isfinite(squares[k]))
-      line.Add(*run.value - parameter.mean, 1, squares[k] - reference, *run.std_error);
+    if (run.value && std::isfinite(squares.of_run[k])) {
+      line.Add(*run.value - parameter.mean, 1, squares.of_run[k] - squares.mean, *run.std_error);
+    }
   }
   line.estimates = line.value.size();
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -75,6 +99,23 @@ Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
     if (trend != nullptr && parameter.runs[k].value) line.Add(trend->slope, 0, 1, trend->slope_std_error);
   }
   return line;
+}
+
+/// The least squares of a line, and of a constant alone.
+struct LineFit {
+  double slope = 0, slope_variance = 0;
+  VectorXd left;                // by the line
+  double left_by_constant = 0;  // sum of squares
+};
+
+LineFit Solve(const Line& line) {
+  const MatrixX2d columns = line.Columns();
+  const VectorXd values = line.Values();
+  const Eigen::Matrix2d inverse = (columns.transpose() * columns).inverse();
+  const Vector2d fit = inverse * (columns.transpose() * values);
+  const VectorXd constant = columns.col(0);
+  const VectorXd left_by_constant = values - constant * (constant.dot(values) / constant.squaredNorm());
+  return {fit[1], inverse(1, 1), values - columns * fit, left_by_constant.squaredNorm()};
 }
 
 }  // namespace
@@ -96,39 +137,24 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes) {
-  std::vector<double> squares;
-  double lowest = kUnbounded, highest = 0, sum = 0, count = 0;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const bool windows = TrendWithin(runs[k], parameter.name) != nullptr;
-    squares.push_back(windows ? MeanSquare(runs[k], parameter.name) : amplitudes[k] * amplitudes[k]);
-    if (!parameter.runs[k].value || !std::isfinite(squares.back())) continue;
-    lowest = std::min(lowest, squares.back());
-    highest = std::max(highest, squares.back());
-    sum += squares.back();
-    ++count;
-  }
-  const Line line = LineOf(runs, parameter, squares, sum / count);
-  const auto numbers = static_cast<Index>(line.value.size());
-  if (numbers < 3 || !(highest > lowest)) return std::nullopt;
-  const MatrixX2d columns = line.Columns();
-  const VectorXd values = line.Values();
-  const Eigen::Matrix2d inverse = (columns.transpose() * columns).inverse();
-  const Vector2d fit = inverse * (columns.transpose() * values);
-  const VectorXd left = values - columns * fit;
-  const VectorXd constant = columns.col(0);
-  const double without = (values - constant * (constant.dot(values) / constant.squaredNorm())).squaredNorm();
+  const Squares squares = SquaresOf(runs, parameter, amplitudes);
+  const Line line = LineOf(runs, parameter, squares);
+  const std::size_t numbers = line.value.size();
+  if (numbers < 3 || !(squares.highest > squares.lowest)) return std::nullopt;
+  const LineFit fit = Solve(line);
+  if (!fit.left.allFinite()) return std::nullopt;
   const auto freedom = static_cast<double>(numbers - 2);
-  const double excess = std::max(left.squaredNorm() / freedom, 1.0);
-  if (!fit.allFinite()) return std::nullopt;
+  const double rest = fit.left.squaredNorm();
+  const double excess = std::max(rest / freedom, 1.0);
   AmplitudeDependence dependence{parameter.name, parameter.unit};
-  dependence.slope = fit[1];
-  dependence.slope_std_error = std::sqrt(inverse(1, 1) * excess);
-  const double f = std::max(without - left.squaredNorm(), 0.0) / excess;
+  dependence.slope = fit.slope;
+  dependence.slope_std_error = std::sqrt(fit.slope_variance * excess);
+  const double f = std::max(fit.left_by_constant - rest, 0.0) / excess;
   dependence.p = boost::math::cdf(boost::math::complement(boost::math::fisher_f(1, freedom), f));
-  dependence.span = fit[1] * (highest - lowest) / parameter.mean;
-  const auto estimates = static_cast<Index>(line.estimates);
-  const double between = left.head(estimates).squaredNorm();
-  const double between_freedom = std::max(static_cast<double>(estimates) - (numbers > estimates ? 1.0 : 2.0), 1.0);
+  dependence.span = fit.slope * (squares.highest - squares.lowest) / parameter.mean;
+  const double between = fit.left.head(static_cast<Index>(line.estimates)).squaredNorm();
+  const double between_freedom =
+      std::max(static_cast<double>(line.estimates) - (numbers > line.estimates ? 1 : 2), 1.0);
   dependence.rest_p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(between_freedom), between));
   return dependence;
 }

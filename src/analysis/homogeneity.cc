@@ -28,11 +28,12 @@ double Tail(double statistic, double dof) {
 
 // ---- What each recording alone says ---------------------------------------------------------------------------------
 
-/// Of S shared parameters.
+/// Of S parameters.
 struct Told {
   std::size_t run = 0;
-  VectorXd value;       // S
-  MatrixXd covariance;  // S x S
+  std::vector<std::string> names;  // S
+  VectorXd value;                  // S
+  MatrixXd covariance;             // S x S
 };
 
 /// By how much 95 % reach farther than for a normal distribution: where residuals remember, errors are of few effective
@@ -50,13 +51,13 @@ VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
 
 /// Takes out of estimates and covariance what was known beforehand, which the recordings have in common. False where
 /// nothing is left.
-bool WithoutPriors(const ParameterPriors& priors, const std::vector<std::string>& names, VectorXd& value,
-                   MatrixXd& covariance) {
+bool RemovePriors(const ParameterPriors& priors, Told& told) {
   if (priors.empty()) return true;
-  MatrixXd precision = covariance.ldlt().solve(MatrixXd::Identity(value.size(), value.size()));
-  VectorXd pull = precision * value;
-  for (Index i = 0; i < value.size(); ++i) {
-    const auto prior = priors.find(names[static_cast<std::size_t>(i)]);
+  const Index size = told.value.size();
+  MatrixXd precision = told.covariance.ldlt().solve(MatrixXd::Identity(size, size));
+  VectorXd pull = precision * told.value;
+  for (Index i = 0; i < size; ++i) {
+    const auto prior = priors.find(told.names[static_cast<std::size_t>(i)]);
     if (prior == priors.end()) continue;
     const double weight = 1 / (prior->second.std_dev * prior->second.std_dev);
     precision(i, i) -= weight;
@@ -65,8 +66,8 @@ bool WithoutPriors(const ParameterPriors& priors, const std::vector<std::string>
   const VectorXd scale = precision.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * precision * scale.asDiagonal());
   if (!scale.allFinite() || factor.info() != Eigen::Success) return false;
-  covariance = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
-  value = covariance * pull;
+  told.covariance = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
+  told.value = told.covariance * pull;
   return true;
 }
 
@@ -105,41 +106,53 @@ MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names
   return covariance;
 }
 
-/// Estimates and errors as the fit reports them, unless a bound has to do with them.
+/// All free parameters of a recording as its fit reports them, unless a bound has to do with them.
+std::optional<Told> TellAllFree(const RunAlone& run) {
+  const FitReport& fit = run.fit;
+  if (std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; })) {
+    const auto unbounded = EstimateUnbounded(run.used, fit, NoiseOfFit(run.used, fit, run.options), run.options.rig);
+    if (!unbounded) return std::nullopt;
+    return Told{0, {unbounded->names.begin(), unbounded->names.end()}, unbounded->value, unbounded->covariance};
+  }
+  Told told{0, fit.covariance_names, VectorXd(static_cast<Index>(fit.covariance_names.size())), fit.covariance};
+  for (Index i = 0; i < told.value.size(); ++i) {
+    told.value[i] = fit.Find(told.names[static_cast<std::size_t>(i)])->estimate;
+  }
+  return RemovePriors(run.options.priors, told) ? std::optional(told) : std::nullopt;
+}
+
+/// The named parameters with all errors that let recordings differ.
 std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names, bool own_sources) {
-  const std::vector<std::string> systematic = own_sources ? names : std::vector<std::string>{};
   const FitReport& fit = run.fit;
   // Beside another minimum nearly as good the estimate has no normal distribution.
   if (fit.termination != Termination::kConverged || fit.Warns("another_minimum")) return std::nullopt;
-  const auto size = static_cast<Index>(names.size());
-  Told told{0, VectorXd(size), MatrixXd(size, size)};
-  const bool bounded = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; });
+  const std::optional<Told> all = TellAllFree(run);
+  if (!all) return std::nullopt;
   std::vector<Index> rows;
-  VectorXd all(static_cast<Index>(fit.covariance_names.size()));
-  MatrixXd covariance = fit.covariance;
-  std::vector<std::string> told_names = fit.covariance_names;
-  for (Index i = 0; i < all.size(); ++i) all[i] = fit.Find(told_names[static_cast<std::size_t>(i)])->estimate;
-  if (bounded) {
-    const NoiseModel noise = NoiseOfFit(run.used, fit, run.options);
-    const auto unbounded = EstimateUnbounded(run.used, fit, noise, run.options.rig);
-    if (!unbounded) return std::nullopt;
-    told_names.assign(unbounded->names.begin(), unbounded->names.end());
-    all = unbounded->value;
-    covariance = unbounded->covariance;
-  }
-  if (!bounded && !WithoutPriors(run.options.priors, told_names, all, covariance)) return std::nullopt;
   for (const std::string& name : names) {
-    const auto row = std::ranges::find(told_names, name) - told_names.begin();
-    if (row == static_cast<std::ptrdiff_t>(told_names.size())) return std::nullopt;
-    rows.push_back(row);
+    const auto found = std::ranges::find(all->names, name);
+    if (found == all->names.end()) return std::nullopt;
+    rows.push_back(found - all->names.begin());
   }
-  told.value = all(rows);
-  told.covariance = covariance(rows, rows);
   const VectorXd wider = ReachOf(fit, names);
-  told.covariance = (wider.asDiagonal() * told.covariance * wider.asDiagonal()).eval();
-  if (!systematic.empty()) told.covariance += SystematicOf(run, systematic);
+  Told told{0, names, all->value(rows), wider.asDiagonal() * all->covariance(rows, rows) * wider.asDiagonal()};
+  if (own_sources) told.covariance += SystematicOf(run, names);
   const bool sound = told.value.allFinite() && told.covariance.allFinite() && told.covariance.diagonal().minCoeff() > 0;
   return sound ? std::optional(told) : std::nullopt;
+}
+
+/// Those recordings that tell all of the named parameters alone.
+std::vector<Told> TellAlone(const std::vector<RunAlone>& runs, const std::vector<std::string>& names) {
+  std::vector<Told> told;
+  if (names.empty()) return told;
+  const bool own_sources = HaveOwnSources(runs);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    std::optional<Told> one = TellOne(runs[k], names, own_sources);
+    if (!one) continue;
+    one->run = k;
+    told.push_back(*std::move(one));
+  }
+  return told;
 }
 
 // ---- Do they agree? -------------------------------------------------------------------------------------------------
@@ -204,6 +217,22 @@ std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd&
   return {};
 }
 
+/// p of the distance of one recording's parameter j from the others, by these others' own scatter.
+double DistanceFromScatter(const std::vector<Told>& told, std::size_t k, Index j) {
+  VectorXd value(static_cast<Index>(told.size()) - 1), error(value.size());
+  for (Index i = 0; i < value.size(); ++i) {
+    const Told& other = told[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
+    value[i] = other.value[j];
+    error[i] = std::sqrt(other.covariance(j, j));
+  }
+  const RandomEffects others = SummarizeScatter(value, error);
+  const double variance =
+      told[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
+  const boost::math::students_t distribution(static_cast<double>(value.size() - 1));
+  const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
+  return 2 * boost::math::cdf(boost::math::complement(distribution, t));
+}
+
 /// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be
 /// enough.
 std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
@@ -214,24 +243,22 @@ std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
   const double trials = static_cast<double>(told.size()) * static_cast<double>(size);
   for (std::size_t k = 0; k < told.size(); ++k) {
     for (Index j = 0; j < size; ++j) {
-      VectorXd value(static_cast<Index>(told.size()) - 1), error(value.size());
-      for (Index i = 0; i < value.size(); ++i) {
-        const Told& other = told[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
-        value[i] = other.value[j];
-        error[i] = std::sqrt(other.covariance(j, j));
-      }
-      const RandomEffects others = SummarizeScatter(value, error);
-      const double variance =
-          told[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
-      const boost::math::students_t distribution(static_cast<double>(value.size() - 1));
-      const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
-      const double p = 2 * boost::math::cdf(boost::math::complement(distribution, t));
-      if (p * trials >= Homogeneity::kDisagree) continue;
+      if (DistanceFromScatter(told, k, j) * trials >= Homogeneity::kDisagree) continue;
       far.push_back(k);
       break;
     }
   }
   return far;
+}
+
+/// The recordings that disagree with the others, in their order; none where nobody knows who is right.
+std::vector<int> Disagreeing(const std::vector<Told>& told, const VectorXd& scale) {
+  std::vector<std::size_t> out = LeaveOut(told, scale);
+  if (out.empty()) out = FarFromScatter(told);
+  std::vector<int> runs;
+  for (const std::size_t k : out) runs.push_back(static_cast<int>(told[k].run));
+  std::ranges::sort(runs);
+  return runs;
 }
 
 // ---- Each parameter -------------------------------------------------------------------------------------------------
@@ -287,6 +314,28 @@ const FitReport& FirstWithParameters(const std::vector<RunAlone>& runs) {
   return (found == runs.end() ? runs.front() : *found).fit;
 }
 
+std::string WhyNotTested(const FitReport& example, const std::vector<std::string>& shared,
+                         const std::vector<std::string>& free) {
+  if (std::ranges::none_of(shared, [&](const std::string& name) { return example.Find(name) != nullptr; })) {
+    return "the model has none of what is shared";
+  }
+  if (free.empty()) return "all that is shared is fixed: there is nothing to compare";
+  return "fewer than two recordings tell all shared parameters alone";
+}
+
+/// The test of all shared parameters together.
+void TestTogether(const std::vector<Told>& told, const VectorXd& scale, Homogeneity& result) {
+  std::vector<std::size_t> all(told.size());
+  std::iota(all.begin(), all.end(), 0);
+  result.statistic = PoolOf(told, all, scale).statistic;
+  result.dof = static_cast<int>(scale.size()) * static_cast<int>(told.size() - 1);
+  if (std::isfinite(result.statistic)) {
+    result.p = Tail(result.statistic, result.dof);
+  } else {
+    result.reason = "the recordings' covariances cannot be inverted";
+  }
+}
+
 }  // namespace
 
 bool Homogeneity::is_amplitude() const {
@@ -305,45 +354,21 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
   for (const RunAlone& run : runs) result.amplitudes.push_back(MeanAmplitude(run.used, run.fit, run.options));
   const FitReport& example = FirstWithParameters(runs);
   const std::vector<std::string> names = FreeNames(example, shared);
-  const bool own_sources = HaveOwnSources(runs);
-  std::vector<Told> told;
-  for (std::size_t k = 0; k < runs.size() && !names.empty(); ++k) {
-    if (std::optional<Told> one = TellOne(runs[k], names, own_sources)) {
-      told.push_back(*std::move(one));
-      told.back().run = k;
-    }
-  }
+  const std::vector<Told> told = TellAlone(runs, names);
   if (told.size() < 2) {
-    const bool none =
-        std::ranges::none_of(shared, [&](const std::string& name) { return example.Find(name) != nullptr; });
-    result.reason = none            ? "the model has none of what is shared"
-                    : names.empty() ? "all that is shared is fixed: there is nothing to compare"
-                                    : "fewer than two recordings tell all shared parameters alone";
+    result.reason = WhyNotTested(example, shared, names);
     result.verdict = "not tested: " + result.reason;
     return result;
   }
   const VectorXd scale = ScaleOf(told);
-  std::vector<std::size_t> all(told.size());
-  std::iota(all.begin(), all.end(), 0);
-  result.statistic = PoolOf(told, all, scale).statistic;
-  result.dof = static_cast<int>(scale.size()) * static_cast<int>(told.size() - 1);
-  if (std::isfinite(result.statistic)) {
-    result.p = Tail(result.statistic, result.dof);
-  } else {
-    result.reason = "the recordings' covariances cannot be inverted";
-  }
+  TestTogether(told, scale, result);
   for (std::size_t j = 0; j < names.size(); ++j) {
     result.parameters.push_back(DescribeParameter(*example.Find(names[j]), told, static_cast<Index>(j), runs.size()));
     if (auto dependence = TestAmplitudeDependence(runs, result.parameters.back(), result.amplitudes)) {
       result.amplitude_dependence.push_back(*std::move(dependence));
     }
   }
-  if (!result.agrees() && !result.is_amplitude()) {
-    std::vector<std::size_t> out = LeaveOut(told, scale);
-    if (out.empty()) out = FarFromScatter(told);
-    for (const std::size_t k : out) result.disagreeing.push_back(static_cast<int>(told[k].run));
-    std::ranges::sort(result.disagreeing);
-  }
+  if (!result.agrees() && !result.is_amplitude()) result.disagreeing = Disagreeing(told, scale);
   result.verdict = DescribeHomogeneity(result, runs);
   return result;
 }

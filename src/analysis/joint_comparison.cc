@@ -39,25 +39,18 @@ FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters
   FitReport whole;
   whole.model = joint.joint[m].whole.model;
   whole.termination = Termination::kConverged;
-  double squares = 0, samples = 0;
+  std::vector<const FitReport*> fits;
   for (const RunModels& run : joint.runs) {
     const FitReport& fit = run.alone.fits[m];
     if (fit.termination != Termination::kConverged && whole.termination == Termination::kConverged) {
       whole.termination = fit.termination;
       whole.reason = run.label + ": " + fit.reason;
     }
-    const auto own = static_cast<double>(fit.residual.size());
-    squares += own * fit.statistics.rms_residual * fit.statistics.rms_residual;
-    samples += own;
-    whole.statistics.log_likelihood += fit.statistics.log_likelihood;
-    whole.statistics.effective_samples += fit.statistics.effective_samples;
+    fits.push_back(&fit);
     parameters += DescribeFit(fit).parameters;
     if (fit.noise.memory.kind != Autocorrelation::Kind::kWhite) whole.noise.memory = fit.noise.memory;
   }
-  const double k = parameters;
-  whole.statistics.rms_residual = std::sqrt(squares / std::max(samples, 1.0));
-  whole.statistics.aicc =
-      2 * k - 2 * whole.statistics.log_likelihood + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  whole.statistics = SumStatistics(fits, parameters);
   return whole;
 }
 
@@ -193,36 +186,39 @@ class SharedShift {
   std::vector<double> lowest_, highest_;
 };
 
-/// Each recording has a memory of the kind and order that its residuals by the best model have.
+/// The likelihood of a recording about its estimates, wherever they may move to, with a memory of the kind and order
+/// that its residuals by the best model have; what it tells of them is added to what all tell.
+std::optional<CorrelatedLikelihood> LikelihoodOf(const Compared& compared, std::size_t k, std::size_t m,
+                                                 std::size_t best, const FitOptions& options, SharedShift& together) {
+  const FitReport& fit = compared.Fit(k, m);
+  std::optional<CorrelatedResiduals> data = ResidualsOf(compared.joint.runs[k].alone.used, fit, options, false);
+  if (!data) return std::nullopt;
+  const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
+  data->lowest.setConstant(-kUnbounded);
+  data->highest.setConstant(kUnbounded);
+  auto likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)));
+  if (!likelihood) return std::nullopt;
+  std::vector<std::string> names;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (!parameter.fixed && !parameter.at_bound) names.emplace_back(parameter.info.name);
+  }
+  together.Add(names, likelihood->information, likelihood->shift, lowest, highest, compared.SharedBy(m));
+  return likelihood;
+}
+
 void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_t best, const FitOptions& options,
                              ComparisonRow& row) {
-  const JointModels& joint = compared.joint;
   SharedShift together;
   double sum = 0;
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    const Recording& used = joint.runs[k].alone.used;
-    const FitReport& fit = compared.Fit(k, m);
-    std::optional<CorrelatedResiduals> data = ResidualsOf(used, fit, options, false);
-    std::optional<CorrelatedLikelihood> likelihood;
-    if (data) {
-      const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
-      data->lowest.setConstant(-kUnbounded);
-      data->highest.setConstant(kUnbounded);
-      likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)));
-      std::vector<std::string> names;
-      for (const ParameterEstimate& parameter : fit.parameters)
-        if (!parameter.fixed && !parameter.at_bound) names.emplace_back(parameter.info.name);
-      if (likelihood) {
-        together.Add(names, likelihood->information, likelihood->shift, lowest, highest, compared.SharedBy(m));
-      }
-    }
+  for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
+    const RunModels& run = compared.joint.runs[k];
+    const auto likelihood = LikelihoodOf(compared, k, m, best, options, together);
     if (!likelihood) {
       row.judged = false;
-      row.reason =
-          "the residuals of " + joint.runs[k].label + " have no likelihood with the memory of the best model's";
+      row.reason = "the residuals of " + run.label + " have no likelihood with the memory of the best model's";
       return;
     }
-    sum += likelihood->log_likelihood + PerCount(used);
+    sum += likelihood->log_likelihood + PerCount(run.alone.used);
     row.parameters += likelihood->parameters - 1;
   }
   row.log_likelihood = sum - together.Loss();

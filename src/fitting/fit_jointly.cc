@@ -35,13 +35,7 @@ struct Work {
 
 /// The rows of a recording's free parameters among all that are free.
 std::vector<Index> RowsOf(const Work& work, std::size_t k) {
-  std::vector<Index> rows;
-  const std::vector<int>& free = work.optimum.free;
-  for (const int i : work.own_optima[k].free) {
-    const int place = work.joint.members[k].at[static_cast<std::size_t>(i)];
-    rows.push_back(std::ranges::find(free, place) - free.begin());
-  }
-  return rows;
+  return work.joint.members[k].RowsAmong(work.optimum.free, work.own_optima[k].free);
 }
 
 void SeeOwn(Work& work) {
@@ -217,56 +211,44 @@ int CountParameters(const Work& work) {
   return count;
 }
 
-FitStatistics WholeStatistics(const JointFit& fit, double samples) {
-  FitStatistics all;
-  double squares = 0;
-  for (const FitReport& run : fit.runs) {
-    const auto own = static_cast<double>(run.residual.size());
-    squares += own * run.statistics.rms_residual * run.statistics.rms_residual;
-    all.log_likelihood += run.statistics.log_likelihood;
-    all.effective_samples += run.statistics.effective_samples;
+/// The rows and columns of what is shared.
+void CopyShared(const JointFit& fit, const std::vector<std::string>& names, const Eigen::MatrixXd& matrix,
+                std::vector<std::string>& shared_names, Eigen::MatrixXd& shared) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!fit.IsShared(names[i])) continue;
+    rows.push_back(static_cast<Index>(i));
+    shared_names.push_back(names[i]);
   }
-  const double k = fit.parameters;
-  all.rms_residual = std::sqrt(squares / samples);
-  all.aic = 2 * k - 2 * all.log_likelihood;
-  all.aicc = all.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
-  all.bic = k * std::log(samples) - 2 * all.log_likelihood;
-  return all;
+  shared = matrix(rows, rows);
+}
+
+/// The noise of a recording whose residuals remember, if there is one.
+const NoiseEstimate& NoiseOfAll(const JointFit& fit) {
+  const auto remembers = std::ranges::find_if(
+      fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
+  return (remembers == fit.runs.end() ? fit.runs.front() : *remembers).noise;
 }
 
 /// What is shared, as the first recording's report has it.
 void SetShared(JointFit& fit) {
   const FitReport& first = fit.runs.front();
   FitReport& whole = fit.whole;
-  const auto is_shared = [&](const std::string_view name) {
-    return std::ranges::find(fit.shared, name) != fit.shared.end();
-  };
-  const auto keep = [&](const std::vector<std::string>& names, const Eigen::MatrixXd& matrix,
-                        std::vector<std::string>& kept_names, Eigen::MatrixXd& kept) {
-    std::vector<Index> rows;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (!is_shared(names[i])) continue;
-      rows.push_back(static_cast<Index>(i));
-      kept_names.push_back(names[i]);
-    }
-    kept = matrix(rows, rows);
-  };
   std::ranges::copy_if(first.parameters, std::back_inserter(whole.parameters),
-                       [&](const ParameterEstimate& p) { return is_shared(p.info.name); });
+                       [&](const ParameterEstimate& parameter) { return fit.IsShared(parameter.info.name); });
   for (ParameterEstimate& parameter : whole.parameters) parameter.closed_form.reset();
-  keep(first.covariance_names, first.covariance, whole.covariance_names, whole.covariance);
-  keep(first.systematic_names, first.systematic_covariance, whole.systematic_names, whole.systematic_covariance);
+  CopyShared(fit, first.covariance_names, first.covariance, whole.covariance_names, whole.covariance);
+  CopyShared(fit, first.systematic_names, first.systematic_covariance, whole.systematic_names,
+             whole.systematic_covariance);
   std::ranges::copy_if(first.profiles, std::back_inserter(whole.profiles),
-                       [&](const ProfileCurve& curve) { return is_shared(curve.name); });
+                       [&](const ProfileCurve& curve) { return fit.IsShared(curve.name); });
   std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),
-                       [&](const Identifiability& known) { return is_shared(known.parameter); });
+                       [&](const Identifiability& known) { return fit.IsShared(known.parameter); });
   // Each is of inertia and one friction parameter at most: all of them need all of these.
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
-  const auto remembers = std::ranges::find_if(
-      fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
-  whole.noise = (remembers == fit.runs.end() ? first : *remembers).noise;
+  whole.noise = NoiseOfAll(fit);
 }
 
 /// The joint fit where no trajectory can be traced.
@@ -331,6 +313,27 @@ void SetEnding(Work& work, FitReport& whole) {
 
 }  // namespace
 
+bool JointFit::IsShared(std::string_view name) const { return std::ranges::find(shared, name) != shared.end(); }
+
+FitStatistics SumStatistics(std::span<const FitReport* const> fits, int parameters) {
+  FitStatistics all;
+  double squares = 0, samples = 0;
+  for (const FitReport* const fit : fits) {
+    const auto own = static_cast<double>(fit->residual.size());
+    squares += own * fit->statistics.rms_residual * fit->statistics.rms_residual;
+    samples += own;
+    all.log_likelihood += fit->statistics.log_likelihood;
+    all.effective_samples += fit->statistics.effective_samples;
+  }
+  samples = std::max(samples, 1.0);
+  const double k = parameters;
+  all.rms_residual = std::sqrt(squares / samples);
+  all.aic = 2 * k - 2 * all.log_likelihood;
+  all.aicc = all.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  all.bic = k * std::log(samples) - 2 * all.log_likelihood;
+  return all;
+}
+
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());
@@ -357,7 +360,9 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   }
   AddWarnings(work, fit);
   fit.parameters = CountParameters(work);
-  fit.whole.statistics = WholeStatistics(fit, work.joint.samples());
+  std::vector<const FitReport*> all;
+  for (const FitReport& run : fit.runs) all.push_back(&run);
+  fit.whole.statistics = SumStatistics(all, fit.parameters);
   SetShared(fit);
   fit.whole.solver.evaluations = work.joint.cost->traces();
   return fit;

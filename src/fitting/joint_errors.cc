@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/fitting/intervals.h"
+#include "pendulum/fitting/joint_parabolas.h"
 #include "pendulum/fitting/systematic.h"
 
 namespace pendulum {
@@ -16,39 +17,56 @@ using Eigen::Index;
 
 bool IsFromPosterior(const FitReport& fit) { return fit.interval_method == kPosteriorIntervals; }
 
+/// A source of errors, and how many recordings have it.
+struct CommonSource {
+  SystematicSource source;  // of all P parameters
+  std::size_t count = 0;
+};
+
+/// Where a recording's powers stand among all. An angle's friction follows the clock otherwise than a rate's: then no
+/// one power of a shared parameter says it, there are none, and the pulls do.
+void MergePowers(const JointProblem& joint, const JointMember& member, const SystematicSource& own,
+                 CommonSource& common) {
+  Eigen::VectorXd& powers = common.source.powers;
+  if (powers.size() == 0 || own.powers.size() == 0) return;
+  const bool first = common.count == 1;
+  for (std::size_t i = 0; i < member.at.size(); ++i) {
+    const double power = own.powers[static_cast<Index>(i)];
+    if (!first && joint.IsShared(member.at[i]) && powers[member.at[i]] != power) {
+      powers.resize(0);
+      return;
+    }
+    powers[member.at[i]] = power;
+  }
+}
+
+/// The sources of all recordings by what they are.
+std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
+  std::map<std::string, CommonSource> sources;
+  const auto size = static_cast<Index>(joint.solve.fixed.size());
+  for (const JointMember& member : joint.members) {
+    for (const SystematicSource& own :
+         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
+      CommonSource& common = sources[own.identity];
+      if (common.count++ == 0) {
+        common.source = {own.identity, Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0),
+                         Eigen::MatrixXd::Zero(size, own.pull.cols()), own.covariance};
+      }
+      MergePowers(joint, member, own, common);
+      common.source.pull(member.at, Eigen::all) += own.pull;
+    }
+  }
+  return sources;
+}
+
 }  // namespace
 
 Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum) {
   const auto size = static_cast<Index>(joint.solve.fixed.size());
-  std::map<std::string, std::pair<SystematicSource, std::size_t>> sources;  // and of how many recordings
-  for (const JointMember& member : joint.members) {
-    for (const SystematicSource& source :
-         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
-      auto& [all, count] = sources[source.identity];
-      if (count++ == 0) {
-        all = {source.identity, Eigen::VectorXd::Zero(source.powers.size() > 0 ? size : 0),
-               Eigen::MatrixXd::Zero(size, source.pull.cols()), source.covariance};
-      }
-      // An angle's friction follows the clock otherwise than a rate's: then no one factor says it, and the pulls do.
-      if (all.powers.size() > 0 && source.powers.size() > 0) {
-        const bool first = count == 1;
-        for (std::size_t i = 0; i < member.at.size() && all.powers.size() > 0; ++i) {
-          const bool shared = member.at[i] < static_cast<int>(joint.shared.size());
-          const double power = source.powers[static_cast<Index>(i)];
-          if (shared && !first && all.powers[member.at[i]] != power) {
-            all.powers.resize(0);
-          } else {
-            all.powers[member.at[i]] = power;
-          }
-        }
-      }
-      all.pull(member.at, Eigen::all) += source.pull;
-    }
-  }
   const SourceContext context{solution.parameters, joint.solve.fixed, joint.cost->priors(), optimum};
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  for (const auto& [identity, source] : sources) {
-    covariance += SourceCovariance(source.first, source.second == joint.members.size(), context);
+  for (const auto& [identity, common] : SourcesOf(joint)) {
+    covariance += SourceCovariance(common.source, common.count == joint.members.size(), context);
   }
   return covariance;
 }

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "pendulum/fitting/joint_parabolas.h"
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/search.h"
@@ -92,104 +90,71 @@ std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<st
   return shared;
 }
 
-/// Gives the members' parameters their places, with bounds, what is fixed and priors.
-void Assemble(JointProblem& joint) {
+/// Room for so many parameters, without bounds.
+void Resize(SolveOptions& solve, std::size_t count) {
+  solve.lower.resize(count, -kUnbounded);
+  solve.upper.resize(count, kUnbounded);
+  solve.fixed.resize(count, false);
+}
+
+/// Where the parameter of a member stands among all: what is its own is added to them.
+std::size_t PlaceOf(JointProblem& joint, std::string_view name) {
+  const auto shared = std::ranges::find(joint.shared, name);
+  if (shared != joint.shared.end()) return static_cast<std::size_t>(shared - joint.shared.begin());
+  Resize(joint.solve, joint.solve.fixed.size() + 1);
+  return joint.solve.fixed.size() - 1;
+}
+
+/// Gives a member's parameters their places. What is shared keeps to the bounds of all members.
+void Place(JointProblem& joint, JointMember& member) {
+  const SolveOptions& own = member.problem->solve;
+  SolveOptions& all = joint.solve;
+  for (std::size_t i = 0; i < own.fixed.size(); ++i) {
+    const std::size_t place = PlaceOf(joint, member.problem->infos[i].name);
+    all.lower[place] = std::max(all.lower[place], own.lower[i]);
+    all.upper[place] = std::min(all.upper[place], own.upper[i]);
+    all.fixed[place] = all.fixed[place] || own.fixed[i];
+    member.at.push_back(static_cast<int>(place));
+  }
+}
+
+/// What is known beforehand of a shared parameter counts once, as the first member has it.
+std::vector<PriorTerm> PriorsOf(const JointProblem& joint) {
   std::vector<PriorTerm> priors;
-  joint.solve.lower.assign(joint.shared.size(), -kUnbounded);
-  joint.solve.upper.assign(joint.shared.size(), kUnbounded);
-  joint.solve.fixed.assign(joint.shared.size(), false);
-  for (JointMember& member : joint.members) {
-    const FitProblem& problem = *member.problem;
-    for (std::size_t i = 0; i < problem.infos.size(); ++i) {
-      const auto shared = std::ranges::find(joint.shared, problem.infos[i].name);
-      const bool own = shared == joint.shared.end();
-      const auto place = own ? joint.solve.fixed.size() : static_cast<std::size_t>(shared - joint.shared.begin());
-      if (own) {
-        joint.solve.lower.push_back(-kUnbounded);
-        joint.solve.upper.push_back(kUnbounded);
-        joint.solve.fixed.push_back(false);
-      }
-      joint.solve.lower[place] = std::max(joint.solve.lower[place], problem.solve.lower[i]);
-      joint.solve.upper[place] = std::min(joint.solve.upper[place], problem.solve.upper[i]);
-      joint.solve.fixed[place] = joint.solve.fixed[place] || problem.solve.fixed[i];
-      member.at.push_back(static_cast<int>(place));
-      for (PriorTerm prior : problem.priors) {
-        if (prior.parameter != static_cast<int>(i) || (!own && &member != &joint.members.front())) continue;
-        prior.parameter = static_cast<int>(place);
-        priors.push_back(prior);
-      }
-    }
-  }
-  std::vector<JointTerm> terms;
-  terms.reserve(joint.members.size());
-  for (const JointMember& member : joint.members) terms.push_back({member.cost.get(), member.at});
-  const FitProblem& first = *joint.members.front().problem;
-  const int holding = first.solve.holding_parameter;
-  const int held = holding < 0 ? -1 : joint.members.front().at[static_cast<std::size_t>(holding)];
-  joint.solve.holding_parameter = held < static_cast<int>(joint.shared.size()) ? held : -1;
-  joint.solve.max_iterations = first.solve.max_iterations;
-  joint.solve.max_traces = first.solve.max_traces * static_cast<int>(terms.size());
-  joint.cost = std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), priors);
-}
-
-/// The likelihood of a recording about its own fit, without its priors: places among all parameters (M), information A
-/// (M x M), and A p - gradient.
-struct Parabola {
-  std::vector<int> at;
-  Eigen::MatrixXd information;
-  Eigen::VectorXd pull;
-};
-
-/// From the sums where the fit alone ended: its cost has no priors.
-Parabola ParabolaOfSums(const JointMember& member) {
-  const std::vector<double>& own = member.alone_parameters;
-  const auto size = static_cast<Index>(own.size());
-  Parabola parabola{member.at, Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
-  Eigen::MatrixXd sums;
-  if (!member.cost->Sums(own, &sums)) return parabola;
-  parabola.information = sums.topLeftCorner(size, size);
-  parabola.pull =
-      parabola.information * Eigen::Map<const Eigen::VectorXd>(own.data(), size) - sums.col(size).head(size);
-  return parabola;
-}
-
-/// From the covariance of the fit alone where it has one: the trajectory need not be traced for it.
-Parabola ParabolaOf(const JointMember& member) {
-  const FitReport& alone = *member.alone;
-  const auto count = static_cast<Index>(alone.covariance_names.size());
-  std::vector<int> all(alone.covariance_names.size());
-  std::iota(all.begin(), all.end(), 0);
-  const InformationInverse inverse = InvertInformation(alone.covariance, all);
-  if (count == 0 || !inverse.identifiable) return ParabolaOfSums(member);
-  Parabola parabola;
-  Eigen::VectorXd unit(count), estimates(count), prior = Eigen::VectorXd::Zero(count), mean = prior;
-  for (Index row = 0; row < count; ++row) {
-    const auto i = static_cast<std::size_t>(alone.Find(alone.covariance_names[static_cast<std::size_t>(row)]) -
-                                            alone.parameters.data());
-    parabola.at.push_back(member.at[i]);
-    unit[row] = member.problem->si_per_internal[i];
-    estimates[row] = member.alone_parameters[i];
-    for (const PriorTerm& known : member.problem->priors) {
-      if (known.parameter != static_cast<int>(i)) continue;
-      prior[row] = known.weight * known.weight;
-      mean[row] = known.mean;
-    }
-  }
-  parabola.information = unit.asDiagonal() * inverse.matrix * unit.asDiagonal();
-  parabola.pull = parabola.information * estimates - prior.cwiseProduct(mean);
-  parabola.information.diagonal() -= prior;
-  return parabola;
-}
-
-/// All where the last one's fit alone has what is shared.
-std::vector<double> StartOfLast(const JointProblem& joint) {
-  std::vector<double> start(joint.solve.fixed.size());
   for (const JointMember& member : joint.members) {
-    for (std::size_t i = 0; i < member.at.size(); ++i) {
-      start[static_cast<std::size_t>(member.at[i])] = member.alone_parameters[i];
+    for (PriorTerm prior : member.problem->priors) {
+      prior.parameter = member.at[static_cast<std::size_t>(prior.parameter)];
+      if (!joint.IsShared(prior.parameter) || &member == &joint.members.front()) priors.push_back(prior);
     }
   }
-  return start;
+  return priors;
+}
+
+/// One cost of all members, and how it is solved.
+void Assemble(JointProblem& joint) {
+  Resize(joint.solve, joint.shared.size());
+  std::vector<JointTerm> terms;
+  for (JointMember& member : joint.members) {
+    Place(joint, member);
+    terms.push_back({member.cost.get(), member.at});
+  }
+  const SolveOptions& first = joint.members.front().problem->solve;
+  const int holding = first.holding_parameter;
+  const int held = holding < 0 ? -1 : joint.members.front().at[static_cast<std::size_t>(holding)];
+  joint.solve.holding_parameter = joint.IsShared(held) ? held : -1;
+  joint.solve.max_iterations = first.max_iterations;
+  joint.solve.max_traces = first.max_traces * static_cast<int>(terms.size());
+  joint.cost =
+      std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), PriorsOf(joint));
+}
+
+/// How many of the free parameters a recording pays for: those of all recordings add up to their number.
+double ShareOf(const JointMember& member, const Optimum& optimum) {
+  Eigen::MatrixXd sums;
+  if (!member.cost->Sums(member.solution.parameters, &sums)) return 0;
+  const std::vector<int> own = member.Own(optimum.free);
+  const std::vector<Index> rows = member.RowsAmong(optimum.free, own);
+  return optimum.inverse.matrix(rows, rows).cwiseProduct(sums(own, own)).sum();
 }
 
 /// σ of a recording at the joint optimum; of Gaussian noise RSS / (N - its share of the parameters).
@@ -201,21 +166,8 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
     return LikeliestSigma(noise, problem.data.values(), member.solution.readings,
                           std::max(kSmallestSigma * problem.resolution, smallest));
   }
-  Eigen::MatrixXd sums;
-  double share = 0;
-  if (member.cost->Sums(member.solution.parameters, &sums)) {
-    for (std::size_t i = 0; i < member.at.size(); ++i) {
-      for (std::size_t j = 0; j < member.at.size(); ++j) {
-        const auto row = std::ranges::find(optimum.free, member.at[i]) - optimum.free.begin();
-        const auto column = std::ranges::find(optimum.free, member.at[j]) - optimum.free.begin();
-        const auto free = static_cast<std::ptrdiff_t>(optimum.free.size());
-        if (row == free || column == free) continue;
-        share += optimum.inverse.matrix(row, column) * sums(static_cast<Index>(j), static_cast<Index>(i));
-      }
-    }
-  }
   const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
-  return std::max(std::sqrt(rss / std::max(member.samples() - share, 1.0)), smallest);
+  return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
 }
 
 /// Gives every recording its parameters and readings at the solution. False where a motion cannot be traced.
@@ -284,6 +236,14 @@ std::vector<int> JointMember::Own(const std::vector<int>& of_all) const {
   return own;
 }
 
+std::vector<Eigen::Index> JointMember::RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const {
+  std::vector<Index> rows;
+  for (const int i : own) {
+    rows.push_back(std::ranges::find(of_all, at[static_cast<std::size_t>(i)]) - of_all.begin());
+  }
+  return rows;
+}
+
 double JointProblem::samples() const {
   double samples = 0;
   for (const JointMember& member : members) samples += member.samples();
@@ -294,8 +254,18 @@ void JointProblem::Distribute(const std::vector<double>& parameters) {
   for (std::size_t k = 0; k < members.size(); ++k) members[k].solution.parameters = cost->Own(k, parameters);
 }
 
+std::vector<double> JointProblem::AloneParameters() const {
+  std::vector<double> all(solve.fixed.size());
+  for (const JointMember& member : members) {
+    for (std::size_t i = 0; i < member.at.size(); ++i) {
+      all[static_cast<std::size_t>(member.at[i])] = member.alone_parameters[i];
+    }
+  }
+  return all;
+}
+
 std::string JointProblem::NameOf(int parameter) const {
-  if (parameter < static_cast<int>(shared.size())) return shared[static_cast<std::size_t>(parameter)];
+  if (IsShared(parameter)) return shared[static_cast<std::size_t>(parameter)];
   for (std::size_t k = 0; k < members.size(); ++k) {
     const auto own = std::ranges::find(members[k].at, parameter);
     if (own == members[k].at.end()) continue;
@@ -327,43 +297,12 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
   return joint;
 }
 
-CombinedParabolas CombineParabolas(const JointProblem& joint) {
-  const auto size = static_cast<Index>(joint.solve.fixed.size());
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(size + 1, size + 1);
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(size);
-  for (const JointMember& member : joint.members) {
-    const std::vector<double>& own = member.alone_parameters;
-    start(member.at) = Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Index>(own.size()));
-  }
-  std::vector<double> parameters(start.begin(), start.end());
-  AddPriors(joint.cost->priors(), parameters, &sums);
-  Eigen::VectorXd pull = -sums.col(size).head(size);
-  for (const JointMember& member : joint.members) {
-    const Parabola parabola = ParabolaOf(member);
-    sums(parabola.at, parabola.at) += parabola.information;
-    pull(parabola.at) += parabola.pull - parabola.information * start(parabola.at);
-  }
-  std::vector<int> free;
-  for (int i = 0; i < static_cast<int>(size); ++i) {
-    if (!joint.solve.fixed[static_cast<std::size_t>(i)] && sums(i, i) > 0) free.push_back(i);
-  }
-  const Eigen::VectorXd scale = sums.diagonal()(free).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(scale.asDiagonal() * sums(free, free) * scale.asDiagonal());
-  const Eigen::VectorXd step = scale.cwiseProduct(factor.solve(scale.cwiseProduct(pull(free))));
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const auto i = static_cast<std::size_t>(free[k]);
-    const double moved = parameters[i] + step[static_cast<Index>(k)];
-    if (std::isfinite(moved)) parameters[i] = std::clamp(moved, joint.solve.lower[i], joint.solve.upper[i]);
-  }
-  return {parameters, sums.topLeftCorner(size, size)};
-}
-
 Solution SolveJointly(JointProblem& joint) {
   Solution solution;
   solution.parameters = CombineParabolas(joint).parameters;
   solution = Refine(*joint.cost, solution, joint.solve);
   if (!solution.usable) {  // far from parabolas the step may lead where nothing can be traced
-    solution.parameters = StartOfLast(joint);
+    solution.parameters = joint.AloneParameters();
     solution = Refine(*joint.cost, solution, joint.solve);
   }
   Settle(joint, solution);

@@ -24,7 +24,7 @@ struct Swing {
 };
 
 /// All chosen swings of all recordings.
-Result<std::vector<Swing>> ReadAll(const FitPendulumOptions& options, const Setup& setup) {
+Result<std::vector<Swing>> ReadEach(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<Swing> swings;
   for (const std::string& path : setup.paths) {
     auto one = ReadOne(options, path, setup.rig);
@@ -163,15 +163,35 @@ RunReport LabelsOf(const std::vector<Swing>& swings) {
   return all;
 }
 
+/// All chosen swings, which can be fitted together and written.
+Result<std::vector<Swing>> ReadAll(const FitPendulumOptions& options, const Setup& setup) {
+  auto swings = ReadEach(options, setup);
+  if (!swings) return swings;
+  if (const auto checked = CheckNumberedOutputs(options, setup, swings->size()); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
+  return swings;
+}
+
+/// What is told of all recordings together.
+RunReport ReportOf(const JointModels& joint, const FitOptions& options) {
+  RunReport report;
+  report.rig = options.rig;
+  report.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
+  for (std::size_t m = 0; m < joint.models.size(); ++m) {
+    report.fits.push_back(joint.joint[m].whole);
+    report.joint.push_back(PartOf(joint, m));
+  }
+  if (joint.models.size() > 1) report.comparison = CompareJointModels(joint, options);
+  return report;
+}
+
 }  // namespace
 
 Result<FitRun> FitJointRun(const FitPendulumOptions& options, const Setup& setup) {
   auto swings = ReadAll(options, setup);
   if (!swings) return tl::unexpected(swings.error());
-  if (const auto checked = CheckNumberedOutputs(options, setup, swings->size()); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
   const auto rig = RigOf(*swings);
   if (!rig) return tl::unexpected(rig.error());
   FitOptions fit_options = options.fit;
@@ -180,20 +200,12 @@ Result<FitRun> FitJointRun(const FitPendulumOptions& options, const Setup& setup
   if (!alone) return tl::unexpected(alone.error());
   JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
   FitRun run;
-  RunReport& report = run.report;
-  report.rig = *rig;
-  // Of what is told of all recordings together.
-  report.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
-  for (std::size_t m = 0; m < joint.models.size(); ++m) {
-    report.fits.push_back(joint.joint[m].whole);
-    report.joint.push_back(PartOf(joint, m));
-  }
-  if (joint.models.size() > 1) report.comparison = CompareJointModels(joint, fit_options);
-  const std::size_t main = report.MainFit();
+  run.report = ReportOf(joint, fit_options);
+  const std::size_t main = run.report.MainFit();
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
     (*swings)[k].report.rig = *rig;
     CompleteRun(joint, k, main, (*swings)[k].report);
-    report.runs.push_back(std::move((*swings)[k].report));
+    run.report.runs.push_back(std::move((*swings)[k].report));
     run.used.push_back(std::move(joint.runs[k].alone.used));
   }
   return run;

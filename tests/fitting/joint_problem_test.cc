@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,20 +18,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
-
-/// Two recordings with the fits alone; a problem looks into them.
-struct TwoRuns {
-  FitOptions options;
-  Recordings recordings = {Must(SimulateRecording(Released(0.3, 1))), Must(SimulateRecording(Released(0.6, 2)))};
-  std::vector<FitReport> alone;
-
-  explicit TwoRuns(FitOptions given = RigOptions()) : options(given), alone(FitAlone(recordings, given)) {}
-
-  JointProblem Problem(const std::vector<std::string>& shared = kPhysical) const {
-    const std::vector<JointRun> runs = {{recordings[0], alone[0], options}, {recordings[1], alone[1], options}};
-    return Must(MakeJointProblem(runs, shared));
-  }
-};
 
 // ---- Places --------------------------------------------------------------------------------------------------------
 
@@ -89,20 +73,6 @@ TEST(JointProblem, NamesTheRecordingOfWhatIsNotShared) {
 }
 
 // ---- Solution ------------------------------------------------------------------------------------------------------
-
-// Of independent estimates with normal errors the best combination is the mean weighted with inverse covariances.
-TEST(CombineParabolas, IsTheWeightedMeanOfTheFitsAlone) {
-  const TwoRuns runs;
-  const Estimates mean = Combine({EstimatesOf(runs.alone[0], kPhysical), EstimatesOf(runs.alone[1], kPhysical)});
-  const CombinedParabolas combined = CombineParabolas(runs.Problem());
-  const Eigen::MatrixXd covariance = combined.information.inverse();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double std_error = std::sqrt(mean.covariance(i, i));
-    const double estimate = kTextbookTorque * combined.parameters[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(estimate, mean.value[i], 1e-6 * std_error) << kPhysical[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(kTextbookTorque * std::sqrt(covariance(i, i)), std_error, 1e-6 * std_error);
-  }
-}
 
 TEST(SolveJointly, EndsWithNoStepWorthMaking) {
   const TwoRuns runs;

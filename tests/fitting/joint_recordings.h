@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/fit_jointly.h"
+#include "pendulum/fitting/joint_problem.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {
@@ -80,6 +81,20 @@ inline Recordings MixedRecordings(std::uint64_t seed = 1) {
   gyro.seed = seed + 2;
   return {Must(SimulateRecording(Released(0.5, seed))), Must(SimulateRecording(coarse)), Must(SimulateRecording(gyro))};
 }
+
+/// Two recordings with the fits alone; a problem looks into them.
+struct TwoRuns {
+  FitOptions options;
+  Recordings recordings = {Must(SimulateRecording(Released(0.3, 1))), Must(SimulateRecording(Released(0.6, 2)))};
+  std::vector<FitReport> alone;
+
+  explicit TwoRuns(FitOptions given = RigOptions()) : options(given), alone(FitAlone(recordings, given)) {}
+
+  JointProblem Problem(const std::vector<std::string>& shared = kPhysical) const {
+    const std::vector<JointRun> runs = {{recordings[0], alone[0], options}, {recordings[1], alone[1], options}};
+    return Must(MakeJointProblem(runs, shared));
+  }
+};
 
 /// Estimates of some parameters and their covariance.
 struct Estimates {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pendulum/base/status.h"
@@ -29,7 +30,13 @@ struct JointFit {
   /// noise, residuals and diagnostics its own.
   std::vector<FitReport> runs;
   int parameters = 0;  ///< Free ones of all recordings that are not at a bound 0, and σ of each.
+
+  bool IsShared(std::string_view name) const;
 };
+
+/// rms of residuals, log L, effective samples, AIC, AICc and BIC of independent recordings as of one; so many
+/// parameters describe all of them. Residuals are of one unit.
+FitStatistics SumStatistics(std::span<const FitReport* const> fits, int parameters);
 
 /// Fits one model to K >= 2 recordings of one rig, each with a start, zero and σ of its own, and with those physical
 /// parameters shared that are named and that the model has (MODEL.md eq. (56)). It begins where the fits alone lead;

@@ -29,6 +29,9 @@ struct JointMember {
 
   /// Those of all that are free, or at a bound, as places among its own.
   std::vector<int> Own(const std::vector<int>& of_all) const;
+
+  /// Where those of its own stand in that list.
+  std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
 /// Several recordings over P parameters: the shared ones, then those of each recording. Units of G.
@@ -43,20 +46,18 @@ struct JointProblem {
   /// Puts parameters into the members' solutions.
   void Distribute(const std::vector<double>& parameters);
 
+  /// Where the fits alone ended, P; of what is shared, that of the last recording.
+  std::vector<double> AloneParameters() const;
+
+  /// Whether that place is a shared parameter's.
+  bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
+
   /// "inertia", "release_angle of recording 2".
   std::string NameOf(int parameter) const;
 };
 
 /// Ready to be solved: each member where its own fit ended. Errors as FitJointly.
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
-
-/// The joint optimum within the bounds were the members' likelihoods parabolas about the fits alone, and its
-/// information (P x P).
-struct CombinedParabolas {
-  std::vector<double> parameters;
-  Eigen::MatrixXd information;
-};
-CombinedParabolas CombineParabolas(const JointProblem& joint);
 
 /// Solves, σ of each recording in turn with the parameters, until a step below a hundredth of a standard error is left
 /// to make and trajectories are accurate. The members' solutions are set.
