@@ -256,6 +256,7 @@ std::vector<int> Disagreeing(const std::vector<Told>& told, const VectorXd& scal
   std::vector<std::size_t> out = LeaveOut(told, scale);
   if (out.empty()) out = FarFromScatter(told);
   std::vector<int> runs;
+  runs.reserve(out.size());
   for (const std::size_t k : out) runs.push_back(static_cast<int>(told[k].run));
   std::ranges::sort(runs);
   return runs;

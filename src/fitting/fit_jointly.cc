@@ -361,6 +361,7 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   AddWarnings(work, fit);
   fit.parameters = CountParameters(work);
   std::vector<const FitReport*> all;
+  all.reserve(fit.runs.size());
   for (const FitReport& run : fit.runs) all.push_back(&run);
   fit.whole.statistics = SumStatistics(all, fit.parameters);
   SetShared(fit);

@@ -238,6 +238,7 @@ std::vector<int> JointMember::Own(const std::vector<int>& of_all) const {
 
 std::vector<Eigen::Index> JointMember::RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const {
   std::vector<Index> rows;
+  rows.reserve(own.size());
   for (const int i : own) {
     rows.push_back(std::ranges::find(of_all, at[static_cast<std::size_t>(i)]) - of_all.begin());
   }
