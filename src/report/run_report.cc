@@ -7,21 +7,34 @@
 namespace pendulum {
 namespace {
 
+bool IsSaid(const std::vector<Warning>& warnings, const Warning& warning) {
+  return std::ranges::any_of(
+      warnings, [&](const Warning& other) { return other.code == warning.code && other.message == warning.message; });
+}
+
 void AddOnce(const std::vector<Warning>& warnings, std::vector<Warning>& all) {
   for (const Warning& warning : warnings) {
-    const bool said = std::any_of(all.begin(), all.end(), [&](const Warning& other) {
-      return other.code == warning.code && other.message == warning.message;
-    });
-    if (!said) all.push_back(warning);
+    if (!IsSaid(all, warning)) all.push_back(warning);
   }
 }
 
 bool SaidByAll(const std::vector<FitReport>& fits, const Warning& warning) {
-  return std::ranges::all_of(fits, [&](const FitReport& fit) {
-    return std::ranges::any_of(fit.warnings, [&](const Warning& other) {
-      return other.code == warning.code && other.message == warning.message;
-    });
-  });
+  return std::ranges::all_of(fits, [&](const FitReport& fit) { return IsSaid(fit.warnings, warning); });
+}
+
+/// The warnings of the recordings of a joint fit: whose each is, or that it is each one's.
+std::vector<Warning> WarningsOfRuns(const RunReport& report) {
+  std::vector<std::vector<Warning>> runs;
+  for (const RunReport& run : report.runs) runs.push_back(AllWarnings(run));
+  std::vector<Warning> all;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    for (Warning warning : runs[k]) {
+      const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return IsSaid(run, warning); });
+      warning.message = (of_each ? std::string("each recording") : RecordingLabel(report, k)) + ": " + warning.message;
+      AddOnce({warning}, all);
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -78,11 +91,7 @@ std::vector<Warning> AllWarnings(const RunReport& report) {
     }
     AddOnce(named, all);
   }
-  for (std::size_t k = 0; k < report.runs.size(); ++k) {
-    std::vector<Warning> own = AllWarnings(report.runs[k]);
-    for (Warning& warning : own) warning.message = RecordingLabel(report, k) + ": " + warning.message;
-    AddOnce(own, all);
-  }
+  AddOnce(WarningsOfRuns(report), all);
   return all;
 }
 

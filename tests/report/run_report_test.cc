@@ -14,6 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::Field;
+using testing::StartsWith;
 
 TEST(SummarizeData, TellsTheWindowFromTheWhole) {
   Recording recording;
@@ -59,15 +60,20 @@ TEST(AllWarnings, AreThoseOfTheRecordingWithoutAFit) {
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
 }
 
-TEST(AllWarnings, OfAJointFitSaysFirstWhatIsSaidOfAllThenWhoseTheOthersAre) {
+TEST(AllWarnings, OfAJointFitSayWhoseTheyAre) {
   RunReport report = ExampleJointReport();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
   report.runs[1].warnings = report.runs[0].warnings;
   EXPECT_THAT(AllWarnings(report),
               ElementsAre(Field(&Warning::message, "they do not agree"),
+                          Field(&Warning::message, "each recording: there is a gap of 0.5 s after 7 s"),
+                          Field(&Warning::message, StartsWith("recording 1 (run.csv): the residuals are not white"))));
+  report.runs[1].warnings[0].message = "there is a gap of 0.7 s after 7 s";
+  EXPECT_THAT(AllWarnings(report),
+              ElementsAre(Field(&Warning::message, "they do not agree"),
                           Field(&Warning::message, "recording 1 (run.csv): there is a gap of 0.5 s after 7 s"),
                           Field(&Warning::code, "lack_of_fit"),
-                          Field(&Warning::message, "recording 2 (b c.csv): there is a gap of 0.5 s after 7 s")));
+                          Field(&Warning::message, "recording 2 (b c.csv): there is a gap of 0.7 s after 7 s")));
 }
 
 TEST(RecordingLabel, IsItsNumberAndItsFile) {

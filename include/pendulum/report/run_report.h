@@ -89,7 +89,8 @@ struct RunReport {
   bool IsShownInFull(std::size_t fit) const { return !comparison || fit == MainFit(); }
 };
 
-/// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about.
+/// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about;
+/// of several recordings, with the one it is about, or that it is about each.
 std::vector<Warning> AllWarnings(const RunReport& report);
 
 /// "recording 2 (b.csv)": recording `run` (0-based) of a joint fit.

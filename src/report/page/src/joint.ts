@@ -18,8 +18,8 @@ export interface JointReport {
 
 export const isJoint = (result: Result | JointResult): result is JointResult => Array.isArray(result.data);
 
-/** The message of a warning of recording k (from 0 on) begins with its number, as fit_pendulum writes it. */
-const isOf = (message: string, k: number): boolean => new RegExp(`^recording ${k + 1}\\b`).test(message);
+/** The message of a warning of recording k (from 0 on), or of each, begins with whose it is, as fit_pendulum writes it. */
+const isOf = (message: string, k: number): boolean => new RegExp(`^(recording ${k + 1}\\b|each recording:)`).test(message);
 
 /** Recording k of the joint fit as a result of one recording. */
 export function recordingView(result: JointResult, k: number): Result {
