@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/fitting/residual_diagnostics.h"
 
 namespace pendulum {
 namespace {
@@ -130,10 +131,13 @@ Likelihood ChooseLikelihood(const FitReport& best, double resolution) {
 
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row) {
   if (!row.log_likelihood) return;
-  const double k = row.parameters;
-  row.aic = 2 * k - 2 * *row.log_likelihood;
-  row.aicc = *row.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
-  row.bic = k * std::log(effective_samples) - 2 * *row.log_likelihood;
+  FitStatistics statistics;
+  statistics.log_likelihood = *row.log_likelihood;
+  SetInformationCriteria(row.parameters, effective_samples, statistics);
+  row.bic = statistics.bic;
+  SetInformationCriteria(row.parameters, samples, statistics);
+  row.aic = statistics.aic;
+  row.aicc = statistics.aicc;
 }
 
 void SetDifferences(std::vector<ComparisonRow>& rows) {

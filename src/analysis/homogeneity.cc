@@ -251,7 +251,7 @@ std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
   return far;
 }
 
-/// The recordings that disagree with the others, in their order; none where nobody knows who is right.
+/// The recordings that disagree with the others, or are far from their scatter, in their order; often none.
 std::vector<int> Disagreeing(const std::vector<Told>& told, const VectorXd& scale) {
   std::vector<std::size_t> out = LeaveOut(told, scale);
   if (out.empty()) out = FarFromScatter(told);
@@ -339,6 +339,8 @@ void TestTogether(const std::vector<Told>& told, const VectorXd& scale, Homogene
 
 }  // namespace
 
+bool AmplitudeDependence::explains() const { return p < Homogeneity::kDisagree && rest_p >= Homogeneity::kDisagree; }
+
 bool Homogeneity::is_amplitude() const {
   bool some = false;
   for (const SharedParameter& parameter : parameters) {
@@ -370,7 +372,7 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
     }
   }
   if (!result.agrees() && !result.is_amplitude()) result.disagreeing = Disagreeing(told, scale);
-  result.verdict = DescribeHomogeneity(result, runs);
+  result.verdict = result.p ? DescribeHomogeneity(result, runs) : "not tested: " + result.reason;
   return result;
 }
 

@@ -10,13 +10,35 @@
 namespace pendulum {
 namespace {
 
-std::string Percent(double share) { return NumberText(100 * std::abs(share), 2) + " %"; }
+std::string PercentText(double share) {
+  const double percent = 100 * std::abs(share);
+  return (percent < 100 ? NumberText(percent, 2) : std::to_string(std::lround(percent))) + " %";
+}
 
-std::string Names(const Homogeneity& result) {
+std::vector<std::string> NamesOf(const Homogeneity& result, const auto& is_meant) {
   std::vector<std::string> names;
-  names.reserve(result.parameters.size());
-  for (const SharedParameter& parameter : result.parameters) names.push_back(parameter.name);
-  return NameList(names);
+  for (const SharedParameter& parameter : result.parameters) {
+    if (is_meant(parameter)) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+bool Differs(const SharedParameter& parameter) { return parameter.p < Homogeneity::kDisagree; }
+
+/// What recordings disagree on: parameters whose own test says so; all where only all together say it.
+std::string DifferingNames(const Homogeneity& result) {
+  std::vector<std::string> names = NamesOf(result, Differs);
+  return NameList(names.empty() ? NamesOf(result, [](const auto&) { return true; }) : names);
+}
+
+/// Parameters that differ by themselves where all together agree.
+std::string DescribeExceptions(const Homogeneity& result) {
+  std::string text;
+  for (const SharedParameter& parameter : result.parameters) {
+    if (Differs(parameter))
+      text += "; by itself " + parameter.name + " does not agree (p " + ProbabilityText(parameter.p) + ")";
+  }
+  return text;
 }
 
 /// What all that do not disagree say of a parameter: weighted mean and its variance.
@@ -62,14 +84,16 @@ std::string DescribeOutlier(const Homogeneity& result, const std::vector<RunAlon
   const double change = *farthest->runs[run].value / mean - 1;
   text += ": its " + farthest->name + " is ";
   if (mean == 0 || !std::isfinite(change)) return text + NumberText(*farthest->runs[run].value, 3);
-  return text + Percent(change) + (change > 0 ? " larger" : " smaller");
+  return text + PercentText(change) + (change > 0 ? " larger" : " smaller");
 }
 
-std::string DescribeOutliers(const Homogeneity& result, const std::vector<RunAlone>& runs) {
+/// Without advice where the law may be what differs.
+std::string DescribeOutliers(const Homogeneity& result, const std::vector<RunAlone>& runs, bool lacks_fit) {
   std::string text;
   for (const int run : result.disagreeing) {
     text += (text.empty() ? "" : "; ") + DescribeOutlier(result, runs, static_cast<std::size_t>(run));
   }
+  if (lacks_fit) return text;
   return text + "; fit the others without " + (result.disagreeing.size() == 1 ? "it" : "them");
 }
 
@@ -80,27 +104,35 @@ std::string DescribeAmplitude(const Homogeneity& result) {
     if (!(dependence.p < Homogeneity::kDisagree)) continue;
     text +=
         (text.empty() ? "" : "; ") + dependence.name + (dependence.span > 0 ? " rises by " : " falls by ") +
-        Percent(dependence.span) + " from the recording of the smallest swings to that of the largest, as a slope " +
+        PercentText(dependence.span) +
+        " from the recording of the smallest swings to that of the largest, as a slope " +
         "with amplitude squared within and between recordings would have it (p " + ProbabilityText(dependence.p) + ")" +
         (dependence.rest_p < Homogeneity::kDisagree ? ", which is not all that differs" : ", and nothing else differs");
   }
   return text.empty() ? text : text + "; another law may explain that (--model all)";
 }
 
-/// The parameter that scatters most against its errors.
-std::string DescribeScatter(const Homogeneity& result) {
-  const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
-  const RandomEffects& scatter = most->scatter;
+/// Inertias that no one rig has: their standard deviation over their mean; 0 where one rig may have them.
+double OtherRigs(const Homogeneity& result) {
   constexpr double kOneRig = 0.05;
   const auto inertia = std::ranges::find(result.parameters, kInertia.name, &SharedParameter::name);
-  if (inertia != result.parameters.end() && inertia->scatter.between > kOneRig * std::abs(inertia->scatter.mean)) {
-    return "inertia differs by " + Percent(inertia->scatter.between / inertia->scatter.mean) +
-           " (standard deviation): these are not recordings of one rig, or not at one length";
-  }
+  if (inertia == result.parameters.end()) return 0;
+  const double share = inertia->scatter.between / std::abs(inertia->scatter.mean);
+  return share > kOneRig ? share : 0;
+}
+
+/// The parameter that scatters most against its errors; without a law that explains the recordings, no more than that.
+std::string DescribeScatter(const Homogeneity& result, bool lacks_fit) {
+  const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
+  const RandomEffects& scatter = most->scatter;
   const std::string unit = most->unit == "1" ? "" : " " + most->unit;
   return "between recordings " + most->name + " scatters by " +
-         (scatter.mean != 0 ? Percent(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
-         ", beyond its errors: the rig's constants and their errors are the random-effects means";
+         (scatter.mean != 0 ? PercentText(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
+         ", beyond its errors" +
+         (lacks_fit
+              ? ""
+              : "; another law may explain that (--model all), and if not, the rig's constants and their errors are "
+                "the random-effects means");
 }
 
 bool LacksFit(const std::vector<RunAlone>& runs) {
@@ -113,19 +145,25 @@ std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<Run
   const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + FreedomText(result.dof) + ", p " +
                            ProbabilityText(result.p.value_or(0)) + ")";
   const std::string misfit = "; the model does not describe all of each recording";
+  const bool lacks_fit = LacksFit(runs);
   if (result.agrees()) {
-    return "the recordings agree on " + Names(result) + test +
-           (LacksFit(runs) ? misfit + ", and the errors are as wide as that makes them" : "");
+    return "the recordings agree on " + NameList(NamesOf(result, [](const auto&) { return true; })) + test +
+           DescribeExceptions(result) + (lacks_fit ? misfit + ", and the errors are as wide as that makes them" : "");
   }
-  std::string text = "the recordings do not agree on " + Names(result) + test;
+  const std::string text = "the recordings do not agree on " + DifferingNames(result) + test + "; ";
+  const std::string end = lacks_fit ? misfit +
+                                          ", so that the errors compared here may be too small, and another law may "
+                                          "explain the differences (--model all)"
+                                    : "";
+  if (!result.disagreeing.empty()) return text + DescribeOutliers(result, runs, lacks_fit) + end;
+  if (const double share = OtherRigs(result); share > 0) {
+    return text + "inertia differs by " + PercentText(share) +
+           " (standard deviation): these are not recordings of one rig, or not at one length";
+  }
   const std::string amplitude = DescribeAmplitude(result);
-  if (!result.disagreeing.empty()) text += "; " + DescribeOutliers(result, runs);
-  if (result.disagreeing.empty() && !amplitude.empty()) text += "; " + amplitude;
-  if (result.disagreeing.empty() && !result.is_amplitude()) text += "; " + DescribeScatter(result);
-  if (LacksFit(runs)) {
-    text += misfit + ", so that the errors compared here may be too small";
-  }
-  return text;
+  if (result.is_amplitude()) return text + amplitude + end;
+  return text + amplitude + (amplitude.empty() ? "" : "; ") + DescribeScatter(result, lacks_fit || !amplitude.empty()) +
+         end;
 }
 
 }  // namespace pendulum

@@ -13,6 +13,7 @@
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
 #include "pendulum/fitting/box_least_squares.h"
+#include "pendulum/fitting/fit_jointly.h"
 
 namespace pendulum {
 namespace {
@@ -48,7 +49,7 @@ FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters
     }
     fits.push_back(&fit);
     parameters += DescribeFit(fit).parameters;
-    if (fit.noise.memory.kind != Autocorrelation::Kind::kWhite) whole.noise.memory = fit.noise.memory;
+    if (whole.noise.memory.kind == Autocorrelation::Kind::kWhite) whole.noise.memory = fit.noise.memory;
   }
   whole.statistics = SumStatistics(fits, parameters);
   return whole;
@@ -188,8 +189,8 @@ class SharedShift {
 
 /// The likelihood of a recording about its estimates, wherever they may move to, with a memory of the kind and order
 /// that its residuals by the best model have; what it tells of them is added to what all tell.
-std::optional<CorrelatedLikelihood> LikelihoodOf(const Compared& compared, std::size_t k, std::size_t m,
-                                                 std::size_t best, const FitOptions& options, SharedShift& together) {
+std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std::size_t k, std::size_t m,
+                                                  std::size_t best, const FitOptions& options, SharedShift& together) {
   const FitReport& fit = compared.Fit(k, m);
   std::optional<CorrelatedResiduals> data = ResidualsOf(compared.joint.runs[k].alone.used, fit, options, false);
   if (!data) return std::nullopt;
@@ -212,7 +213,7 @@ void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_
   double sum = 0;
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     const RunModels& run = compared.joint.runs[k];
-    const auto likelihood = LikelihoodOf(compared, k, m, best, options, together);
+    const auto likelihood = AddLikelihood(compared, k, m, best, options, together);
     if (!likelihood) {
       row.judged = false;
       row.reason = "the residuals of " + run.label + " have no likelihood with the memory of the best model's";
@@ -296,7 +297,7 @@ void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
     double squares = 0, samples = 0;
     for (std::size_t k = 0; k < joint.runs.size(); ++k) {
       const FitReport& fit = compared.Fit(k, m);
-      const auto own = static_cast<double>(fit.residual.size());
+      const double own = CountedSamples(fit);
       squares += own * std::pow(fit.statistics.rms_residual / UnitOf(joint, k), 2);
       samples += own;
     }

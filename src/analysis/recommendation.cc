@@ -50,8 +50,8 @@ class Judge {
   std::string ByAicc() const {
     std::size_t best = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (!rows_[i].akaike_weight || IsRefuted(i)) continue;
-      if (best == rows_.size() || *rows_[i].akaike_weight > *rows_[best].akaike_weight) best = i;
+      if (!rows_[i].aicc || IsRefuted(i)) continue;
+      if (best == rows_.size() || *rows_[i].aicc < *rows_[best].aicc) best = i;
     }
     return best == rows_.size() || IsNear(best) ? "" : rows_[best].model;
   }

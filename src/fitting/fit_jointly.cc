@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "pendulum/base/format.h"
@@ -14,6 +15,8 @@
 #include "pendulum/fitting/joint_problem.h"
 #include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/profile.h"
+#include "pendulum/fitting/residual_diagnostics.h"
+#include "pendulum/fitting/solve_jointly.h"
 
 namespace pendulum {
 namespace {
@@ -223,8 +226,8 @@ void CopyShared(const JointFit& fit, const std::vector<std::string>& names, cons
   shared = matrix(rows, rows);
 }
 
-/// The noise of a recording whose residuals remember, if there is one.
-const NoiseEstimate& NoiseOfAll(const JointFit& fit) {
+/// That of the first recording whose residuals remember, or of the first.
+const NoiseEstimate& ExampleOfNoise(const JointFit& fit) {
   const auto remembers = std::ranges::find_if(
       fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
   return (remembers == fit.runs.end() ? fit.runs.front() : *remembers).noise;
@@ -248,7 +251,7 @@ void SetShared(JointFit& fit) {
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
-  whole.noise = NoiseOfAll(fit);
+  whole.noise = ExampleOfNoise(fit);
 }
 
 /// The joint fit where no trajectory can be traced.
@@ -270,9 +273,6 @@ void AddWarnings(const Work& work, JointFit& fit) {
     const Description& described = work.descriptions[k];
     fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
                                        described.quantile_residuals, described.correlated, fit.runs[k]);
-    // Of the joint fit, not of each recording.
-    if (k == 0) continue;
-    std::erase_if(fit.runs[k].warnings, [](const Warning& warning) { return warning.code == "prior_conflict"; });
   }
 }
 
@@ -315,22 +315,23 @@ void SetEnding(Work& work, FitReport& whole) {
 
 bool JointFit::IsShared(std::string_view name) const { return std::ranges::find(shared, name) != shared.end(); }
 
+double CountedSamples(const FitReport& fit) {
+  return static_cast<double>(fit.residual.size()) - static_cast<double>(fit.noise.censored);
+}
+
 FitStatistics SumStatistics(std::span<const FitReport* const> fits, int parameters) {
   FitStatistics all;
-  double squares = 0, samples = 0;
+  double squares = 0, counted = 0, samples = 0;
   for (const FitReport* const fit : fits) {
-    const auto own = static_cast<double>(fit->residual.size());
+    const double own = CountedSamples(*fit);
     squares += own * fit->statistics.rms_residual * fit->statistics.rms_residual;
-    samples += own;
+    counted += own;
+    samples += static_cast<double>(fit->residual.size());
     all.log_likelihood += fit->statistics.log_likelihood;
     all.effective_samples += fit->statistics.effective_samples;
   }
-  samples = std::max(samples, 1.0);
-  const double k = parameters;
-  all.rms_residual = std::sqrt(squares / samples);
-  all.aic = 2 * k - 2 * all.log_likelihood;
-  all.aicc = all.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
-  all.bic = k * std::log(samples) - 2 * all.log_likelihood;
+  all.rms_residual = std::sqrt(squares / std::max(counted, 1.0));
+  SetInformationCriteria(parameters, std::max(samples, 1.0), all);
   return all;
 }
 
@@ -348,7 +349,7 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   if (!optimum) return Failed(work.joint, std::move(fit));
   work.optimum = *std::move(optimum);
   // Before posteriors move σ, on which the optimum's information rests.
-  if (work.optimum.inverse.identifiable) work.systematic = SystematicErrors(work.joint, work.solution, work.optimum);
+  work.systematic = SystematicErrors(work.joint, work.solution, work.optimum);
   work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work.joint, work.solution, work.optimum);
   DescribeAll(work);
   SetEnding(work, fit.whole);

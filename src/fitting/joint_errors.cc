@@ -65,6 +65,7 @@ Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solu
   const auto size = static_cast<Index>(joint.solve.fixed.size());
   const SourceContext context{solution.parameters, joint.solve.fixed, joint.cost->priors(), optimum};
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (!optimum.inverse.identifiable) return covariance;
   for (const auto& [identity, common] : SourcesOf(joint)) {
     covariance += SourceCovariance(common.source, common.count == joint.members.size(), context);
   }

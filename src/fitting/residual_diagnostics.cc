@@ -146,18 +146,22 @@ double RunsP(const Eigen::VectorXd& residual) {
   return std::erfc(std::abs(runs - mean) / std::sqrt(2 * variance));
 }
 
+void SetInformationCriteria(int parameters, double samples, FitStatistics& statistics) {
+  const double k = parameters;
+  statistics.aic = 2 * k - 2 * statistics.log_likelihood;
+  statistics.aicc = statistics.aic + 2 * k * (k + 1) / std::max(samples - k - 1, 1.0);
+  statistics.bic = k * std::log(samples) - 2 * statistics.log_likelihood;
+}
+
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
                                 double log_likelihood, int free_parameters) {
   const Eigen::Index samples = residual.size();
   const auto n = static_cast<double>(samples);
-  const double k = free_parameters + 1;
   const Eigen::VectorXd& z = quantile_residual;
   FitStatistics statistics;
   statistics.rms_residual = std::sqrt(residual.squaredNorm() / n);
   statistics.log_likelihood = log_likelihood;
-  statistics.aic = 2 * k - 2 * log_likelihood;
-  statistics.aicc = statistics.aic + 2 * k * (k + 1) / std::max(n - k - 1, 1.0);
-  statistics.bic = k * std::log(n) - 2 * log_likelihood;
+  SetInformationCriteria(free_parameters + 1, n, statistics);
   const double sum = std::max(z.squaredNorm(), std::numeric_limits<double>::min());
   statistics.durbin_watson = (z.tail(samples - 1) - z.head(samples - 1)).squaredNorm() / sum;
   statistics.ljung_box_p = LjungBoxP(z);

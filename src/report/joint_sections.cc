@@ -35,7 +35,7 @@ Section RecordingSection(const RunReport& report) {
   const std::vector<double>& amplitudes = report.joint[report.MainFit()].homogeneity.amplitudes;
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     const DataSummary& data = report.runs[k].data;
-    const bool again = RecordingLabel(report, k).find(", free swing ") != std::string::npos;
+    const bool again = IsOneOfSeveral(report, k);
     const std::string number = std::to_string(k + 1);
     const bool held = report.runs[k].fits.front().start == StartKind::kRelease;
     files.rows.push_back({number, FileText(data, again)});
@@ -61,6 +61,10 @@ Section FitSection(const RunReport& report, std::size_t index) {
 }
 
 // ---- Do they agree? -------------------------------------------------------------------------------------------------
+
+constexpr const char* kWhatAloneIs =
+    "Alone: what a recording by itself tells, without bounds and priors, its errors wider where few of its samples are "
+    "independent. Recordings are said to disagree below p 0.01: those of one rig by chance in 1 of 100 cases.";
 
 /// A line of characters from `low` to `high`, on which intervals are drawn.
 class Strip {
@@ -192,18 +196,20 @@ void AddMainFit(const RunReport& report, std::size_t index, Sections& sections) 
   const FitReport& fit = report.fits[index];
   sections.push_back(FitSection(report, index));
   sections.push_back(AllOfParameters(fit, report.rig, nullptr));
-  if (!report.joint[index].homogeneity.agrees()) {
+  if (fit.termination == Termination::kConverged && !report.joint[index].homogeneity.agrees()) {
     sections.back().Say("The recordings do not agree, and these errors take for granted that they do: see below.",
                         Emphasis::kCaution);
   }
   sections.push_back(AgreementSection(report, index));
-  sections.push_back(OwnSection(report, index));
-  if (!fit.derived.empty()) sections.push_back(DerivedSection(fit));
-  if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
   if (fit.termination == Termination::kFailed) return;
+  // Where the recordings are of no one pendulum the joint motion is nobody's.
+  const bool is_a_motion = fit.termination != Termination::kNotConverged;
+  if (is_a_motion) sections.push_back(OwnSection(report, index));
+  if (is_a_motion && !fit.derived.empty()) sections.push_back(DerivedSection(fit));
+  if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
   sections.push_back(NoiseSection(report, index));
   const bool whole = report.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  if (whole) sections.push_back(EquationSection(fit, report.rig));
+  if (is_a_motion && whole) sections.push_back(EquationSection(fit, report.rig));
 }
 
 }  // namespace
@@ -216,6 +222,7 @@ Section AgreementSection(const RunReport& report, std::size_t fit) {
   for (const SharedParameter& parameter : homogeneity.parameters) {
     section.Add(ForestTable(parameter, report.fits[fit])).Say(ScatterText(parameter));
   }
+  if (!homogeneity.parameters.empty()) section.Say(kWhatAloneIs);
   return section;
 }
 

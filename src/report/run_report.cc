@@ -95,14 +95,18 @@ std::vector<Warning> AllWarnings(const RunReport& report) {
   return all;
 }
 
+bool IsOneOfSeveral(const RunReport& report, std::size_t run) {
+  const DataSummary& data = report.runs[run].data;
+  const auto is_it = [&](const RunReport& other) { return other.data.path == data.path; };
+  return data.release > 0 && std::ranges::count_if(report.runs, is_it) > 1;
+}
+
 std::string RecordingLabel(const RunReport& report, std::size_t run) {
   const DataSummary& data = report.runs[run].data;
   std::string label = "recording " + std::to_string(run + 1);
   if (data.path.empty()) return label;
-  const bool again =
-      std::ranges::count(report.runs, data.path, [](const RunReport& other) { return other.data.path; }) > 1;
-  return label + " (" + data.path + (again && data.release > 0 ? ", free swing " + std::to_string(data.release) : "") +
-         ")";
+  return label + " (" + data.path +
+         (IsOneOfSeveral(report, run) ? ", free swing " + std::to_string(data.release) : "") + ")";
 }
 
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) {

@@ -24,7 +24,7 @@ struct Swing {
 };
 
 /// All chosen swings of all recordings.
-Result<std::vector<Swing>> ReadEach(const FitPendulumOptions& options, const Setup& setup) {
+Result<std::vector<Swing>> ReadSwingsOf(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<Swing> swings;
   for (const std::string& path : setup.paths) {
     auto one = ReadOne(options, path, setup.rig);
@@ -144,9 +144,10 @@ Result<void> CheckDifferent(const std::vector<Swing>& swings) {
     for (std::size_t i = 0; i < k; ++i) {
       const Recording& one = swings[i].recording;
       const Recording& other = swings[k].recording;
-      if (one.sha256 != other.sha256 || one.sha256.empty() || swings[i].release != swings[k].release) continue;
+      if (one.size() != other.size() || swings[i].release != swings[k].release) continue;
+      if (one.time != other.time || one.value != other.value) continue;
       return Error(StatusCode::kInvalidArgument,
-                   one.path + " and " + other.path + " are the same recording, byte for byte; name it once");
+                   one.path + " and " + other.path + " are the same recording, reading for reading; name it once");
     }
   }
   return {};
@@ -163,14 +164,29 @@ RunReport LabelsOf(const std::vector<Swing>& swings) {
   return all;
 }
 
+/// A resolution given for all is in the unit of the readings, which then is one.
+Result<void> CheckResolution(const FitPendulumOptions& options, const std::vector<Swing>& swings) {
+  if (!options.read.resolution) return {};
+  const Recording& first = swings.front().recording;
+  for (const Swing& swing : swings) {
+    const Recording& own = swing.recording;
+    if (own.unit == first.unit) continue;
+    return Error(StatusCode::kInvalidArgument, "--resolution is in the file's unit, and " + first.path + " is in " +
+                                                   first.unit + ", " + own.path + " in " + own.unit +
+                                                   "; write it into each file instead, as a line # resolution: VALUE");
+  }
+  return {};
+}
+
 /// All chosen swings, which can be fitted together and written.
-Result<std::vector<Swing>> ReadAll(const FitPendulumOptions& options, const Setup& setup) {
-  auto swings = ReadEach(options, setup);
+Result<std::vector<Swing>> ReadFittable(const FitPendulumOptions& options, const Setup& setup) {
+  auto swings = ReadSwingsOf(options, setup);
   if (!swings) return swings;
   if (const auto checked = CheckNumberedOutputs(options, setup, swings->size()); !checked) {
     return tl::unexpected(checked.error());
   }
   if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckResolution(options, *swings); !checked) return tl::unexpected(checked.error());
   return swings;
 }
 
@@ -190,7 +206,7 @@ RunReport ReportOf(const JointModels& joint, const FitOptions& options) {
 }  // namespace
 
 Result<FitRun> FitJointRun(const FitPendulumOptions& options, const Setup& setup) {
-  auto swings = ReadAll(options, setup);
+  auto swings = ReadFittable(options, setup);
   if (!swings) return tl::unexpected(swings.error());
   const auto rig = RigOf(*swings);
   if (!rig) return tl::unexpected(rig.error());

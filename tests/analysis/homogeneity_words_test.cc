@@ -53,6 +53,18 @@ TEST(DescribeHomogeneity, SaysThatRecordingsAgree) {
             "the recordings agree on inertia, viscous (chi-square 12.5, 4 degrees of freedom, p 0.5)");
 }
 
+TEST(DescribeHomogeneity, SaysWhatDoesNotAgreeByItself) {
+  Homogeneity result = Example(0.02);
+  result.parameters[0].p = 0.004;
+  EXPECT_THAT(WordsOf(result), EndsWith(", p 0.02); by itself inertia does not agree (p 0.004)"));
+}
+
+TEST(DescribeHomogeneity, NamesWhatDiffersWhereItIsNotAll) {
+  Homogeneity result = Example(0.001);
+  result.parameters[0].p = 0.004;
+  EXPECT_THAT(WordsOf(result), StartsWith("the recordings do not agree on inertia (chi-square"));
+}
+
 TEST(DescribeHomogeneity, HasASingularForOneDegreeOfFreedom) {
   Homogeneity result = Example(0.5);
   result.dof = 1;
@@ -61,7 +73,8 @@ TEST(DescribeHomogeneity, HasASingularForOneDegreeOfFreedom) {
 
 TEST(DescribeHomogeneity, SaysWhatAMisfitDoesToTheErrors) {
   EXPECT_THAT(WordsOf(Example(0.5), true), EndsWith("and the errors are as wide as that makes them"));
-  EXPECT_THAT(WordsOf(Example(0.001), true), EndsWith("so that the errors compared here may be too small"));
+  EXPECT_THAT(WordsOf(Example(0.001), true), EndsWith("so that the errors compared here may be too small, and another "
+                                                      "law may explain the differences (--model all)"));
 }
 
 TEST(DescribeHomogeneity, NamesTheOutlierAndHowFarItIsFromTheOthers) {
@@ -71,6 +84,7 @@ TEST(DescribeHomogeneity, NamesTheOutlierAndHowFarItIsFromTheOthers) {
   EXPECT_THAT(words, StartsWith("the recordings do not agree on inertia, viscous (chi-square 12.5, "));
   EXPECT_THAT(words, HasSubstr("; recording 3 disagrees with the others: its inertia is 3 % larger"));
   EXPECT_THAT(words, EndsWith("; fit the others without it"));
+  EXPECT_THAT(WordsOf(result, true), Not(HasSubstr("fit the others")));  // the law may be what is wrong
   result.parameters[0].runs[2].value = 0.98;
   EXPECT_THAT(WordsOf(result), HasSubstr("its inertia is 2 % smaller"));
 }
@@ -101,13 +115,24 @@ TEST(DescribeHomogeneity, SaysWhatScattersMost) {
   result.parameters[1].statistic = 20;
   result.parameters[1].scatter.mean = 0;
   EXPECT_THAT(WordsOf(result), HasSubstr("between recordings viscous scatters by 0.015 kg m^2, beyond its errors"));
+  EXPECT_THAT(WordsOf(result),
+              EndsWith("another law may explain that (--model all), and if not, the rig's constants and "
+                       "their errors are the random-effects means"));
+  EXPECT_THAT(WordsOf(result, true), Not(HasSubstr("the rig's constants")));
 }
 
 TEST(DescribeHomogeneity, TellsThatInertiasSoDifferentAreNotOfOneRig) {
   Homogeneity result = Example(0.001);
   result.parameters[0].scatter.between = 0.1;
-  EXPECT_THAT(WordsOf(result), HasSubstr("inertia differs by 10 % (standard deviation): these are not recordings of "
-                                         "one rig, or not at one length"));
+  const char* const words =
+      "; inertia differs by 10 % (standard deviation): these are not recordings of one rig, or not at "
+      "one length";
+  EXPECT_THAT(WordsOf(result), EndsWith(words));
+  result.amplitude_dependence = {{"inertia", "kg m^2", 0.1, 0.01, 0.0025, -0.02, 0.5}};
+  EXPECT_THAT(WordsOf(result), EndsWith(words));  // no law's
+  result.disagreeing = {2};
+  result.parameters[0].runs[2].value = 2.06;
+  EXPECT_THAT(WordsOf(result), HasSubstr("its inertia is 106 % larger"));
 }
 
 }  // namespace

@@ -112,11 +112,28 @@ TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
 // BIC's penalty is ln n a parameter and AIC's 2: they may differ.
 TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
   Compared made = Make({{"coulomb", 50, 1}, {"drag", 53, 1}});
-  made.comparison.rows[0].akaike_weight = 0.1;
-  made.comparison.rows[1].akaike_weight = 0.9;
+  made.comparison.rows[0].aicc = 24;
+  made.comparison.rows[1].aicc = 20;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
   EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would take drag"));
+}
+
+// Beside a law that is refuted the others' weights may all be 0 in double precision.
+TEST(Recommend, TakesAiccsOpinionOnlyAmongWhatIsNotRefuted) {
+  Compared made = Make({{"viscous", 4000, 1}, {"coulomb", 3000, 1}, {"drag", 50, 1}});
+  for (ComparisonRow& row : made.comparison.rows) {
+    row.aicc = row.bic;
+    row.akaike_weight = 0;
+    row.lack_of_fit = true;
+    row.rms = 0.1;  // predicts worse than it fits
+  }
+  made.comparison.rows[2].akaike_weight = 1;
+  made.comparison.rows[1].forward.rms = 0.5;
+  made.comparison.rows[2].forward.rms = 0.5;
+  Recommend(made.fitted.fits, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "coulomb");
+  EXPECT_THAT(made.comparison.reason, Not(HasSubstr("AICc would take")));
 }
 
 TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {

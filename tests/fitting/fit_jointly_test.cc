@@ -183,6 +183,34 @@ TEST(FitJointly, AddsUpLikelihoodsAndCountsParameters) {
   EXPECT_NEAR(fit.whole.statistics.bic, 15 * std::log(samples) - 2 * sum, 1e-6);
 }
 
+// By hand: (3 · 2² + 1 · 4²) / 4 = 7; k = 2 and N = 5: AIC 4 - 2 L, AICc 12 / (5 - 3) more, BIC 2 ln 5 - 2 L.
+TEST(SumStatistics, WeighsResidualsThatAreNotCensoredAndCountsAllSamples) {
+  FitReport first, second;
+  first.residual = Eigen::VectorXd::Zero(3);
+  first.statistics.rms_residual = 2;
+  first.statistics.log_likelihood = -7;
+  first.statistics.effective_samples = 2.5;
+  second.residual = Eigen::VectorXd::Zero(2);
+  second.noise.censored = 1;
+  second.statistics.rms_residual = 4;
+  second.statistics.log_likelihood = -1;
+  second.statistics.effective_samples = 2;
+  const std::vector<const FitReport*> both = {&first, &second};
+  const FitStatistics all = SumStatistics(both, 2);
+  EXPECT_DOUBLE_EQ(all.rms_residual, std::sqrt(7));
+  EXPECT_DOUBLE_EQ(all.log_likelihood, -8);
+  EXPECT_DOUBLE_EQ(all.effective_samples, 4.5);
+  EXPECT_DOUBLE_EQ(all.aic, 20);
+  EXPECT_DOUBLE_EQ(all.aicc, 26);
+  EXPECT_DOUBLE_EQ(all.bic, 2 * std::log(5) + 16);
+}
+
+TEST(SumStatistics, OfNothingAreFinite) {
+  const FitStatistics none = SumStatistics({}, 0);
+  EXPECT_EQ(none.rms_residual, 0);
+  EXPECT_EQ(none.bic, 0);
+}
+
 // With nothing in common but inertia each recording's friction follows it as its own covariance says:
 // f + C_fI / C_II (I - I_k), and inertia is the mean with weights 1 / C_II.
 TEST(FitJointly, LeavesEachRecordingWhatIsNotShared) {
@@ -245,6 +273,19 @@ TEST(FitJointly, CountsAPriorOnWhatIsNotSharedOnceInEachRecording) {
   std::vector<Estimates> parts;
   for (const FitReport& fit : FitAlone(recordings, options)) parts.push_back(EstimatesOf(fit, kPhysical));
   ExpectSame(FitAllJointly(recordings, options).whole, kPhysical, Combine(parts));
+}
+
+// Released at 1.9 s (fit_support.h), which the second prior is far from.
+TEST(FitJointly, WarnsOfEachRecordingsPriorsThatDoNotFit) {
+  const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
+  FitOptions near = RigOptions(), far = near;
+  near.priors = {{"release_time", {1.9, 0.001}}};
+  far.priors = {{"release_time", {1.8, 0.001}}};
+  const std::vector<FitReport> alone = {Fit(recordings[0], near), Fit(recordings[1], far)};
+  const std::vector<JointRun> runs = {{recordings[0], alone[0], near}, {recordings[1], alone[1], far}};
+  const JointFit fit = Must(FitJointly(runs, kPhysical));
+  EXPECT_FALSE(fit.runs[0].Warns("prior_conflict"));
+  EXPECT_TRUE(fit.runs[1].Warns("prior_conflict"));
 }
 
 TEST(FitJointly, KeepsWhatIsFixed) {

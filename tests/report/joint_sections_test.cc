@@ -59,6 +59,13 @@ TEST(JointSections, CompareBeforeTheyTellAndEndWithTheOtherLaws) {
                           "Noise and statistics", "Equation of motion", "Parameters of drag"));
 }
 
+TEST(JointSections, TellNoMotionOfWhatIsNoOnePendulum) {
+  RunReport report = ExampleJointReport();
+  report.fits[0].termination = Termination::kNotConverged;
+  EXPECT_THAT(Titles(JointSections(report)), ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?",
+                                                         "Correlations", "Noise and statistics"));
+}
+
 // 0.25 rad = 14.3 deg, 0.125 rad = 7.16 deg.
 TEST(JointSections, NumberTheRecordings) {
   EXPECT_EQ(TextOf(ExampleJointReport(), "Recordings"), R"([[Recordings]]

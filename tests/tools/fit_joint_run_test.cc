@@ -51,9 +51,10 @@ TEST(FitJointRun, RefusesARecordingThatIsNamedTwice) {
   const auto run = Joined("datasets/runs_1.csv,datasets/../datasets/runs_1.csv");
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(run.error().message,
-            "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording, byte for byte; name it "
-            "once");
+  EXPECT_EQ(
+      run.error().message,
+      "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording, reading for reading; name it "
+      "once");
 }
 
 TEST(FitJointRun, RefusesOneSwing) {

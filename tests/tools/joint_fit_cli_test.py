@@ -319,6 +319,27 @@ class Refusals(JointTest):
                             "give the one of all with --rig, or fit them apart with --shared none", "--data", "a.csv,b.csv")
         self.joint()  # --rig wins
 
+    def test_the_same_readings_in_another_file(self):
+        self.write("copy.csv", "# exported again\n" + A)
+        self.assert_refused(2, "a.csv and copy.csv are the same recording, reading for reading; name it once",
+                            "--data", "a.csv,copy.csv")
+
+    def test_one_resolution_for_readings_of_two_units(self):
+        rows = [line.split(",") for line in A.splitlines() if line[0].isdigit()]
+        self.write("rad.csv", "time_s,angle_rad\n" +
+                   "".join(f"{time},{math.radians(float(angle)):.9f}\n" for time, angle in rows[1:]))
+        self.assert_refused(2, "--resolution is in the file's unit, and a.csv is in deg, rad.csv in rad; write it into each "
+                            "file instead, as a line # resolution: VALUE", "--data", "a.csv,rad.csv", "--resolution", "0.1")
+
+    # result.schema.json: how a message says whose it is.
+    def test_warnings_say_whose_they_are(self):
+        prior = ("--prior", "inertia=0.0795:0.000001")
+        messages = [warning["message"] for warning in self.joint(*prior)["warnings"] if warning["code"] == "prior_conflict"]
+        self.assertEqual([message.split(": ")[0] for message in messages], ["each recording"])
+        self.write("gap.csv", "".join(line for k, line in enumerate(A.splitlines(True)) if not 300 < k < 340))
+        messages = [warning["message"] for warning in self.joint(data="b.csv,gap.csv")["warnings"]]
+        self.assertTrue(any(message.startswith("recording 2 (gap.csv): ") for message in messages), messages)
+
     def test_recordings_that_tell_of_one_rig(self):
         expected = self.joint()["fits"]
         self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)

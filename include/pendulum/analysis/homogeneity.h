@@ -51,18 +51,18 @@ struct AmplitudeDependence {
   double span = 0;    ///< slope · (largest - smallest amplitude² of a recording) over the mean.
   double rest_p = 1;  ///< Of what still differs between recordings beside the slope, by χ².
 
-  bool explains() const { return p < 0.01 && rest_p >= 0.01; }
+  bool explains() const;
 };
 
 /// Whether K recordings are of one rig, as far as their fits alone tell.
 struct Homogeneity {
   double statistic = 0;  ///< χ² of all shared parameters together (MODEL.md eq. (58)).
   int dof = 0;
-  std::optional<double> p;                  ///< Absent when fewer than two recordings tell them; `reason` says why.
+  std::optional<double> p;                  ///< Absent where there is no test; `reason` says why.
   std::vector<SharedParameter> parameters;  ///< Those that are not fixed.
   std::vector<double> amplitudes;           ///< K, rad: rms over the motion.
   std::vector<AmplitudeDependence> amplitude_dependence;
-  std::vector<int> disagreeing;  ///< 0-based; recordings that disagree with all others, which agree. Often empty.
+  std::vector<int> disagreeing;  ///< 0-based; those that disagree with a majority or its scatter. Often empty.
   std::string reason;            ///< Why there is no test; empty when there is.
   std::string verdict;           ///< Sentences.
 

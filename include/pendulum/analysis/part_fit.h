@@ -93,7 +93,6 @@ class Parts {
   /// Samples from <= time <= to [s, file's clock], with these parameters held at the whole fit's estimates.
   PartFit Fit(double from, double to, const std::vector<std::string_view>& held) const;
 
-  /// The noise of a fit to the recording or to a part of it, with the sensor's range.
   NoiseModel NoiseOf(const FitReport& fit) const;
 
   /// rad: of the swing that passes through the whole fit's motion at a time [s, file's clock]; 0 without a motion.

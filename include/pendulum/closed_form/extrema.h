@@ -7,7 +7,6 @@
 
 namespace pendulum {
 
-/// A turning point of the reading.
 struct Extremum {
   double time = 0, value = 0;  ///< s; rad or rad/s, as the recording
   Eigen::Index sample = 0;

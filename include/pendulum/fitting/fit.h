@@ -138,7 +138,6 @@ struct FitReport {
   /// The parameter of that name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 
-  /// Whether there is a warning of that code.
   bool Warns(std::string_view code) const;
 };
 

@@ -28,10 +28,11 @@ struct Description {
   bool correlated = false;  // the residuals follow each other
 };
 
+/// `free_parameters`: how many the solution found from these readings.
 Description Describe(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
                      const Solution& solution, int free_parameters);
 
-/// The memory of the residuals, looked for where independence is in doubt.
+/// The memory of the residuals, looked for where independence is in doubt; z are the quantile residuals, N.
 Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                          const Optimum& optimum, const Eigen::VectorXd& z, bool correlated);
 
@@ -39,11 +40,13 @@ Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, 
 void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                    const Optimum& optimum, const Solution& solution, FitReport& report);
 
+/// Covariance and errors of the free parameters, F as in `optimum`, in the units of the report.
 void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report);
 
 /// From the systematic covariance, P x P in the problem's units.
 void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covariance, FitReport& report);
 
+/// Natural frequency, damping and so on, with errors that follow; empty errors: without.
 void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
                 FitReport& report);
 

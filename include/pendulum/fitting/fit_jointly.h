@@ -23,8 +23,8 @@ struct JointRun {
 struct JointFit {
   std::vector<std::string> shared;  ///< Names of the parameters that are shared, in the model's order.
   /// What the recordings have in common: the shared parameters with their errors, how it ended, sums of statistics
-  /// (rms, log L, criteria, effective samples; N and k are those of all). Its noise is that of the recordings, each;
-  /// it has no start and no samples of its own.
+  /// (rms, log L, criteria, effective samples; N and k are those of all). Its noise is one recording's, the first's
+  /// that remembers or the first's; it has no start and no samples of its own.
   FitReport whole;
   /// The joint solution as each recording sees it: all of its parameters, errors and covariance those of the joint fit,
   /// noise, residuals and diagnostics its own.
@@ -34,8 +34,11 @@ struct JointFit {
   bool IsShared(std::string_view name) const;
 };
 
+/// The samples that rms_residual is of: those that are not censored.
+double CountedSamples(const FitReport& fit);
+
 /// rms of residuals, log L, effective samples, AIC, AICc and BIC of independent recordings as of one; so many
-/// parameters describe all of them. Residuals are of one unit.
+/// parameters describe all of them. rms has a meaning only where residuals have one unit.
 FitStatistics SumStatistics(std::span<const FitReport* const> fits, int parameters);
 
 /// Fits one model to K >= 2 recordings of one rig, each with a start, zero and σ of its own, and with those physical
@@ -43,8 +46,8 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 /// sensors, rates, resolutions and kinds of start may differ, the rig may not. Converged means what Judge says, and
 /// that every recording is explained as a fit alone must explain it: what shares no parameters is not of one rig. Where
 /// the errors alone come from posteriors, the joint estimates combine these, as parabolas. kInvalidArgument: fewer than
-/// two recordings, or no shared parameter. kFailedPrecondition: a recording that cannot be fitted alone. Cost: about
-/// half of the fits alone.
+/// two recordings, no shared parameter, another model or rig than the first, and what FitRecording says of options.
+/// kFailedPrecondition: a recording that cannot be fitted alone. Cost: about half of the fits alone.
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -33,7 +33,6 @@ struct ChosenSwings {
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
                                   const std::optional<Rig>& rig = std::nullopt);
 
-/// A fit to one free swing.
 struct SwingFit {
   Recording used;   ///< The samples that were fitted, without warnings.
   FreeSwing swing;  ///< What was fitted and why: `from` and `to` may lie further in than what was asked for.

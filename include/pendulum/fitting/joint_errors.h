@@ -9,7 +9,7 @@
 namespace pendulum {
 
 /// What the errors of rig, clocks and calibrations leave open, P x P in units of G: a source that recordings have in
-/// common moves all of them together. The optimum must be identifiable.
+/// common moves all of them together. Zero where the optimum is not identifiable.
 Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum);
 
 /// Whether the fit to a recording alone rests on a posterior, and all of them have errors.

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "pendulum/fitting/fit_jointly.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/joint_cost.h"
@@ -30,7 +32,7 @@ struct JointMember {
   /// Those of all that are free, or at a bound, as places among its own.
   std::vector<int> Own(const std::vector<int>& of_all) const;
 
-  /// Where those of its own stand in that list.
+  /// Where these of its own, which must be there, stand in that list.
   std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
@@ -49,7 +51,6 @@ struct JointProblem {
   /// Where the fits alone ended, P; of what is shared, that of the last recording.
   std::vector<double> AloneParameters() const;
 
-  /// Whether that place is a shared parameter's.
   bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
 
   /// "inertia", "release_angle of recording 2".
@@ -58,9 +59,5 @@ struct JointProblem {
 
 /// Ready to be solved: each member where its own fit ended. Errors as FitJointly.
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
-
-/// Solves, σ of each recording in turn with the parameters, until a step below a hundredth of a standard error is left
-/// to make and trajectories are accurate. The members' solutions are set.
-Solution SolveJointly(JointProblem& joint);
 
 }  // namespace pendulum

@@ -43,6 +43,10 @@ bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 
+/// AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978) of the log-likelihood
+/// that is there, of so many parameters, σ among them, and so many samples.
+void SetInformationCriteria(int parameters, double samples, FitStatistics& statistics);
+
 /// The statistics of N residuals [rad or rad/s] of a fit with that many free parameters; effective_samples is N.
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
                                 double log_likelihood, int free_parameters);

@@ -9,7 +9,6 @@
 
 namespace pendulum {
 
-/// A recording that a list names.
 struct ListedFile {
   std::filesystem::path path;  ///< Relative paths begin at the folder of the list.
   std::string place;           ///< "list:line", for messages about it.

@@ -7,7 +7,6 @@
 
 namespace pendulum {
 
-/// A column of a table in plain text.
 struct Column {
   std::string header;
   bool right_aligned = false;

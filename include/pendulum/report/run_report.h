@@ -24,7 +24,6 @@
 
 namespace pendulum {
 
-/// What is said of a recording beside its samples.
 struct DataSummary {
   std::string path, sha256;  ///< As the user named it; of the file's bytes. Empty when it did not come from a file.
   std::string unit = "rad";  ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
@@ -92,6 +91,9 @@ struct RunReport {
 /// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about;
 /// of several recordings, with the one it is about, or that it is about each.
 std::vector<Warning> AllWarnings(const RunReport& report);
+
+/// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
+bool IsOneOfSeveral(const RunReport& report, std::size_t run);
 
 /// "recording 2 (b.csv)": recording `run` (0-based) of a joint fit.
 std::string RecordingLabel(const RunReport& report, std::size_t run);

@@ -36,12 +36,10 @@ struct Table {
   std::string left_out = {};    ///< "... 12 more": what the table does not list; empty: nothing.
 };
 
-/// An equation.
 struct Formula {
   std::string text;
 };
 
-/// Sentences, each by itself.
 struct Items {
   std::vector<std::string> texts;
   Emphasis emphasis = Emphasis::kNone;

@@ -7,7 +7,6 @@
 
 namespace pendulum {
 
-/// How text is shown.
 struct TextStyle {
   bool colour = false;  ///< With ANSI sequences: headings bold, cautions yellow, alarms red. For terminals only.
 };

@@ -10,7 +10,6 @@
 
 namespace pendulum {
 
-/// How a recording begins.
 enum class StartKind {
   kRelease,  ///< Held at an angle, released at an instant.
   kMoving,   ///< In motion at the first sample.
@@ -56,7 +55,6 @@ TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& sta
 /// A trajectory kept for looking up: dense output at any time between the options' begin and end.
 class Trajectory {
  public:
-  /// Adds the next stretch in time order.
   void Append(const Segment<double>& segment) { segments_.push_back(segment); }
 
   double Angle(double time) const;  ///< rad, time in s
@@ -75,8 +73,6 @@ class Trajectory {
 /// wrong number of parameters, or inertia not positive. kFailedPrecondition: it never moves, or cannot be traced.
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
                                   const Start<double>& start, const TraceOptions& options);
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 template <FrictionModel F, typename T, typename Visitor>
 class Tracer {
