@@ -93,9 +93,9 @@ constexpr const char* kUsage =
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged or not identifiable, 2 wrong flags, 3 file not found,\n"
     "4 unreadable data, calibration or rig, 5 no swing in the data, 70 a bug, 73 an output cannot be written.\n"
-    "Of several fits those that can be made are written, and the largest code counts. Several recordings are taken "
-    "for\n"
-    "one rig's and fitted together; --shared none fits each by itself.\n"
+    "Of several models the recommended one's code counts, of recordings fitted one by one the largest; those that\n"
+    "can be fitted are written. Several recordings are taken for one rig's and fitted together; --shared none fits\n"
+    "each by itself.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
