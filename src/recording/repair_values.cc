@@ -167,8 +167,18 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
   return repeats;
 }
 
-/// Leaves out stale readings: where a tracker repeats many of its values all of them, else only three and more in a
-/// row.
+/// Whether readings change before sample `first` as well as after sample `last`: they do not at the end of a hold, nor
+/// where a pendulum stops.
+bool MovesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double least_step) {
+  constexpr Index kReach = 6;
+  constexpr double kChange = 3;  // least steps
+  const double before = value[first - 1] - value[std::max<Index>(first - 1 - kReach, 0)];
+  const double after = value[std::min(last + kReach, value.size() - 1)] - value[last];
+  return std::min(std::abs(before), std::abs(after)) > kChange * least_step;
+}
+
+/// Leaves out stale readings: where a tracker repeats many of its values all of them, else only three and more in a row
+/// amid motion.
 void LeaveOutStale(double least_step, Recording& recording) {
   constexpr double kMany = 0.25;
   constexpr std::size_t kFewestInARow = 3;
@@ -180,7 +190,8 @@ void LeaveOutStale(double least_step, Recording& recording) {
   for (std::size_t i = 1; i < stale.size();) {
     std::size_t end = i;
     while (end < stale.size() && stale[end]) ++end;
-    if (end - i >= (many ? 1 : kFewestInARow)) {
+    const auto first = static_cast<Index>(i), last = static_cast<Index>(end) - 1;
+    if (many ? end > i : end - i >= kFewestInARow && MovesOnBothSides(recording.value, first, last, least_step)) {
       std::fill(kept.begin() + static_cast<std::ptrdiff_t>(i), kept.begin() + static_cast<std::ptrdiff_t>(end), false);
       left_out += static_cast<Index>(end - i);
     }

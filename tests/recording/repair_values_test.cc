@@ -136,6 +136,11 @@ TEST(RepairValues, KeepsWhatRepeatsAtRestAndWhereQuantizedReadingsTurn) {
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
     rest.value[i] = 0.5 * std::cos(std::clamp(5 * (rest.time[i] - 2), 0.0, 12 * kPi));
   }
+  Recording fast = rest;  // by the hold's last readings the next are already far
+  fast.value = (fast.value / 1e-4).array().round() * 1e-4;
+  fast.resolution = 1e-4;
+  for (Eigen::Index i = 0; i < 190; ++i) fast.value[i] += 1e-4 * static_cast<double>(i % 2);
+  EXPECT_EQ(RepairValues(fast).size(), fast.size());
   Recording quantized = Wave(0.5);
   for (double& value : quantized.value) value = 0.005 * std::round(value / 0.005);
   quantized.resolution = 0.005;
