@@ -15,20 +15,21 @@ std::string PercentText(double share) {
   return (percent < 100 ? NumberText(percent, 2) : std::to_string(std::lround(percent))) + " %";
 }
 
-std::vector<std::string> NamesOf(const Homogeneity& result, const auto& is_meant) {
+bool IsAny(const SharedParameter& /*parameter*/) { return true; }
+
+bool Differs(const SharedParameter& parameter) { return parameter.p < Homogeneity::kDisagree; }
+
+std::string NamesOf(const Homogeneity& result, bool (*is_meant)(const SharedParameter&)) {
   std::vector<std::string> names;
   for (const SharedParameter& parameter : result.parameters) {
     if (is_meant(parameter)) names.push_back(parameter.name);
   }
-  return names;
+  return NameList(names);
 }
-
-bool Differs(const SharedParameter& parameter) { return parameter.p < Homogeneity::kDisagree; }
 
 /// What recordings disagree on: parameters whose own test says so; all where only all together say it.
 std::string DifferingNames(const Homogeneity& result) {
-  std::vector<std::string> names = NamesOf(result, Differs);
-  return NameList(names.empty() ? NamesOf(result, [](const auto&) { return true; }) : names);
+  return NamesOf(result, std::ranges::any_of(result.parameters, Differs) ? Differs : IsAny);
 }
 
 /// Parameters that differ by themselves where all together agree.
@@ -121,15 +122,16 @@ double OtherRigs(const Homogeneity& result) {
   return share > kOneRig ? share : 0;
 }
 
-/// The parameter that scatters most against its errors; without a law that explains the recordings, no more than that.
-std::string DescribeScatter(const Homogeneity& result, bool lacks_fit) {
+/// The parameter that scatters most against its errors, and what the rig's constants then may be; no more than the
+/// first where another law has been said to be wanted.
+std::string DescribeScatter(const Homogeneity& result, bool wants_law) {
   const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
   const RandomEffects& scatter = most->scatter;
   const std::string unit = most->unit == "1" ? "" : " " + most->unit;
   return "between recordings " + most->name + " scatters by " +
          (scatter.mean != 0 ? PercentText(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
          ", beyond its errors" +
-         (lacks_fit
+         (wants_law
               ? ""
               : "; another law may explain that (--model all), and if not, the rig's constants and their errors are "
                 "the random-effects means");
@@ -147,8 +149,8 @@ std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<Run
   const std::string misfit = "; the model does not describe all of each recording";
   const bool lacks_fit = LacksFit(runs);
   if (result.agrees()) {
-    return "the recordings agree on " + NameList(NamesOf(result, [](const auto&) { return true; })) + test +
-           DescribeExceptions(result) + (lacks_fit ? misfit + ", and the errors are as wide as that makes them" : "");
+    return "the recordings agree on " + NamesOf(result, IsAny) + test + DescribeExceptions(result) +
+           (lacks_fit ? misfit + ", and the errors are as wide as that makes them" : "");
   }
   const std::string text = "the recordings do not agree on " + DifferingNames(result) + test + "; ";
   const std::string end = lacks_fit ? misfit +

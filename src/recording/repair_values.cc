@@ -133,6 +133,8 @@ void NoticeEvents(double least_step, Recording& recording) {
        "count early all along, and the error bars know nothing of it; record at even times if you can"});
 }
 
+constexpr Index kStaleReach = 6;  // samples to either side by which stale readings are known
+
 /// Readings that only repeat the one before while those around them change by many least steps: at all, and in one
 /// direction.
 struct Repeats {
@@ -143,7 +145,6 @@ struct Repeats {
 };
 
 Repeats FindRepeats(double least_step, const Recording& recording) {
-  constexpr Index kReach = 6;
   constexpr double kChange = 12;  // least steps in all
   constexpr double kMotion = 3;   // least steps from one sample to the next
   const Eigen::VectorXd& value = recording.value;
@@ -151,8 +152,8 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
   Repeats repeats{std::vector<bool>(static_cast<std::size_t>(last + 1)), {}};
   repeats.amid_motion = repeats.amid_change;
   for (Index i = 1; i <= last; ++i) {
-    const Index from = std::max<Index>(i - kReach, 0);
-    const Index to = std::min(i + kReach, last);
+    const Index from = std::max<Index>(i - kStaleReach, 0);
+    const Index to = std::min(i + kStaleReach, last);
     const auto near = value.segment(from, to - from + 1);
     const bool changes = near.maxCoeff() - near.minCoeff() > kChange * least_step;
     const bool moves = std::abs(value[to] - value[from]) > kMotion * least_step * static_cast<double>(to - from);
@@ -170,10 +171,9 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
 /// Whether readings change before sample `first` as well as after sample `last`: they do not at the end of a hold, nor
 /// where a pendulum stops.
 bool MovesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double least_step) {
-  constexpr Index kReach = 6;
   constexpr double kChange = 3;  // least steps
-  const double before = value[first - 1] - value[std::max<Index>(first - 1 - kReach, 0)];
-  const double after = value[std::min(last + kReach, value.size() - 1)] - value[last];
+  const double before = value[first - 1] - value[std::max<Index>(first - 1 - kStaleReach, 0)];
+  const double after = value[std::min(last + kStaleReach, value.size() - 1)] - value[last];
   return std::min(std::abs(before), std::abs(after)) > kChange * least_step;
 }
 

@@ -146,8 +146,8 @@ Result<void> CheckDifferent(const std::vector<Swing>& swings) {
       const Recording& other = swings[k].recording;
       if (one.size() != other.size() || swings[i].release != swings[k].release) continue;
       if (one.time != other.time || one.value != other.value) continue;
-      return Error(StatusCode::kInvalidArgument,
-                   one.path + " and " + other.path + " are the same recording, reading for reading; name it once");
+      return Error(StatusCode::kInvalidArgument, swings[i].path + " and " + swings[k].path +
+                                                     " are the same recording, reading for reading; name it once");
     }
   }
   return {};
@@ -167,12 +167,12 @@ RunReport LabelsOf(const std::vector<Swing>& swings) {
 /// A resolution given for all is in the unit of the readings, which then is one.
 Result<void> CheckResolution(const FitPendulumOptions& options, const std::vector<Swing>& swings) {
   if (!options.read.resolution) return {};
-  const Recording& first = swings.front().recording;
+  const Swing& first = swings.front();
   for (const Swing& swing : swings) {
-    const Recording& own = swing.recording;
-    if (own.unit == first.unit) continue;
+    if (swing.recording.unit == first.recording.unit) continue;
     return Error(StatusCode::kInvalidArgument, "--resolution is in the file's unit, and " + first.path + " is in " +
-                                                   first.unit + ", " + own.path + " in " + own.unit +
+                                                   first.recording.unit + ", " + swing.path + " in " +
+                                                   swing.recording.unit +
                                                    "; write it into each file instead, as a line # resolution: VALUE");
   }
   return {};
