@@ -151,7 +151,8 @@ def check_listed(root, path):
         return
     inner = path.relative_to("include/pendulum" if path.parts[0] == "include" else path.parts[0])
     if path.parts[0] == "tests":
-        scripts = {script[0] for script in cmake_calls(root, "tests", "pendulum_add_process_test")}
+        scripts = {call[0] for kind in ("process", "program")
+                   for call in cmake_calls(root, "tests", f"pendulum_add_{kind}_test")}
         programs = cmake_calls(root, "tests", "pendulum_add_tests")
         listed = scripts | {f"{program[0]}/{test}" for program in programs for test in program[1:]}
         is_listed = not path.stem.endswith("_test") or str(inner.with_suffix("")).removesuffix("_test") in listed

@@ -3,21 +3,31 @@
 
 #include <algorithm>
 #include <atomic>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace pendulum {
 
+int ThreadsOrCores(int threads) {
+  // Counted once: it takes longer than some of the work.
+  static const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  return threads > 0 ? threads : cores;
+}
+
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   constexpr int kMostThreads = 256;
-  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
-  const int used = std::min({threads > 0 ? threads : cores, count, kMostThreads});
+  const int used = std::min({ThreadsOrCores(threads), count, kMostThreads});
   std::atomic<int> next = 0;
   const auto take = [&] {
     for (int i = next++; i < count; i = next++) work(i);
   };
   std::vector<std::jthread> others;
-  for (int i = 1; i < used; ++i) others.emplace_back(take);
+  try {
+    for (int i = 1; i < used; ++i) others.emplace_back(take);
+  } catch (const std::system_error&) {
+    // Those that there are will do.
+  }
   take();
 }
 

@@ -12,7 +12,9 @@
 #include <boost/random/uniform_int_distribution.hpp>
 
 #include "pendulum/base/parallel.h"
+#include "pendulum/fitting/covariance.h"
 #include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/fitting/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
 
 namespace pendulum {
@@ -37,12 +39,14 @@ class Replicas {
         solution_(solution),
         residuals_(quantile_residuals.size()),
         block_(BlockLength(correlation, residuals_.size())),
-        parametric_(block_ == 1 && !solution.noise.IsRobust()) {
+        parametric_(block_ == 1 && !solution.noise.IsRobust()),
+        tolerance_(TraceTolerance(MaxTraceError(problem, options), problem.start.amplitude)) {
     for (Index i = 0; i < residuals_.size(); ++i) {
       const double value = problem.data.value[static_cast<std::size_t>(i)];
       residuals_[i] =
           problem.noise.IsCensored(value) ? solution.noise.sigma * quantile_residuals[i] : value - solution.readings[i];
     }
+    Differentiate();
   }
 
   /// Estimates of replica number `index`; empty when it cannot be solved, or runs out of memory.
@@ -65,13 +69,50 @@ class Replicas {
       replica.data.value[at] = Shown(solution_.readings[i] + noise[i], problem_.data.value[at]);
     }
     const auto cost = MakeTrajectoryCost(replica.model, replica.start.start, replica.data);
-    const double max_error = std::min(options_.max_trace_error, 1e-3 * problem_.data.scale);
-    cost->set_tolerance(TraceTolerance(max_error, problem_.start.amplitude));
+    cost->set_tolerance(tolerance_);
     cost->set_priors(replica.priors);
     cost->set_noise(replica.noise);
-    Solution solution = Solve(*cost, solution_.parameters, replica.solve);
-    MaximizeLikelihood(*cost, replica, options_, solution);
+    Solution solution = Solve(*cost, FirstStep(replica), replica.solve);
+    if (!solution.usable) solution = Solve(*cost, solution_.parameters, replica.solve);
+    // Where least squares say everything σ changes no estimate.
+    if (!solution_.noise.IsPlain() || !replica.priors.empty()) {
+      MaximizeLikelihood(*cost, replica, options_, solution);
+    }
     return solution.usable ? solution.parameters : std::vector<double>{};
+  }
+
+  /// What the readings at the solution tell of its free parameters, all replicas alike.
+  void Differentiate() {
+    const auto cost = MakeTrajectoryCost(problem_.model, problem_.start.start, problem_.data);
+    cost->set_tolerance(tolerance_);
+    cost->set_priors(problem_.priors);
+    Eigen::VectorXd readings;
+    Eigen::MatrixXd jacobian;
+    if (!cost->Readings(solution_.parameters, &readings, &jacobian)) return;
+    for (int i = 0; i < static_cast<int>(solution_.parameters.size()); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!problem_.solve.fixed[at] && BoundSide(problem_.solve, at, solution_.parameters[at]) == 0) free_.push_back(i);
+    }
+    Eigen::MatrixXd sums;
+    cost->Sums(solution_.parameters, &sums);  // known to be traced: its readings were
+    const auto size = static_cast<Index>(solution_.parameters.size());
+    const InformationInverse inverse = InvertInformation(sums.topLeftCorner(size, size), free_);
+    if (!inverse.identifiable) return;
+    const double scale = problem_.data.scale;
+    to_step_ = inverse.matrix * jacobian(Eigen::all, free_).transpose() / (scale * scale);
+  }
+
+  /// The solution, moved by the least-squares step that a replica's noise asks for: it needs no trajectory.
+  std::vector<double> FirstStep(const FitProblem& replica) const {
+    std::vector<double> parameters = solution_.parameters;
+    if (to_step_.size() == 0) return parameters;
+    const Eigen::VectorXd step = to_step_ * (replica.data.values() - solution_.readings);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto i = static_cast<std::size_t>(free_[k]);
+      parameters[i] =
+          std::clamp(parameters[i] + step[static_cast<Index>(k)], replica.solve.lower[i], replica.solve.upper[i]);
+    }
+    return parameters;
   }
 
   /// Noise of N samples: from its model (parametric bootstrap), or circular blocks of the residuals as they are, with
@@ -107,6 +148,9 @@ class Replicas {
   Eigen::VectorXd residuals_;
   Index block_;
   bool parametric_;
+  double tolerance_;         // of the trajectories
+  std::vector<int> free_;    // F parameters
+  Eigen::MatrixXd to_step_;  // F x N, from residuals; empty where the data do not tell them all
 };
 
 }  // namespace

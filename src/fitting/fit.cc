@@ -66,6 +66,7 @@ Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
   Attempt attempt;
   attempt.problem = std::make_unique<FitProblem>(*std::move(problem));
   attempt.cost = MakeTrajectoryCost(attempt.problem->model, attempt.problem->start.start, attempt.problem->data);
+  attempt.cost->set_threads(options.threads);
   attempt.solution = SolveToAccuracy(*attempt.cost, *attempt.problem, options);
   return attempt;
 }

@@ -51,6 +51,7 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
   if (!problem) return tl::unexpected(problem.error());
   member.problem = std::make_unique<FitProblem>(*std::move(problem));
   member.cost = MakeTrajectoryCost(member.problem->model, member.problem->start.start, member.problem->data);
+  member.cost->set_threads(member.options.threads);
   member.tolerance = TraceTolerance(MaxTraceError(*member.problem, member.options), member.problem->start.amplitude);
   member.cost->set_tolerance(member.tolerance);
   Solution& solution = member.solution;

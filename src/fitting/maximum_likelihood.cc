@@ -96,7 +96,10 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
 /// The deviances of all minima under the noise that was found, so that they can be compared.
 void SumAgain(TrajectoryCost& cost, Solution& solution) {
   cost.set_noise(solution.noise);
-  solution.usable = cost.SumOfSquares(solution.parameters, &solution.sum);
+  // Of which the judgement asks for the sums next.
+  Eigen::MatrixXd sums;
+  solution.usable = cost.Sums(solution.parameters, &sums);
+  if (solution.usable) solution.sum = sums(sums.rows() - 1, sums.cols() - 1);
   for (Minimum& minimum : solution.other_minima) {
     if (!cost.SumOfSquares(minimum.parameters, &minimum.sum)) minimum.sum = std::numeric_limits<double>::infinity();
   }
@@ -170,9 +173,9 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     if (!near.empty()) Alternate(cost, problem, solution);
     SumAgain(cost, solution);
   }
-  if (cost.Readings(solution.parameters, &solution.readings, nullptr)) {
-    solution.log_likelihood = LogLikelihoodOf(problem, solution);
-  }
+  // Which the cost knows, unless nothing can be traced there.
+  solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);
+  if (solution.usable) solution.log_likelihood = LogLikelihoodOf(problem, solution);
 }
 
 }  // namespace pendulum

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
+#include "level_likelihoods.h"
 #include "pendulum/base/physics.h"
 
 namespace pendulum {
@@ -279,8 +280,9 @@ NoiseModel::Distribution NoiseModel::DistributionAt(double y, double m) const {
 
 double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                      const Eigen::Ref<const Eigen::VectorXd>& readings) {
+  const LevelLikelihoods likelihoods(noise, value.size());
   double sum = 0;
-  for (Eigen::Index i = 0; i < value.size(); ++i) sum += noise.LikelihoodAt(value[i], readings[i]).log;
+  for (Eigen::Index i = 0; i < value.size(); ++i) sum += likelihoods.At(value[i], readings[i]).log;
   return sum;
 }
 
@@ -300,8 +302,9 @@ SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vector
   constexpr double kWidth = NoiseModel::kHuberWidth;
   static const double normal =
       std::erf(kRootHalf * kWidth) - 2 * kWidth * Density(kWidth) + kWidth * kWidth * std::erfc(kRootHalf * kWidth);
+  const LevelLikelihoods likelihoods(noise, value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
-    const NoiseLikelihood l = noise.LikelihoodAt(value[i], readings[i]);
+    const NoiseLikelihood l = likelihoods.At(value[i], readings[i]);
     const bool huber = noise.family == NoiseFamily::kHuber;
     if (huber && noise.IsCensored(value[i])) continue;
     const double psi = noise.sigma * l.score;

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <boost/math/distributions/students_t.hpp>
+
+#include "level_likelihoods.h"
 
 namespace pendulum {
 namespace {
@@ -34,9 +37,10 @@ struct SampleTerms {
 SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
   const auto values = problem.data.values();
   SampleTerms terms;
+  const LevelLikelihoods likelihoods(solution.noise, values.size());
   for (Eigen::VectorXd* column : {&terms.score, &terms.information, &terms.mixed}) column->resize(values.size());
   for (Index i = 0; i < values.size(); ++i) {
-    const NoiseLikelihood l = solution.noise.LikelihoodAt(values[i], solution.readings[i]);
+    const NoiseLikelihood l = likelihoods.At(values[i], solution.readings[i]);
     terms.score[i] = l.score;
     terms.information[i] = l.information;
     terms.mixed[i] = l.mixed;
@@ -156,13 +160,15 @@ std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares
   Optimum optimum;
   Eigen::MatrixXd sums;
   if (!solution.usable || !cost.Sums(solution.parameters, &sums)) return std::nullopt;
+  constexpr double kTiny = std::numeric_limits<double>::min();
   const Index size = sums.rows() - 1;
   optimum.information = sums.topLeftCorner(size, size);
   optimum.gradient = sums.col(size).head(size);
   for (int i = 0; i < static_cast<int>(size); ++i) {
     if (options.fixed[i]) continue;
     const int side = BoundSide(options, static_cast<std::size_t>(i), solution.parameters[i]);
-    const bool pushes_out = side != 0 && side * optimum.gradient[i] <= 0;
+    const double inwards = side * optimum.gradient[i] / std::sqrt(std::max(optimum.information(i, i), kTiny));
+    const bool pushes_out = side != 0 && inwards <= NegligibleSlope(sums);
     (pushes_out ? optimum.at_bound : optimum.free).push_back(i);
   }
   optimum.inverse = InvertInformation(optimum.information, optimum.free);

@@ -142,12 +142,13 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   Solution solution;
   solution.parameters = start;
   const double begin = MotionStart(start, options);
-  double sum = 0;
-  const bool traced = cost.SumOfSquares(start, &sum);
+  // Of which Solve asks for the sums next.
+  Eigen::MatrixXd sums;
+  const bool traced = cost.Sums(start, &sums);
   const int holding = options.holding_parameter;
   const bool may_rest = traced && holding >= 0 && start[holding] > 0;
   const double stop = may_rest ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
-  if (!traced || sum > kExplained * Variance(data)) {
+  if (!traced || sums(sums.rows() - 1, sums.cols() - 1) > kExplained * Variance(data)) {
     const double cycle = 2 * kPi * std::sqrt(start[0]);
     solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
   } else if (stop < data.time.back()) {

@@ -14,6 +14,9 @@
 namespace pendulum {
 namespace {
 
+/// A solve ends when a step changes the cost by a smaller share than this.
+constexpr double kSameCost = 1e-10;
+
 /// Indices of the parameters that are not held and stand at a bound.
 std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const SolveOptions& options,
                                  const std::vector<bool>& held) {
@@ -28,7 +31,7 @@ std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const So
 struct NewtonStep {
   std::vector<int> free;
   Eigen::VectorXd step;  // empty where the data do not tell them all
-  double length = 0;     // in standard errors
+  bool is_last = false;  // it takes away a negligible share of |r|²
 };
 
 NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, const std::vector<double>& parameters) {
@@ -43,13 +46,13 @@ NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, con
   if (!inverse.identifiable) return {};
   const Eigen::VectorXd gradient = sums.col(size)(newton.free);
   newton.step = -inverse.matrix * gradient;
-  newton.length = std::sqrt(std::max(-gradient.dot(newton.step), 0.0));
+  newton.is_last = -gradient.dot(newton.step) <= kSameCost * sums(size, size);
   return newton;
 }
 
-/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound. Of
-/// several recordings, which begin near the optimum, also as soon as next to nothing is left to go: to find that out
-/// Ceres would trace them all once more.
+/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound.
+/// Also as soon as the next step would be the last, which the sums tell that Ceres has just asked for: to find it out
+/// itself it would trace the motion once more.
 class EndEarly final : public ceres::IterationCallback {
  public:
   EndEarly(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
@@ -57,18 +60,15 @@ class EndEarly final : public ceres::IterationCallback {
       : cost_(cost), parameters_(parameters), options_(options), held_(held) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (summary.iteration == 0 || !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
-    const bool done = !AtBound(parameters_, options_, held_).empty() || IsThere();
+    const bool begins = summary.iteration == 0;
+    if (!begins && !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
+    const bool at_bound = !AtBound(parameters_, options_, held_).empty();
+    const bool done = at_bound ? !begins : IsThere();
     return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  bool IsThere() const {
-    constexpr double kNothing = 1e-3;  // standard errors
-    if (cost_.runs() == 1) return false;
-    const NewtonStep newton = StepFrom(cost_, held_, parameters_);
-    return newton.step.size() > 0 && newton.length < kNothing;
-  }
+  bool IsThere() const { return StepFrom(cost_, held_, parameters_).is_last; }
 
   const LeastSquares& cost_;
   const std::vector<double>& parameters_;
@@ -81,7 +81,10 @@ ceres::Solver::Options SolverOptions(int max_iterations, bool several) {
   // Of several recordings each has few of the parameters.
   solver.linear_solver_type = several ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
   solver.max_num_iterations = max_iterations;
-  solver.function_tolerance = 1e-10;
+  // Start values of a recording are good: the first step is a whole one, not one that damping keeps 1 % short where two
+  // parameters nearly do the same.
+  if (!several) solver.initial_trust_region_radius = 1e6;
+  solver.function_tolerance = kSameCost;
   solver.gradient_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-14;
   solver.logging_type = ceres::SILENT;
@@ -139,7 +142,7 @@ int PulledInwards(const LeastSquares& cost, const SolveOptions& options, const s
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return -1;
   int pulled = -1;
-  double strongest = -1e-6 * std::sqrt(solution.sum);  // less is rounding
+  double strongest = -NegligibleSlope(sums);
   for (int i = 0; i < static_cast<int>(held.size()); ++i) {
     if (!held[i] || options.fixed[i] || !(sums(i, i) > 0)) continue;
     const int side = BoundSide(options, static_cast<std::size_t>(i), solution.parameters[i]);
@@ -152,6 +155,10 @@ int PulledInwards(const LeastSquares& cost, const SolveOptions& options, const s
 }
 
 }  // namespace
+
+double NegligibleSlope(const Eigen::MatrixXd& sums) {
+  return std::sqrt(kSameCost * sums(sums.rows() - 1, sums.cols() - 1));
+}
 
 int BoundSide(const SolveOptions& options, std::size_t i, double value) {
   if (value <= options.lower[i]) return -1;

@@ -5,51 +5,23 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
-#include <Eigen/Cholesky>
 #include <ceres/jet.h>
 
+#include "block_samples.h"
 #include "depth_table.h"
-#include "lanes.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
 namespace {
 
+/// Derivatives stay within 1e-7 of their largest where the angle is within 1e-10 rad: no step or error bar needs more.
+constexpr double kDerivativeShare = 0.8;
+
 /// A trial that asks for more steps than this has a time scale far from that of the start values: a period takes
 /// some 12.
 constexpr double kStepsPerRadian = 20;
 constexpr double kMostSteps = 10'000;
-
-/// R, R^-T J'r and the rest of |r| from the sums (MODEL.md eq. (19)), by a pivoted Cholesky factor of J'J scaled to
-/// unit diagonal: a direction that the data do not see gets a row of zeros, which Levenberg-Marquardt leaves alone.
-/// Where J'J is a likelihood's information the rest may be negative; then R grows until it is none, a shorter step.
-void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
-  constexpr double kRounding = 1e-15;  // of a diagonal of ones
-  const Eigen::Index size = sums.rows() - 1;
-  const Eigen::VectorXd norms = sums.diagonal().head(size).cwiseSqrt();
-  const Eigen::VectorXd inverse = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
-  Eigen::MatrixXd correlation = inverse.asDiagonal() * sums.topLeftCorner(size, size) * inverse.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(correlation);
-  const Eigen::VectorXd d = ldlt.vectorD();
-  const Eigen::VectorXd root = d.unaryExpr([](double x) { return x > kRounding ? std::sqrt(x) : 0.0; });
-  Eigen::VectorXd gradient = ldlt.transpositionsP() * (inverse.asDiagonal() * sums.col(size).head(size)).eval();
-  ldlt.matrixL().solveInPlace(gradient);
-  const Eigen::MatrixXd scaled = ldlt.transpositionsP() * Eigen::MatrixXd(norms.asDiagonal());
-  const Eigen::MatrixXd factor = root.asDiagonal() * (ldlt.matrixU() * scaled);
-  Eigen::Map<Eigen::VectorXd> seen(residuals, size);
-  seen = root.unaryExpr([](double x) { return x > 0 ? 1 / x : 0.0; }).cwiseProduct(gradient);
-  const double total = sums(size, size);
-  const double longer = seen.squaredNorm() > total && total > 0 ? std::sqrt(seen.squaredNorm() / total) : 1.0;
-  seen /= longer;
-  residuals[size] = std::sqrt(std::max(total - seen.squaredNorm(), 0.0));
-  for (Eigen::Index j = 0; j < size; ++j) {
-    if (jacobians[j] == nullptr) continue;
-    Eigen::Map<Eigen::VectorXd>(jacobians[j], size) = longer * factor.col(j);
-    jacobians[j][size] = 0;
-  }
-}
 
 template <FrictionModel F, StartKind kStart>
 class TrajectoryCostFor final : public TrajectoryCost {
@@ -58,6 +30,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// Derivatives carried by the trajectory; those for release time and zero need no dual number.
   static constexpr int kCarried = kStart == StartKind::kRelease ? kFriction + 2 : kFriction + 3;
   static constexpr int kZero = kParameters - 1;
+  static_assert(kParameters + 1 <= kMostCompressed);
+  static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
   using Dual = ceres::Jet<double, kCarried>;
 
  public:
@@ -69,11 +43,12 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
+  void set_threads(int threads) override { threads_ = threads; }
   void set_used_samples(std::size_t count) override { used_samples_ = count; }
 
   void set_noise(const NoiseModel& noise) override {
     if (noise_.IsPlain() && noise.IsPlain()) {
-      last_.sums *= std::pow(noise_.sigma / noise.sigma, 2);
+      last_.value *= std::pow(noise_.sigma / noise.sigma, 2);
     } else {
       last_.parameters.clear();
     }
@@ -81,88 +56,92 @@ class TrajectoryCostFor final : public TrajectoryCost {
     if (noise_.family == NoiseFamily::kQuantized) levels_.Build(noise_.sigma / noise_.resolution);
   }
 
+  /// A trial whose step is taken is asked for its derivatives next: these cost little more than the residuals alone.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     std::array<double, kParameters + 1> values{};
     for (int i = 0; i < count_; ++i) values[i] = *parameters[i];
     const std::span<const double> p(values.data(), count_);
-    if (jacobians == nullptr) {
-      std::fill_n(residuals, count_, 0.0);
-      double sum = 0;
-      const bool valid = SumOfSquares(p, &sum);
-      residuals[count_] = std::sqrt(sum);
-      return valid;
+    if (jacobians != nullptr) {
+      trials_since_step_ = 0;
+      if (!Sums(p, &scratch_)) return false;
+      CompressResiduals(scratch_, residuals, jacobians);
+      return true;
     }
-    Eigen::MatrixXd sums;
-    if (!Sums(p, &sums)) return false;
-    CompressResiduals(sums, residuals, jacobians);
-    return true;
+    std::fill_n(residuals, count_, 0.0);
+    double sum = 0;
+    const bool likely_taken = trials_since_step_++ == 0;
+    const bool valid = likely_taken ? Sums(p, &scratch_) : SumOfSquares(p, &sum);
+    if (valid && likely_taken) sum = scratch_(count_, count_);
+    residuals[count_] = std::sqrt(std::max(sum, 0.0));
+    return valid;
   }
 
   bool SumOfSquares(std::span<const double> p, double* sum) const override {
-    Lanes squares{};
-    const bool plain = noise_.IsPlain();
-    const double inverse_sigma = 1 / noise_.sigma;
-    const auto add = [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
-      for (int i = 0; i < count; ++i) {
-        const double value = data_.value[first + i];
-        const double reading = model[0][i] + Zero(p, first + i);
-        const double residual = (value - reading) * inverse_sigma;
-        squares[i] += plain ? residual * residual : At(value, reading).deviance;
+    double deviance = 0;
+    const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& part) {
+      auto& row = block.row[0];
+      AddZero(p, first, count, row.data());
+      if (noise_.IsPlain()) {
+        RowProducts<1> square;
+        Subtract(first, count, row.data());
+        SumProducts(block, count, square);
+        part = square[0];
+        return;
       }
+      part = 0;
+      for (int i = 0; i < count; ++i) part += At(data_.value[first + i], row[i]).deviance;
     };
-    if (!VisitSamples<double>(p, add)) return false;
-    *sum = PriorSum(p);
-    for (const double square : squares) *sum += square;
+    if (!VisitSamples<double, 1>(values_, p, work, [&](double part) { deviance += part; })) return false;
+    if (noise_.IsPlain()) deviance /= noise_.sigma * noise_.sigma;
+    *sum = deviance + PriorSum(p);
     return std::isfinite(*sum);
   }
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
-    const bool known =
-        std::ranges::equal(p, last_.parameters) && last_.tolerance == tolerance_ && last_.samples == used_samples_;
-    if (!known) {
-      last_.parameters.clear();
-      if (!(data_.drifts ? AddUp<2>(p, &last_.sums) : AddUp<1>(p, &last_.sums))) return false;
-      last_.parameters.assign(p.begin(), p.end());
-      last_.tolerance = tolerance_;
-      last_.samples = used_samples_;
+    if (!last_.IsAt(p, *this)) {
+      if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
+      last_.SetAt(p, *this, *sums);
     }
-    *sums = last_.sums;
+    *sums = last_.value;
     AddPriors(priors(), p, sums);
     return true;
   }
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
-    const auto samples = static_cast<Eigen::Index>(used_samples_);
-    readings->resize(samples);
+    readings->resize(static_cast<Eigen::Index>(used_samples_));
+    const auto read = [&](double* row, std::size_t first, int count) {
+      AddZero(p, first, count, row);
+      std::copy_n(row, count, readings->data() + first);
+    };
+    const auto add = [](double /*part*/) {};
     if (jacobian == nullptr) {
-      return VisitSamples<double>(p, [&](std::size_t first, int count, const std::array<Lanes, 1>& model) {
-        for (int i = 0; i < count; ++i) (*readings)[first + i] = model[0][i] + Zero(p, first + i);
-      });
-    }
-    jacobian->resize(samples, count_);
-    return VisitSamples<Dual>(p, [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
-      for (int i = 0; i < count; ++i) {
-        (*readings)[first + i] = model[0][i] + Zero(p, first + i);
-        for (int j = 0; j < kZero; ++j) (*jacobian)(first + i, j) = model[1 + j][i];
-        (*jacobian)(first + i, kZero) = 1;
-        if (data_.drifts) (*jacobian)(first + i, kZero + 1) = data_.time[first + i];
+      if (read_.IsAt(p, *this)) {
+        *readings = read_.value;
+        return true;
       }
-    });
+      const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& /*part*/) {
+        read(block.row[0].data(), first, count);
+      };
+      return VisitSamples<double, 1>(values_, p, work, add);
+    }
+    jacobian->resize(readings->size(), count_);
+    const auto work = [&](SampleBlock<kParameters>& block, std::size_t first, int count, double& /*part*/) {
+      read(block.row[kModel].data(), first, count);
+      for (int j = 0; j < kZero; ++j) std::copy_n(block.row[j].data(), count, &(*jacobian)(first, j));
+      jacobian->col(kZero).segment(first, count).setOnes();
+      if (data_.drifts) jacobian->col(kZero + 1).segment(first, count) = data_.times().segment(first, count);
+    };
+    BlockSamples<kParameters, kParameters, double> columns;
+    return VisitSamples<Dual, kParameters>(columns, p, work, add);
   }
 
-  /// The search asks whether the motion comes to rest, the judgement when: at the same point.
+  /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
   TraceSummary Trace(std::span<const double> p) const override {
-    if (std::ranges::equal(p, traced_.parameters) && traced_.tolerance == tolerance_ &&
-        traced_.samples == used_samples_) {
-      return traced_.summary;
-    }
+    if (traced_.IsAt(p, *this)) return traced_.value;
     ++traces_;
     const std::function<void(const Segment<double>&)> nothing = [](const Segment<double>&) {};
-    traced_.summary = TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing);
-    traced_.parameters.assign(p.begin(), p.end());
-    traced_.tolerance = tolerance_;
-    traced_.samples = used_samples_;
-    return traced_.summary;
+    traced_.SetAt(p, *this, TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing));
+    return traced_.value;
   }
 
   /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be
@@ -175,9 +154,12 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
  private:
-  /// What the reading shows at sample i when the angle, or rate, is zero.
-  double Zero(std::span<const double> p, std::size_t i) const {
-    return data_.drifts ? p[kZero] + p[kZero + 1] * data_.time[i] : p[kZero];
+  /// Makes a row of the model's values readings: adds what the sensor shows when the angle, or rate, is zero.
+  void AddZero(std::span<const double> p, std::size_t first, int count, double* row) const {
+    const double zero = p[kZero];
+    for (int i = 0; i < count; ++i) row[i] += zero;
+    if (!data_.drifts) return;
+    for (int i = 0; i < count; ++i) row[i] += p[kZero + 1] * data_.time[first + i];
   }
 
   /// As noise_.At, without an exponential and an error function for every sample of a level.
@@ -190,36 +172,77 @@ class TrajectoryCostFor final : public TrajectoryCost {
             std::max(-level.curvature, 0.0) * per_level * per_level};
   }
 
-  /// kBaseline parameters for the zero: itself, and its drift.
+  /// Turns a row of readings into residuals.
+  void Subtract(std::size_t first, int count, double* row) const {
+    const double* const value = &data_.value[first];
+    for (int i = 0; i < count; ++i) row[i] = value[i] - row[i];
+  }
+
+  /// The rows of a block whose products are wanted: derivatives, zero, its drift if there is one, residuals.
   template <int kBaseline>
-  bool AddUp(std::span<const double> p, Eigen::MatrixXd* sums) const {
+  using Rows = SampleBlock<kZero + kBaseline + 1>;
+
+  /// Of one block.
+  template <int kBaseline>
+  struct Part {
+    RowProducts<kZero + kBaseline + 1> products;
+    double deviance = 0;
+  };
+
+  /// Turns readings, in the last row, and derivatives into rows. A plain residual's are divided by σ when all are
+  /// summed up.
+  template <int kBaseline>
+  double Prepare(std::size_t first, int count, Rows<kBaseline>& block) const {
     constexpr int kResidual = kZero + kBaseline;
-    const bool plain = noise_.IsPlain();
-    const double inverse_sigma = 1 / noise_.sigma;
-    Lanes deviances{};
-    Products<kResidual + 1> products;
-    const auto add = [&](std::size_t first, int count, const std::array<Lanes, kParameters>& model) {
-      std::array<Lanes, kResidual + 1> columns{};  // lanes beyond count stay zero
-      for (int i = 0; i < count; ++i) {
-        const double value = data_.value[first + i];
-        const double reading = model[0][i] + Zero(p, first + i);
-        double root_weight = inverse_sigma;
-        columns[kResidual][i] = (value - reading) * inverse_sigma;
-        if (!plain) {
-          const SampleLikelihood sample = At(value, reading);
-          deviances[i] += sample.deviance;
-          root_weight = std::sqrt(sample.weight);
-          columns[kResidual][i] = root_weight > 0 ? sample.score / root_weight : 0.0;
-        }
-        for (int j = 0; j < kZero; ++j) columns[j][i] = -model[1 + j][i] * root_weight;
-        columns[kZero][i] = -root_weight;
-        if constexpr (kBaseline == 2) columns[kZero + 1][i] = -data_.time[first + i] * root_weight;
-      }
-      products.Add(columns);
+    auto& residual = block.row[kResidual];
+    std::fill_n(block.row[kZero].begin(), count, 1.0);
+    if constexpr (kBaseline == 2) std::copy_n(data_.time.begin() + first, count, block.row[kZero + 1].begin());
+    if (noise_.IsPlain()) {
+      Subtract(first, count, residual.data());
+      return 0;
+    }
+    double deviance = 0;
+    for (int i = 0; i < count; ++i) {
+      const SampleLikelihood sample = At(data_.value[first + i], residual[i]);
+      deviance += sample.deviance;
+      const double root_weight = std::sqrt(sample.weight);
+      residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;
+      for (int j = 0; j < kResidual; ++j) block.row[j][i] *= root_weight;
+    }
+    return deviance;
+  }
+
+  /// kBaseline parameters for the zero: itself, and its drift. Residuals are measured - modelled: their derivatives are
+  /// minus the model's.
+  template <int kBaseline>
+  bool AddUp(auto& samples, std::span<const double> p, Eigen::MatrixXd* sums) const {
+    constexpr int kResidual = kZero + kBaseline;
+    read_.parameters.clear();
+    read_.value.resize(static_cast<Eigen::Index>(used_samples_));
+    const auto work = [&](Rows<kBaseline>& block, std::size_t first, int count, Part<kBaseline>& part) {
+      auto& residual = block.row[kResidual];
+      std::copy_n(block.row[kModel].begin(), count, residual.begin());
+      AddZero(p, first, count, residual.data());
+      std::copy_n(residual.begin(), count, read_.value.data() + first);
+      part.deviance = Prepare<kBaseline>(first, count, block);
+      SumProducts(block, count, part.products);
     };
-    if (!VisitSamples<Dual>(p, add)) return false;
-    *sums = products.Matrix();
-    if (!plain) (*sums)(kResidual, kResidual) = std::accumulate(deviances.begin(), deviances.end(), 0.0);
+    Part<kBaseline> total{};
+    const auto add = [&](const Part<kBaseline>& part) {
+      total.deviance += part.deviance;
+      for (std::size_t k = 0; k < total.products.size(); ++k) total.products[k] += part.products[k];
+    };
+    if (!VisitSamples<Dual, kResidual + 1>(samples, p, work, add)) return false;
+    read_.SetAt(p, *this);
+    const double scale = noise_.IsPlain() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
+    sums->resize(kResidual + 1, kResidual + 1);
+    for (int i = 0, k = 0; i <= kResidual; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) {
+        const double sign = i == kResidual && j < kResidual ? -1.0 : 1.0;
+        (*sums)(i, j) = (*sums)(j, i) = sign * scale * total.products[k];
+      }
+    }
+    if (!noise_.IsPlain()) (*sums)(kResidual, kResidual) = total.deviance;
     return sums->allFinite();
   }
 
@@ -254,6 +277,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     TraceOptions options;
     options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
     options.tolerance = tolerance_;
+    options.derivative_share = kDerivativeShare;
     options.max_steps =
         static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMostSteps, 1e9));
     return options;
@@ -264,83 +288,94 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
   }
 
-  /// Calls add(first sample, count <= kLanes, columns) for all samples: the model's reading, and with a dual T its
-  /// derivatives with respect to all parameters but zero, in the parameters' order.
-  template <typename T, typename Add>
-  bool VisitSamples(std::span<const double> p, Add&& add) const {
+  /// Traces the motion through all samples: rows 0 to W - 1 of each block are derivatives by all parameters but zero,
+  /// in the parameters' order, and the model's reading; with T = double the reading alone. See BlockSamples::Flush.
+  template <typename T, int R, int W, typename Sum, typename Work, typename Add>
+  bool VisitSamples(BlockSamples<W, R, Sum>& samples, std::span<const double> p, const Work& work,
+                    const Add& add) const {
     if (!IsAdmissible(p)) return false;
-    constexpr int kColumns = DualNumber<T> ? kParameters : 1;
-    Columns<kColumns> columns;
-    std::array<Lanes, kColumns> model;
-    std::size_t next = 0;
+    samples.Restart({data_.time.data(), used_samples_}, threads_);
     const auto visit = [&](const Segment<T>& segment) {
-      std::size_t end = next;
-      while (end < used_samples_ && data_.time[end] < segment.end) ++end;
-      if (end == next) return;
-      FillColumns(segment, columns);
-      for (; next < end; next += kLanes) {
-        const int count = static_cast<int>(std::min<std::size_t>(kLanes, end - next));
-        Lanes tau{};
-        for (int i = 0; i < count; ++i) tau[i] = data_.time[next + i] - segment.start;
-        columns.Evaluate(tau, model);
-        add(next, count, model);
-      }
-      next = end;
+      auto* piece = samples.Add(segment.start, segment.end);
+      if (piece == nullptr) return;
+      data_.quantity == Quantity::kAngle ? FillColumns<0>(segment, piece->polynomials)
+                                         : FillColumns<1>(segment, piece->polynomials);
+      samples.Flush(false, work, add);
     };
     ++traces_;
     // One tracer for all visitors: it is by far the most code here.
     const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
     const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visitor);
-    return summary.outcome == TraceSummary::Outcome::kComplete && next == used_samples_;
+    if (summary.outcome != TraceSummary::Outcome::kComplete || !samples.is_complete()) return false;
+    samples.Flush(true, work, add);
+    if constexpr (DualNumber<T>) traced_.SetAt(p, *this, summary);
+    return true;
   }
 
-  /// Coefficients of the reading, its carried derivatives and, for a release, its derivative with respect to release
-  /// time, which is minus its time derivative: angle and rate, or rate and acceleration.
-  template <typename T>
-  void FillColumns(const Segment<T>& segment, auto& columns) const {
-    const bool rate = data_.quantity == Quantity::kRate;
-    columns.order = std::max(segment.order - (rate ? 1 : 0), 0);
+  /// Coefficients of the reading, the angle's time derivative number kDerivative, and with a dual T of its derivatives
+  /// before it: the carried ones and, for a release, that by release time, which is minus its time derivative.
+  template <int kDerivative, typename T, int W>
+  static void FillColumns(const Segment<T>& segment, Polynomials<W>& columns) {
+    const auto factor = [](int k) { return kDerivative == 0 ? 1.0 : k + 1.0; };
+    columns.order = std::max(segment.order - kDerivative, 0);
+    columns.derivative_order = std::max(segment.derivative_order - kDerivative, 0);
+    if (segment.order < kDerivative) {  // the rate at rest
+      columns.coefficient[0].fill(0);
+      return;
+    }
     for (int k = 0; k <= columns.order; ++k) {
-      const bool rest = segment.order == 0;
-      const double factor = rate ? (rest ? 0.0 : k + 1.0) : 1.0;
-      const T& source = segment.angle[rate && !rest ? k + 1 : k];
-      auto& row = columns.coefficient[k];
-      row[0] = factor * Value(source);
-      if constexpr (DualNumber<T>) {
-        for (int i = 0; i < kCarried; ++i) row[1 + i] = factor * source.v[i];
+      columns.coefficient[k][W - 1] = factor(k) * segment.angle[k + kDerivative];
+    }
+    if constexpr (DualNumber<T>) {
+      for (int k = 0; k <= columns.derivative_order; ++k) {
+        auto& row = columns.coefficient[k];
+        for (int i = 0; i < kCarried; ++i) row[i] = factor(k) * segment.dual[k + kDerivative].v[i];
         if constexpr (kStart == StartKind::kRelease) {
-          const int above = k + (rate ? 2 : 1);
-          const double slope = above <= segment.order ? segment.angle[above].a * above * (rate ? above - 1 : 1) : 0.0;
-          row[1 + kCarried] = -slope;
+          row[kCarried] = k < columns.order ? -(k + 1) * columns.coefficient[k + 1][W - 1] : 0.0;
         }
       }
     }
   }
+
+  /// Something known, and where: solver, active set, search and judgement ask for it at the same point, one by one.
+  template <typename What>
+  struct Known {
+    std::vector<double> parameters;
+    double tolerance = 0;
+    std::size_t samples = 0;
+    What value;
+
+    bool IsAt(std::span<const double> p, const TrajectoryCostFor& cost) const {
+      return std::ranges::equal(p, parameters) && tolerance == cost.tolerance_ && samples == cost.used_samples_;
+    }
+    void SetAt(std::span<const double> p, const TrajectoryCostFor& cost, const What& what) {
+      value = what;
+      SetAt(p, cost);
+    }
+    void SetAt(std::span<const double> p, const TrajectoryCostFor& cost) {
+      parameters.assign(p.begin(), p.end());
+      tolerance = cost.tolerance_;
+      samples = cost.used_samples_;
+    }
+  };
 
   Gravity gravity_;
   const TrajectoryData& data_;
   std::size_t used_samples_;
   int count_;  // of parameters
   double tolerance_ = 1e-10;
+  int threads_ = 1;
   NoiseModel noise_;
-  DepthTable levels_{1};  // of quantized noise_
-
-  /// Sums and where they were taken: solver, active set and judgement ask for them at the same point, one by one.
-  struct SumsAt {
-    std::vector<double> parameters;
-    double tolerance = 0;
-    std::size_t samples = 0;
-    Eigen::MatrixXd sums;
-  };
-  mutable SumsAt last_;
-
-  struct TraceAt {
-    std::vector<double> parameters;
-    double tolerance = 0;
-    std::size_t samples = 0;
-    TraceSummary summary;
-  };
-  mutable TraceAt traced_;
+  DepthTable levels_{1};                 // of quantized noise_
+  mutable Known<Eigen::MatrixXd> last_;  // sums without priors
+  mutable Known<TraceSummary> traced_;
+  mutable Known<Eigen::VectorXd> read_;
+  mutable int trials_since_step_ = 0;  // of the solver that calls Evaluate
+  // Room that evaluations leave to the next one.
+  mutable Eigen::MatrixXd scratch_;
+  mutable BlockSamples<1, 1, double> values_;
+  mutable BlockSamples<kParameters, kZero + 2, Part<1>> steady_;
+  mutable BlockSamples<kParameters, kZero + 3, Part<2>> drifting_;
 };
 
 }  // namespace

@@ -68,16 +68,18 @@ Result<std::optional<Rig>> RigOf(const std::vector<Swing>& swings) {
 Result<std::vector<RunModels>> FitAlone(const FitPendulumOptions& options, const FitOptions& fit_options,
                                         std::vector<Swing>& swings, const RunReport& all) {
   std::vector<Result<RunModels>> fitted(swings.size());
+  FitOptions each = fit_options;
+  if (swings.size() > 1) each.threads = 1;
   ParallelFor(static_cast<int>(swings.size()), fit_options.threads, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
-    auto models = FitModels(std::move(swings[k].recording), swings[k].found, fit_options, options.models);
+    auto models = FitModels(std::move(swings[k].recording), swings[k].found, each, options.models);
     if (!models) {
       fitted[k] = tl::unexpected(models.error());
       return;
     }
     RunModels run{RecordingLabel(all, k), *std::move(models), {}};
     for (const FitReport& fit : run.alone.fits) {
-      const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
+      const FitOptions own = ForModel(each, std::string(fit.model.name), options.models).options;
       run.constancy.push_back(TestConstancy(run.alone.used, fit, own));
     }
     fitted[k] = std::move(run);

@@ -66,9 +66,10 @@ DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: hu
 DEFINE_string(interval, "auto",
               "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
 DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
-DEFINE_string(threads, "",
-              "Threads of the bootstrap and of several recordings, 0 for all cores; the result does not depend on it; "
-              "default 0.");
+DEFINE_string(
+    threads, "",
+    "Threads of the bootstrap, of long recordings and of several, 0 for all cores; the result does not depend on it; "
+    "default 0.");
 DEFINE_bool(closed_form_only, false,
             "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
             "volts without a calibration.");

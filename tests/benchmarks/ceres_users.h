@@ -2,18 +2,19 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
 #include <Eigen/Core>
 #include <ceres/autodiff_cost_function.h>
+#include <ceres/cost_function.h>
 #include <ceres/jet.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include "pendulum/model/series.h"
 #include "reference_run.h"
 
-/// What Ceres' users write without this library: a trajectory by Runge-Kutta steps from sample to sample,
-/// differentiated automatically, six parameters in one block of fixed size.
+/// What Ceres' users write without this library: a trajectory that is moved on from sample to sample (here by one
+/// Runge-Kutta step, in odeint_swing.h by steps that are controlled), differentiated automatically, six parameters in
+/// one block of fixed size.
 namespace pendulum::benchmarks {
 
 /// Gravity, viscous and dry friction over the inertia [1/s^2, 1/s, 1/s^2].
@@ -137,16 +138,17 @@ class LocatedSwing {
   double direction_ = 0;
 };
 
-/// Residuals of the reference run, measured - modelled, for ceres::AutoDiffCostFunction.
+/// Residuals of a recording, measured - modelled, for ceres::AutoDiffCostFunction, as an ordinary user writes them.
 template <template <typename> typename Swing>
-struct RungeKuttaResiduals {
-  const Recording& recording;
-  double gravity_torque;
+class UsersResiduals {
+ public:
+  explicit UsersResiduals(const Recording& recording)
+      : recording_(recording), gravity_torque_(ReferenceRig().gravity_torque.value) {}
 
   template <typename T>
   bool operator()(const T* p, T* residuals) const {
-    const Eigen::VectorXd& time = recording.time;
-    Swing<T> swing(gravity_torque, p);
+    const Eigen::VectorXd& time = recording_.time;
+    Swing<T> swing(gravity_torque_, p);
     const T& release_time = p[4];
     for (Eigen::Index i = 0; i < time.size(); ++i) {
       if (time[i] > Value(release_time)) {
@@ -157,39 +159,35 @@ struct RungeKuttaResiduals {
           swing.Advance(time[i] - time[i - 1]);
         }
       }
-      residuals[i] = recording.value[i] - (swing.angle() + p[5]);
+      residuals[i] = recording_.value[i] - (swing.angle() + p[5]);
     }
     return true;
   }
+
+ private:
+  const Recording& recording_;
+  double gravity_torque_;
 };
 
+/// The same with every call inlined, which no ordinary user asks for. Left to itself, g++ 12 gives up before: a sixth
+/// more time for a Jacobian in a file of its own, up to three times as much beside other templates.
 template <template <typename> typename Swing>
-using RungeKuttaCost = ceres::AutoDiffCostFunction<RungeKuttaResiduals<Swing>, ceres::DYNAMIC, 6>;
+class FlattenedResiduals : public UsersResiduals<Swing> {
+ public:
+  using UsersResiduals<Swing>::UsersResiduals;
 
-/// The cost function over a recording, which must outlive it.
-template <template <typename> typename Swing>
-RungeKuttaCost<Swing> MakeRungeKuttaCost(const Recording& recording) {
-  return {new RungeKuttaResiduals<Swing>{recording, ReferenceRig().gravity_torque.value},
-          static_cast<int>(recording.size())};
-}
-
-/// Where Ceres arrives from a start with DENSE_QR and its default tolerances, and what it counts on the way.
-struct CeresSolution {
-  Parameters parameters;
-  ceres::Solver::Summary summary;
+  template <typename T>
+  [[gnu::flatten]] bool operator()(const T* p, T* residuals) const {
+    return UsersResiduals<Swing>::operator()(p, residuals);
+  }
 };
 
-inline CeresSolution SolveByCeres(ceres::CostFunction& cost, const Parameters& start) {
-  CeresSolution solution{start, {}};
-  ceres::Problem::Options problem_options;
-  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
-  problem.AddResidualBlock(&cost, nullptr, solution.parameters.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  ceres::Solve(options, &problem, &solution.summary);
-  return solution;
+/// The cost function over a recording, which must outlive it. To be called once in a file that holds nothing else and
+/// is compiled apart, or its time is that of its neighbours too.
+template <typename Residuals>
+std::unique_ptr<ceres::CostFunction> MakeUsersCost(const Recording& recording) {
+  return std::make_unique<ceres::AutoDiffCostFunction<Residuals, ceres::DYNAMIC, 6>>(
+      new Residuals(recording), static_cast<int>(recording.size()));
 }
 
 }  // namespace pendulum::benchmarks

@@ -1,19 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a trajectory and a fit take, beside what a user of Ceres would write by hand. README has the
-// table from it.
+// How long a trajectory and a fit take, beside what a user of Ceres would write by hand, what other libraries take and
+// the floor below all of them. README has the table from it. --reference_csv=FILE writes the data and times nothing.
 #include "pendulum_benchmarks.h"
+
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <string_view>
 
 #include <benchmark/benchmark.h>
 
-int main(int argc, char** argv) {
-  pendulum::benchmarks::RegisterTrajectoryBenchmarks();
-  pendulum::benchmarks::RegisterFitBenchmarks();
-  pendulum::benchmarks::RegisterJointBenchmarks();
-  pendulum::benchmarks::RegisterCeresBenchmarks();
-  pendulum::benchmarks::RegisterMemoryBenchmarks();
+#include "reference_run.h"
+
+namespace pendulum::benchmarks {
+namespace {
+
+void RegisterAll() {
+  RegisterTrajectoryBenchmarks();
+  RegisterFitBenchmarks();
+  RegisterErrorBenchmarks();
+  RegisterJointBenchmarks();
+  RegisterCeresBenchmarks();
+  RegisterTinySolverBenchmarks();
+#ifdef PENDULUM_HAS_SUNDIALS
+  RegisterCvodesBenchmarks();
+#endif
+  RegisterFloorBenchmarks();
+  RegisterMemoryBenchmarks();
+}
+
+/// Writes the reference run for other programs to be timed with; the exit code.
+int WriteReferenceCsv(const std::string& path) {
+  std::ofstream file(path);
+  file << ReferenceCsv() << std::flush;
+  if (file) return 0;
+  std::cerr << "pendulum_benchmarks: cannot write '" << path << "'\n";
+  return 1;
+}
+
+/// As main, but for `--reference_csv=FILE`: then nothing is timed.
+int Run(int argc, char** argv) {
+  constexpr std::string_view kReferenceCsv = "--reference_csv=";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument.starts_with(kReferenceCsv))
+      return WriteReferenceCsv(std::string(argument.substr(kReferenceCsv.size())));
+  }
+  RegisterAll();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;
 }
+
+}  // namespace
+}  // namespace pendulum::benchmarks
+
+int main(int argc, char** argv) { return pendulum::benchmarks::Run(argc, argv); }

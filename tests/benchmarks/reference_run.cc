@@ -61,6 +61,12 @@ Optimum FindOptimum() {
   return optimum;
 }
 
+std::unique_ptr<TrajectoryCost> FinestCost(const EvaluationPoint& point) {
+  auto cost = MakeTrajectoryCost(point.problem.model, point.problem.start.start, point.problem.data);
+  cost->set_tolerance(kFinestTolerance);
+  return cost;
+}
+
 }  // namespace
 
 const Rig& ReferenceRig() {
@@ -113,11 +119,22 @@ EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int
 }
 
 double MaxReadingError(const EvaluationPoint& point, const Eigen::VectorXd& readings) {
-  const auto cost = MakeTrajectoryCost(point.problem.model, point.problem.start.start, point.problem.data);
-  cost->set_tolerance(kFinestTolerance);
+  const auto cost = FinestCost(point);
   Eigen::VectorXd reference;
   if (!cost->Readings(point.parameters, &reference, nullptr)) return kUnbounded;
   return (readings - reference).cwiseAbs().maxCoeff();
+}
+
+double MaxJacobianError(const EvaluationPoint& point, const Eigen::MatrixXd& jacobian) {
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd reference;
+  if (!FinestCost(point)->Readings(point.parameters, &readings, &reference)) return kUnbounded;
+  double error = 0;
+  for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
+    const Eigen::VectorXd column = reference.col(j) / point.problem.si_per_internal[j];
+    error = std::max(error, (jacobian.col(j) - column).lpNorm<Eigen::Infinity>() / column.lpNorm<Eigen::Infinity>());
+  }
+  return error;
 }
 
 double DistanceFromOptimum(const Parameters& estimates) {

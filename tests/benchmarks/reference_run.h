@@ -57,6 +57,10 @@ EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int
 /// Largest difference of readings [rad] to those of the trajectory at a local tolerance of 1e-17.
 double MaxReadingError(const EvaluationPoint& point, const Eigen::VectorXd& readings);
 
+/// Largest difference of derivatives of the readings by the parameters in SI (N x 6) to those of that trajectory, as a
+/// share of the largest in their column.
+double MaxJacobianError(const EvaluationPoint& point, const Eigen::MatrixXd& jacobian);
+
 /// Largest distance of estimates from the least-squares optimum of the reference run, in standard errors. The optimum
 /// is that of the trajectory at a local tolerance of 1e-17, with no step left to make.
 double DistanceFromOptimum(const Parameters& estimates);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -12,34 +14,39 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// The cost function of a point at the tolerance a fit of it begins with.
-std::unique_ptr<TrajectoryCost> CostAt(const EvaluationPoint& point) {
+/// The cost function of a point at the tolerance a fit of it begins with that allows this error [rad].
+std::unique_ptr<TrajectoryCost> CostAt(const EvaluationPoint& point, double max_trace_error) {
   auto cost = MakeTrajectoryCost(point.problem.model, point.problem.start.start, point.problem.data);
-  cost->set_tolerance(TraceTolerance(FitOptions().max_trace_error, point.problem.start.amplitude));
+  cost->set_tolerance(TraceTolerance(max_trace_error, point.problem.start.amplitude));
   return cost;
 }
 
-void Report(benchmark::State& state, const EvaluationPoint& point, const TrajectoryCost& cost) {
+void Report(benchmark::State& state, const EvaluationPoint& point, const TrajectoryCost& cost, bool with_derivatives) {
   Eigen::VectorXd readings;
-  cost.Readings(point.parameters, &readings, nullptr);
+  Eigen::MatrixXd jacobian;
+  cost.Readings(point.parameters, &readings, with_derivatives ? &jacobian : nullptr);
+  if (with_derivatives) {
+    for (Eigen::Index j = 0; j < jacobian.cols(); ++j) jacobian.col(j) /= point.problem.si_per_internal[j];
+    state.counters["max_jacobian_error"] = MaxJacobianError(point, jacobian);
+  }
   state.counters["max_error_rad"] = MaxReadingError(point, readings);
   state.counters["samples"] = static_cast<double>(readings.size());
 }
 
 /// Sum of squares alone.
 void EvaluateCost(benchmark::State& state, const EvaluationPoint& point) {
-  const auto cost = CostAt(point);
+  const auto cost = CostAt(point, FitOptions().max_trace_error);
   double sum = 0;
   for (auto _ : state) {
     if (!cost->SumOfSquares(point.parameters, &sum)) return state.SkipWithError("no trajectory");
     benchmark::DoNotOptimize(sum);
   }
-  Report(state, point, *cost);
+  Report(state, point, *cost, false);
 }
 
 /// Sums of products of residuals and all derivatives: what an iteration of a fit needs.
-void EvaluateSums(benchmark::State& state, const EvaluationPoint& point) {
-  const auto cost = CostAt(point);
+void EvaluateSumsTo(benchmark::State& state, const EvaluationPoint& point, double max_trace_error) {
+  const auto cost = CostAt(point, max_trace_error);
   Eigen::MatrixXd sums;
   std::vector<double> parameters = point.parameters;
   for (auto _ : state) {
@@ -47,7 +54,11 @@ void EvaluateSums(benchmark::State& state, const EvaluationPoint& point) {
     if (!cost->Sums(parameters, &sums)) return state.SkipWithError("no trajectory");
     benchmark::DoNotOptimize(sums.data());
   }
-  Report(state, point, *cost);
+  Report(state, point, *cost, true);
+}
+
+void EvaluateSums(benchmark::State& state, const EvaluationPoint& point) {
+  EvaluateSumsTo(state, point, FitOptions().max_trace_error);
 }
 
 void Register(const std::string& name, const std::string& model, StartKind start, int samples) {
@@ -69,6 +80,14 @@ void RegisterTrajectoryBenchmarks() {
   }
   for (const int samples : {1'000, 10'000, 100'000, 1'000'000}) {
     Register("samples:" + std::to_string(samples), "coulomb", StartKind::kRelease, samples);
+  }
+  for (const auto& [name, error] :
+       {std::pair{"1e-6", 1e-6}, {"3e-7", 3e-7}, {"1e-8", 1e-8}, {"1e-10", 1e-10}, {"1e-12", 1e-12}}) {
+    const auto run = [error = error](benchmark::State& state) {
+      EvaluateSumsTo(state, MakeEvaluationPoint("coulomb", StartKind::kRelease), error);
+    };
+    benchmark::RegisterBenchmark(("sensitivities/max_trace_error:" + std::string(name)).c_str(), run)
+        ->Unit(benchmark::kMicrosecond);
   }
 }
 

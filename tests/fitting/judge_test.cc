@@ -82,6 +82,7 @@ TEST(Judge, CallsASolutionThatIsNotUsableFailed) {
 TEST(Judge, AFitCutShortIsNotConverged) {
   FitOptions options = ModelOptions("coulomb");
   options.max_iterations = 1;
+  options.initial = {{"inertia", 0.08}};  // from the data's own start values one iteration is enough
   const FitReport report = Fit(Must(SimulateRecording(NoisyRun())), options);
   EXPECT_EQ(report.termination, Termination::kNotConverged);
   EXPECT_EQ(ExitCode(report.termination), 1);
@@ -159,6 +160,7 @@ class BlindCost final : public TrajectoryCost {
   bool Evaluate(double const* const*, double*, double**) const override { return false; }
   void set_tolerance(double) override {}
   void set_used_samples(std::size_t) override {}
+  void set_threads(int) override {}
   void set_noise(const NoiseModel& noise) override { cost_.set_noise(noise); }
 
  private:

@@ -75,6 +75,7 @@ class LineCost final : public TrajectoryCost {
   bool ComesToRest(std::span<const double>, double) const override { return false; }
   void set_tolerance(double) override {}
   void set_used_samples(std::size_t) override {}
+  void set_threads(int) override {}
   void set_noise(const NoiseModel& noise) override { sigma_ = noise.sigma; }
 
  private:

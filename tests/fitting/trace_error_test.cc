@@ -45,13 +45,15 @@ struct Traced {
 
   Traced() { solution.parameters = Truth(run); }
 
+  bool Measure(double tolerance) { return MeasureTraceError(*cost, tolerance, solution); }
+
   double TrueError() const { return (solution.readings - recording.value).cwiseAbs().maxCoeff(); }
 };
 
 TEST(MeasureTraceError, IsTheDistanceFromTheTruth) {
   Traced traced;
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
-    ASSERT_TRUE(MeasureTraceError(*traced.cost, tolerance, traced.solution));
+    ASSERT_TRUE(traced.Measure(tolerance));
     EXPECT_GT(traced.TrueError(), 1e-11) << tolerance;  // far above the recording's own error
     // The finer trace has an error too, of some hundredths.
     EXPECT_NEAR(traced.solution.trace_error, traced.TrueError(), 0.2 * traced.TrueError()) << tolerance;
@@ -60,15 +62,15 @@ TEST(MeasureTraceError, IsTheDistanceFromTheTruth) {
 
 TEST(MeasureTraceError, IsSmallerAtTheFinerTolerance) {
   Traced traced;
-  ASSERT_TRUE(MeasureTraceError(*traced.cost, 1e-6, traced.solution));
+  ASSERT_TRUE(traced.Measure(1e-6));
   const double coarse = traced.solution.trace_error;
-  ASSERT_TRUE(MeasureTraceError(*traced.cost, FinerTolerance(1e-6), traced.solution));
+  ASSERT_TRUE(traced.Measure(FinerTolerance(1e-6)));
   EXPECT_LT(traced.solution.trace_error, 0.1 * coarse);
 }
 
 TEST(MeasureTraceError, LeavesTheToleranceAndItsReadings) {
   Traced traced;
-  ASSERT_TRUE(MeasureTraceError(*traced.cost, 1e-6, traced.solution));
+  ASSERT_TRUE(traced.Measure(1e-6));
   Eigen::VectorXd readings;
   ASSERT_TRUE(traced.cost->Readings(traced.solution.parameters, &readings, nullptr));
   EXPECT_EQ(readings, traced.solution.readings);

@@ -80,15 +80,15 @@ Series<double> SineByAutodiff(const Series<double>& angle) {
 
 /// What SineSeries makes of the angle, given at each order only what its contract says it reads.
 Series<double> SineInOrder(const Series<double>& angle) {
-  SineSeries<double> sine;
-  Series<double> known_angle = Coefficients({});
+  SineSeries sine;
   Series<double> known_rate = Coefficients({});
   Series<double> coefficients;
-  for (int n = 0; n <= kMaxOrder; ++n) {
-    known_angle[n] = angle[n];
+  const auto next = [&]<int n>() {
     if (n > 0) known_rate[n - 1] = n * angle[n];
-    coefficients[n] = sine.Next(n, known_angle, known_rate);
-  }
+    coefficients[n] = sine.Next<n>(angle[0], known_rate);
+  };
+  [&]<int... n>(std::integer_sequence<int, n...>) { (next.template operator()<n>(), ...); }
+  (std::make_integer_sequence<int, kMaxOrder + 1>());
   return coefficients;
 }
 

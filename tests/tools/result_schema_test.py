@@ -335,10 +335,11 @@ class JointResults(unittest.TestCase):
         (fit,) = self.assert_valid([self.first, self.second], "--model", "drag", "--to", "4.5")["fits"]
         self.assertIn("constancy_reason", fit["runs"][0])
 
-    def test_a_recording_that_alone_does_not_tell_friction(self):
-        (fit,) = self.assert_valid([self.first, self.second], "--model", "stribeck")["fits"]
-        self.assertRegex(fit["runs"][1]["alone"], "^not_identifiable: ")
-        self.assertIsNone(fit["homogeneity"]["p"])
+    def test_friction_that_the_recordings_do_not_tell(self):
+        recordings = [swing.angle_csv(sigma=0.002, truth=dict(truth, coulomb=0.0), seed=seed)
+                      for seed, truth in ((40, swing.TRUTH), (41, LOW))]
+        (fit,) = self.assert_valid(recordings, "--model", "stribeck", status="not_identifiable")["fits"]
+        self.assertTrue(fit["reason"])  # which of the equally good points it is about hangs on the last digits
 
     def test_starts_that_are_held_where_one_is_not(self):
         (fit,) = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")["fits"]

@@ -44,13 +44,21 @@ struct Curve {
     return Motion(*(after - 1), time);
   }
 
+  static T Coefficient(const Segment<T>& segment, int k) {
+    if constexpr (DualNumber<T>) {
+      return T(segment.angle[k], segment.dual[k].v);
+    } else {
+      return segment.angle[k];
+    }
+  }
+
   static std::array<T, 3> Motion(const Segment<T>& segment, double time) {
     std::array<T, 3> motion{T(0.0), T(0.0), T(0.0)};
     const double tau = time - segment.start;
     for (int k = segment.order; k >= 0; --k) {  // Horner's rule, differentiated twice
       motion[2] = motion[2] * tau + 2.0 * motion[1];
       motion[1] = motion[1] * tau + motion[0];
-      motion[0] = motion[0] * tau + segment.angle[k];
+      motion[0] = motion[0] * tau + Coefficient(segment, k);
     }
     return motion;
   }
@@ -261,12 +269,16 @@ TEST(SineSeries, CarriesTheDerivativesOfTheCoupledRecurrenceInPlainDualArithmeti
     sine.push_back(sine_sum / double(n));
     cosine.push_back(-cosine_sum / double(n));
   }
-  SineSeries<Dual> series;
-  for (int n = 0; n <= kMaxOrder; ++n) {
-    const Dual actual = series.Next(n, angle, rate);
-    EXPECT_THAT(actual.a, DoubleNear(sine[n].a, 1e-14)) << "coefficient " << n;
-    for (int i = 0; i < 3; ++i) EXPECT_THAT(actual.v[i], DoubleNear(sine[n].v[i], 1e-13)) << "coefficient " << n;
-  }
+  Series<double> rate_values;
+  std::transform(rate.begin(), rate.end(), rate_values.begin(), [](const Dual& x) { return x.a; });
+  SineSeries series;
+  const auto compare = [&]<int n>() {
+    EXPECT_THAT(series.Next<n>(angle[0].a, rate_values), DoubleNear(sine[n].a, 1e-14)) << "coefficient " << n;
+    const auto partials = series.Partials<n>(angle);
+    for (int i = 0; i < 3; ++i) EXPECT_THAT(partials[i], DoubleNear(sine[n].v[i], 1e-13)) << "coefficient " << n;
+  };
+  [&]<int... n>(std::integer_sequence<int, n...>) { (compare.template operator()<n>(), ...); }
+  (std::make_integer_sequence<int, kMaxOrder + 1>());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/friction/registry.h"
+#include "pendulum/trajectory/swing_expansion.h"
 #include "tests/model/coefficients.h"
 
 namespace pendulum::swing_test {
@@ -19,9 +20,9 @@ using testing::DoubleNear;
 using testing::Lt;
 
 TEST(OrderForTolerance, FollowsTheFormulaWithinItsLimits) {
-  EXPECT_EQ(OrderForTolerance(1e-10), 15);  // 1 + 0.6 · 23.03 = 14.8
-  EXPECT_EQ(OrderForTolerance(1e-14), 21);  // 1 + 0.6 · 32.24 = 20.3
-  EXPECT_EQ(OrderForTolerance(1e-17), 25);  // 1 + 0.6 · 39.14 = 24.5
+  EXPECT_EQ(OrderForTolerance(1e-10), 18);  // 1 + 0.72 · 23.03 = 17.6
+  EXPECT_EQ(OrderForTolerance(1e-12), 21);  // 1 + 0.72 · 27.63 = 20.9
+  EXPECT_EQ(OrderForTolerance(4e-15), 25);  // 1 + 0.72 · 33.15 = 24.9
   EXPECT_EQ(OrderForTolerance(1e-30), kMaxOrder);
   EXPECT_EQ(OrderForTolerance(0.1), 8);
 }
@@ -31,6 +32,20 @@ TEST(EvaluateSeries, IsThePolynomialUpToTheOrderGiven) {
   EXPECT_EQ(EvaluateSeries(series, 2, 2.0), 17);
   EXPECT_EQ(EvaluateSeries(series, 1, 2.0), 5);
   EXPECT_EQ(EvaluateSeries(series, 0, 2.0), 1);
+}
+
+TEST(EvaluatePartials, AreTheDerivativesOfThePolynomialOfAnyOrder) {
+  using Dual = ceres::Jet<double, 2>;
+  Series<Dual> series;
+  for (int k = 0; k <= kMaxOrder; ++k) series[k] = Dual(7.0, Eigen::Vector2d(k + 1, 1));
+  double power = 1, weighted = 0, sum = 0;  // Σ 2^k, Σ (k + 1) 2^k
+  for (int order = 0; order <= kMaxOrder; ++order, power *= 2) {
+    weighted += (order + 1) * power;
+    sum += power;
+    const auto partials = EvaluatePartials(series, order, 2.0);
+    EXPECT_EQ(partials[0], weighted) << order;
+    EXPECT_EQ(partials[1], sum) << order;
+  }
 }
 
 TEST(GravityTorque, IsTheSineOrTheAngle) {
@@ -76,16 +91,32 @@ TEST(DirectionOfMotion, WithoutDryFrictionIsNoneOnlyAtTheBottom) {
 
 // ---- Expansion ---------------------------------------------------------------------------------------------------
 
+template <typename T>
+struct Expanded {
+  Segment<T> angle;
+  RateSeries<T> rate;
+};
+
+/// A swing expanded to the highest order there is.
+template <FrictionModel F, typename T>
+Expanded<T> ExpandedFrom(const Pendulum<F, T>& pendulum, double direction, const State<T>& state) {
+  Expanded<T> swing;
+  swing.angle.order = swing.angle.derivative_order = kMaxOrder;
+  SwingExpansion<F, T>(pendulum, swing.angle, swing.rate).Expand(direction, state);
+  return swing;
+}
+
 template <FrictionModel F>
 Series<double> Expand(const Pendulum<F, double>& pendulum, double direction, double angle, double rate) {
-  Series<double> angles = Coefficients({}), rates = Coefficients({});
-  ExpandSwing(pendulum, direction, kMaxOrder, State<double>{0, angle, rate}, angles, rates);
-  for (int n = 0; n < kMaxOrder; ++n) EXPECT_DOUBLE_EQ(rates[n], (n + 1) * angles[n + 1]) << "coefficient " << n;
-  return angles;
+  const auto swing = ExpandedFrom(pendulum, direction, State<double>{0, angle, rate});
+  for (int n = 0; n < kMaxOrder; ++n) {
+    EXPECT_DOUBLE_EQ(swing.rate.value[n], (n + 1) * swing.angle.angle[n + 1]) << "coefficient " << n;
+  }
+  return swing.angle.angle;
 }
 
 // θ = s (A cos ω0 τ + ...): with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
-TEST(ExpandSwing, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
+TEST(SwingExpansion, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.25, {0, 0.125}};
   for (const double direction : {1.0, -1.0}) {
     const Series<double> angle = Expand(pendulum, direction, 0.5, direction);
@@ -100,7 +131,7 @@ TEST(ExpandSwing, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
 }
 
 // θ = π/2 + u, u'' = -cos u: u = -τ²/2 + τ⁶/240 - τ¹⁰/19200 + ..., by inserting the series into itself.
-TEST(ExpandSwing, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
+TEST(SwingExpansion, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 1, {0}};
   const Series<double> angle = Expand(pendulum, -1, std::acos(0.0), 0);
   const std::array<double, 13> expected = {std::acos(0.0), 0, -0.5, 0, 0, 0, 1.0 / 240, 0, 0, 0, -1.0 / 19200, 0, 0};
@@ -131,31 +162,43 @@ TEST(StepLength, IsAtMostTheLongest) {
 
 // ---- Reversals ---------------------------------------------------------------------------------------------------
 
+double Reversal(const Series<double>& rate, int order, double direction, double step) {
+  return FirstReversal(rate, order, direction, step, EvaluateSeries(rate, order, step));
+}
+
 // (0.5 - τ)(1 + τ²): one root.
 TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
   const Series<double> rate = Coefficients({0.5, -1, 0.5, -1});
-  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
-  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 0.5), DoubleNear(0.5, 1e-15));
-  EXPECT_THAT(FirstReversal(rate, 3, 1.0, 0.4999), Lt(0));
+  EXPECT_THAT(Reversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(Reversal(rate, 3, 1.0, 0.5), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(Reversal(rate, 3, 1.0, 0.4999), Lt(0));
   const Series<double> mirrored = Coefficients({-0.5, 1, -0.5, 1});
-  EXPECT_THAT(FirstReversal(mirrored, 3, -1.0, 1.0), DoubleNear(0.5, 1e-15));
-  EXPECT_THAT(FirstReversal(mirrored, 3, -1.0, 0.4999), Lt(0));
+  EXPECT_THAT(Reversal(mirrored, 3, -1.0, 1.0), DoubleNear(0.5, 1e-15));
+  EXPECT_THAT(Reversal(mirrored, 3, -1.0, 0.4999), Lt(0));
 }
 
 // τ (0.25 - τ): the root at 0 is where it starts.
 TEST(FirstReversal, FromRestIsTheNextRoot) {
   const Series<double> rate = Coefficients({0, 0.25, -1});
-  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
-  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 0.2), Lt(0));
+  EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
+  EXPECT_THAT(Reversal(rate, 2, 1.0, 0.2), Lt(0));
 }
 
-// 1 - 1e6 τ²: Newton's method alone would leave the step from its end.
+// 1 - 1e6 τ²: Halley's method alone would leave the step from its end.
 TEST(FirstReversal, IsFoundNearTheBeginningOfALongStep) {
   const Series<double> rate = Coefficients({1, 0, -1e6});
-  EXPECT_THAT(FirstReversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
+  EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
   // 1e-9 - τ + τ³ / 2, flat near its end
   const Series<double> flat = Coefficients({1e-9, -1, 0, 0.5});
-  EXPECT_THAT(FirstReversal(flat, 3, 1.0, 0.816), DoubleNear(1e-9, 1e-24));
+  EXPECT_THAT(Reversal(flat, 3, 1.0, 0.816), DoubleNear(1e-9, 1e-24));
+}
+
+template <DualNumber T>
+State<T> StateAfter(const Expanded<T>& swing, const State<T>& start, double tau) {
+  State<T> state{start.time + tau, T(EvaluateSeries(swing.angle.angle, kMaxOrder, tau)), T(0.0)};
+  state.angle.v = EvaluatePartials(swing.angle.dual, kMaxOrder, tau);
+  state.rate.v = EvaluatePartials(swing.rate.dual, kMaxOrder - 1, tau);
+  return state;
 }
 
 // Linear, θ = v √I sin(τ / √I): the turn is at τ = π √I / 2, θ = v √I, for v = I = 1; I, v carry derivatives.
@@ -163,11 +206,10 @@ TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
   using Dual = ceres::Jet<double, 2>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   const State<Dual> start{Dual(3.0), Dual(0.0), Dual(1, 1)};
-  Series<Dual> angle, rate;
-  ExpandSwing(pendulum, 1.0, kMaxOrder, start, angle, rate);
-  const double root = FirstReversal(rate, kMaxOrder - 1, 1.0, 1.6);
+  const auto swing = ExpandedFrom(pendulum, 1.0, start);
+  const double root = Reversal(swing.rate.value, kMaxOrder - 1, 1.0, 1.6);
   EXPECT_THAT(root, DoubleNear(kPi / 2, 1e-15));
-  const State<Dual> reversal = StateAtReversal(start, angle, rate, kMaxOrder, root);
+  const State<Dual> reversal = StateAtReversal(StateAfter(swing, start, root), -1.0);  // θ'' = -θ / I
   EXPECT_THAT(reversal.time.a, DoubleNear(3 + kPi / 2, 1e-14));
   EXPECT_THAT(reversal.time.v[0], DoubleNear(kPi / 4, 1e-13));  // d(π √I / 2)/dI
   EXPECT_THAT(reversal.time.v[1], DoubleNear(0, 1e-13));
@@ -183,9 +225,8 @@ TEST(StateAtReversal, AddsToTheShiftThatThePreviousReversalsLeft) {
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   State<Dual> start{Dual(0.0), Dual(0.0), Dual(1.0)};
   start.time.v[0] = 10;
-  Series<Dual> angle, rate;
-  ExpandSwing(pendulum, 1.0, kMaxOrder, start, angle, rate);
-  const State<Dual> reversal = StateAtReversal(start, angle, rate, kMaxOrder, kPi / 2);
+  const auto swing = ExpandedFrom(pendulum, 1.0, start);
+  const State<Dual> reversal = StateAtReversal(StateAfter(swing, start, kPi / 2), -1.0);
   EXPECT_THAT(reversal.time.v[0], DoubleNear(10 + kPi / 4, 1e-13));
 }
 
@@ -193,19 +234,13 @@ TEST(StateAtReversal, AddsToTheShiftThatThePreviousReversalsLeft) {
 TEST(FixAbsoluteTime, SubtractsTheRateTimesTheShiftOfTheStart) {
   using Dual = ceres::Jet<double, 1>;
   Series<Dual> angle;
-  const std::array<double, 3> values = {1, 3, 5}, derivatives = {10, 20, 30};
-  for (int k = 0; k < 3; ++k) {
-    angle[k].a = values[k];
-    angle[k].v[0] = derivatives[k];
-  }
+  const std::array<double, 3> derivatives = {10, 20, 30};
+  for (int k = 0; k < 3; ++k) angle[k].v[0] = derivatives[k];
   Dual start(7.0);
   start.v[0] = 2;
-  FixAbsoluteTime(start, 2, angle);
+  FixAbsoluteTime(start, 2, Coefficients({3, 10, 0}), angle);
   const std::array<double, 3> expected = {4, 0, 30};
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(angle[k].a, values[k]);
-    EXPECT_EQ(angle[k].v[0], expected[k]) << "coefficient " << k;
-  }
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(angle[k].v[0], expected[k]) << "coefficient " << k;
 }
 
 TEST(Values, KeepsTheNumbersAndDropsTheDerivatives) {

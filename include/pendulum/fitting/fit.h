@@ -48,7 +48,7 @@ struct FitOptions {
   Loss loss = Loss::kNone;
   IntervalMethod interval = IntervalMethod::kAuto;
   std::uint64_t seed = 1;  ///< Of the bootstrap and of posterior sampling.
-  int threads = 0;         ///< Of the bootstrap; 0: all cores. The result does not depend on it.
+  int threads = 0;         ///< Of the bootstrap and long recordings; 0: all cores. The result does not depend on it.
   std::function<void(int done, int total)> progress;  ///< Called now and then by the bootstrap, from one thread.
   double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.

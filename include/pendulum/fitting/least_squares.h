@@ -21,6 +21,13 @@ double PriorSum(std::span<const PriorTerm> priors, std::span<const double> param
 /// Adds the priors' part to the (P + 1) x (P + 1) sums of LeastSquares::Sums.
 void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parameters, Eigen::MatrixXd* sums);
 
+inline constexpr int kMostCompressed = 16;
+
+/// From such sums the residuals and derivatives of P + 1 equations of the same cost and gradient, P <= kMostCompressed:
+/// R, R^-T J'r and the rest of |r| (MODEL.md eq. (19)), as ceres::CostFunction::Evaluate returns them. Allocates
+/// nothing.
+void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians);
+
 /// What a solver minimises over P parameters: |r|², the deviance of samples and priors. Every function returns false
 /// where some motion cannot be traced.
 class LeastSquares {

@@ -47,8 +47,13 @@ struct Solution {
 /// Where parameter i stands at a value: -1 at its lower bound or below, 1 at its upper bound or above, 0 between.
 int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
+/// |gradient_i| / sqrt(information_ii) below which a step along parameter i alone would take away less than 1e-10 of
+/// |r|², from LeastSquares' sums: a solve may leave as much.
+double NegligibleSlope(const Eigen::MatrixXd& sums);
+
 /// Levenberg-Marquardt (Ceres) from `start` over the samples the cost uses; parameters stay within their bounds. Ends
-/// when the cost, not owned, changes by less than 1e-10 of itself: estimates within sqrt(1e-10 N) standard errors.
+/// when the cost, not owned, changes by less than 1e-10 of itself, or would with the next step: estimates within
+/// sqrt(1e-10 N) standard errors.
 Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options);
 
 /// Solve from where `from` ended; the work of both is counted, its other minima are kept.

@@ -38,7 +38,8 @@ struct TrajectoryData {
 /// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
 /// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
 /// the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be
-/// traced or is released outside the data makes every function return false.
+/// traced or is released outside the data makes every function return false. It remembers what it was asked last: one
+/// thread at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
   /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
@@ -50,6 +51,7 @@ class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
   virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
   virtual void set_noise(const NoiseModel& noise) = 0;
+  virtual void set_threads(int threads) = 0;  ///< For long recordings; default 1, 0: all cores. Changes no bit.
 
   void set_priors(std::vector<PriorTerm> priors) { priors_ = std::move(priors); }
   const std::vector<PriorTerm>& priors() const { return priors_; }

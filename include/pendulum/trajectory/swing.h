@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "pendulum/base/physics.h"
@@ -30,28 +31,65 @@ struct State {
   T time, angle, rate;  ///< s, rad, rad/s
 };
 
+/// The series of a dual T; of another, nothing.
+template <typename T>
+struct DualSeries {};
+template <DualNumber T>
+struct DualSeries<T> : Series<T> {};
+
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// With a dual T the partial derivatives of θ are those at a fixed absolute time t.
+/// With a dual T the partial derivatives of θ at a fixed absolute time t are Σ dual[n].v (t - start)^n, n =
+/// 0..derivative_order.
 template <typename T>
 struct Segment {
   double start = 0, end = 0;  ///< s
   int order = 0;
-  Series<T> angle;
+  int derivative_order = 0;
+  Series<double> angle;
+  DualSeries<T> dual;
 };
 
-/// Σ c_k τ^k for k = 0..order, by Horner's rule.
+/// The rate along a swing, as Segment has the angle; orders are one less.
+template <typename T>
+struct RateSeries {
+  Series<double> value;
+  DualSeries<T> dual;
+};
+
+/// Σ c_k τ^k for k = 0..order, by Horner's rule over even and odd powers apart: neither waits for the other.
 template <typename T>
 T EvaluateSeries(const Series<T>& c, int order, double tau) {
-  T sum = c[order];
-  for (int k = order - 1; k >= 0; --k) sum = sum * tau + c[k];
-  return sum;
+  const double square = tau * tau;
+  T odd(0.0);
+  T even = order % 2 == 0 ? c[order] : T(0.0);
+  for (int k = order % 2 == 0 ? order - 1 : order; k > 0; k -= 2) {
+    odd = odd * square + c[k];
+    even = even * square + c[k - 1];
+  }
+  return even + odd * tau;
 }
 
-/// Order of the expansion for a local tolerance: 1 - 0.6 ln(tolerance), within the room of Series. The asymptotic
-/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); reversals cut steps short and
-/// each step has a cost of its own, so a little more is faster: measured at tolerances 1e-9 to 1e-12.
+/// Partial derivatives of EvaluateSeries.
+template <DualNumber T>
+auto EvaluatePartials(const Series<T>& c, int order, double tau) {
+  const double square = tau * tau;
+  decltype(T::v) even = c[order].v;
+  if (order == 0) return even;
+  decltype(T::v) odd = c[order - 1].v;
+  for (int k = order - 2; k >= 0; k -= 2) {
+    even = even * square + c[k].v;
+    if (k > 0) odd = odd * square + c[k - 1].v;
+  }
+  (order % 2 == 0 ? odd : even) *= tau;
+  even += odd;
+  return even;
+}
+
+/// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic
+/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); each step has a cost of its
+/// own, so more is faster: with the tolerance that each needs for the same global error, 0.6 is slower by a fifth.
 inline int OrderForTolerance(double tolerance) {
-  return std::clamp(static_cast<int>(std::ceil(1.0 - 0.6 * std::log(tolerance))), 8, kMaxOrder);
+  return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
 
 /// Restoring torque g(θ) in units of G: sin θ or θ.
@@ -79,88 +117,68 @@ double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, doub
   return std::abs(torque) > holding * kMargin ? direction : 0.0;
 }
 
-/// Taylor coefficients 0..order of the angle and 0..order-1 of the rate in one direction of motion. MODEL.md eq. (12).
-template <FrictionModel F, typename T>
-void ExpandSwing(const Pendulum<F, T>& pendulum, double direction, int order, const State<T>& state, Series<T>& angle,
-                 Series<T>& rate) {
-  SineSeries<T> sine;
-  typename F::template Recurrence<T> friction;
-  const T inverse_inertia = 1.0 / pendulum.inertia;
-  angle[0] = state.angle;
-  rate[0] = state.rate;
-  for (int n = 0; n < order; ++n) {
-    angle[n + 1] = rate[n] * (1.0 / (n + 1));
-    if (n + 1 == order) break;
-    const T gravity = pendulum.gravity == Gravity::kSine ? sine.Next(n, angle, rate) : angle[n];
-    const T torque = gravity + friction(n, rate, direction, pendulum.friction.data());
-    rate[n + 1] = torque * inverse_inertia * (-1.0 / (n + 1));
-  }
-}
+/// log2 of a positive normal number within 0.09, exact for powers of two: the exponent, and the mantissa as if log2
+/// were linear between them.
+inline double RoughLog2(double x) { return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - 1023; }
 
 /// Longest step whose truncation error stays near `tolerance` [rad]: the least of (tol / |c_k|)^(1/k) over the last
-/// four coefficients (some vanish: from rest, at 90 deg), at most `longest` [s]. 0 when a coefficient is not finite.
-template <typename T>
-double StepLength(const Series<T>& angle, int order, double tolerance, double longest) {
+/// four coefficients (some vanish: from rest, at 90 deg), within 2 %, at most `longest` [s]. 0 when a coefficient is
+/// not finite.
+inline double StepLength(const Series<double>& angle, int order, double tolerance, double longest) {
   double log_step = std::numeric_limits<double>::infinity();
   for (int k = order - 3; k <= order; ++k) {
-    const double size = std::abs(Value(angle[k]));
+    const double size = std::abs(angle[k]);
     if (!std::isfinite(size)) return 0.0;
-    if (size > 0) log_step = std::min(log_step, std::log2(tolerance / size) / k);
+    if (size > 0) log_step = std::min(log_step, (RoughLog2(tolerance) - RoughLog2(size)) * kInverse[k]);
   }
   return std::min(std::exp2(log_step), longest);
 }
 
 /// First root of the rate in (0, step], or a negative number when the direction of motion holds throughout. The step is
-/// at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end decides. From rest
-/// the rate's root at 0 is divided out. Newton's method kept inside a bisection's bracket.
-template <typename T>
-double FirstReversal(const Series<T>& rate, int order, double direction, double step) {
-  const int first = Value(rate[0]) == 0 ? 1 : 0;
-  const auto value_and_slope = [&](double tau) {
-    double value = Value(rate[order]);
-    double slope = 0;
-    for (int k = order - 1; k >= first; --k) {
-      slope = slope * tau + value;
-      value = value * tau + Value(rate[k]);
-    }
-    return std::pair(direction * value, direction * slope);
-  };
-  double high = step;
-  auto [value, slope] = value_and_slope(high);
-  if (value > 0) return -1;
+/// at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end, of end_rate,
+/// decides. From rest the rate's root at 0 is divided out. Halley's method from the chord, kept inside a bisection's
+/// bracket: a relative step of 1e-6 is the last, what would follow is its cube.
+inline double FirstReversal(const Series<double>& rate, int order, double direction, double step, double end_rate) {
+  if (direction * end_rate > 0) return -1;
+  const double begin_rate = rate[0];
+  const int first = begin_rate == 0 ? 1 : 0;
   double low = 0;
-  double root = high;
-  for (int iteration = 0; iteration < 100 && value != 0; ++iteration) {
-    (value > 0 ? low : high) = root;
-    double next = root - value / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - root) <= 1e-16 * step || next == root) break;
-    root = next;
-    std::tie(value, slope) = value_and_slope(root);
+  double high = step;
+  double root = begin_rate == 0 ? step : step * begin_rate / (begin_rate - end_rate);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    double value = rate[order];
+    double slope = 0;
+    double half_bend = 0;
+    for (int k = order - 1; k >= first; --k) {
+      half_bend = half_bend * root + slope;
+      slope = slope * root + value;
+      value = value * root + rate[k];
+    }
+    if (value == 0) break;
+    (direction * value > 0 ? low : high) = root;
+    const double next = root - value * slope / (slope * slope - value * half_bend);
+    const bool last = std::abs(next - root) <= 1e-6 * root;
+    const bool inside = next > low && next < high;
+    root = last || inside ? std::clamp(next, low, high) : 0.5 * (low + high);
+    if (last) break;
   }
   return root;
 }
 
-/// The state at the reversal `tau` after the start of an expansion: the rate is 0 with all its derivatives, and the
-/// instant moves by -ω_p / α (implicit function theorem, MODEL.md eq. (16)).
+/// The state at a reversal, from the state at the same instant, whose rate is 0 but for rounding: the rate is 0 with
+/// all its derivatives, and the instant moves by -ω_p / α (implicit function theorem, MODEL.md eq. (16)).
 template <typename T>
-State<T> StateAtReversal(const State<T>& state, const Series<T>& angle, const Series<T>& rate, int order, double tau) {
-  State<T> reversal{state.time + tau, EvaluateSeries(angle, order, tau), T(0.0)};
-  if constexpr (DualNumber<T>) {
-    double acceleration = 0;
-    for (int k = order - 1; k >= 1; --k) acceleration = acceleration * tau + k * rate[k].a;
-    reversal.time.v -= EvaluateSeries(rate, order - 1, tau).v / acceleration;
-  }
+State<T> StateAtReversal(const State<T>& state, double acceleration) {
+  State<T> reversal{state.time, state.angle, T(0.0)};
+  if constexpr (DualNumber<T>) reversal.time.v -= state.rate.v / acceleration;
   return reversal;
 }
 
 /// Turns partial derivatives at fixed time since `start` into those at fixed absolute time: θ_p - θ' start_p,
-/// coefficient by coefficient (MODEL.md eq. (17)).
-template <typename T>
-void FixAbsoluteTime(const T& start, int order, Series<T>& angle) {
-  if constexpr (DualNumber<T>) {
-    for (int k = 0; k < order; ++k) angle[k].v -= ((k + 1) * angle[k + 1].a) * start.v;
-  }
+/// coefficient by coefficient up to `order` (MODEL.md eq. (17)).
+template <DualNumber T>
+void FixAbsoluteTime(const T& start, int order, const Series<double>& rate, Series<T>& dual_angle) {
+  for (int k = 0; k <= order; ++k) dual_angle[k].v -= rate[k] * start.v;
 }
 
 }  // namespace pendulum

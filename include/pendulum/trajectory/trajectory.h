@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "pendulum/base/instruction_set.h"
 #include "pendulum/base/status.h"
 #include "pendulum/trajectory/swing.h"
+#include "pendulum/trajectory/swing_expansion.h"
 
 namespace pendulum {
 
@@ -25,9 +29,10 @@ struct Start {
 
 /// How far and how accurately to trace.
 struct TraceOptions {
-  double begin = 0, end = 0;  ///< s; a hold is reported from `begin` to the release.
-  double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
-  int max_steps = 2'000'000;  ///< Beyond this the trial is refused: its time scale is absurd.
+  double begin = 0, end = 0;    ///< s; a hold is reported from `begin` to the release.
+  double tolerance = 1e-10;     ///< rad, local: the truncation error of one step. See TraceTolerance.
+  double derivative_share = 1;  ///< Of the orders: derivatives are as exact as tolerance to that power would be.
+  int max_steps = 2'000'000;    ///< Beyond this the trial is refused: its time scale is absurd.
 };
 
 /// What happened on the way.
@@ -78,14 +83,27 @@ template <FrictionModel F, typename T, typename Visitor>
 class Tracer {
  public:
   Tracer(const Pendulum<F, T>& pendulum, const TraceOptions& options, Visitor& visit)
-      : pendulum_(pendulum),
-        values_(Values(pendulum)),
+      : values_(Values(pendulum)),
         options_(options),
         order_(OrderForTolerance(options.tolerance)),
+        derivative_order_(static_cast<int>(std::ceil(options.derivative_share * order_))),
         longest_step_(0.5 * kPi * std::sqrt(values_.inertia)),
-        visit_(visit) {}
+        visit_(visit),
+        expansion_(pendulum, segment_, rate_) {}
 
   TraceSummary Run(const Start<T>& start) {
+#ifdef PENDULUM_HAS_AVX2
+    if (kUseAvx2) return RunAvx2(start);
+#endif
+    return RunAnywhere(start);
+  }
+
+ private:
+#ifdef PENDULUM_HAS_AVX2
+  [[PENDULUM_AVX2, gnu::flatten]] TraceSummary RunAvx2(const Start<T>& start) { return RunAnywhere(start); }
+#endif
+
+  TraceSummary RunAnywhere(const Start<T>& start) {
     State<T> state{T(start.time), start.angle, start.rate};
     if (start.kind == StartKind::kRelease && start.time > options_.begin)
       VisitRest(options_.begin, start.time, start.angle);
@@ -102,40 +120,50 @@ class Tracer {
     return summary_;
   }
 
- private:
   double Direction(const State<T>& state) const {
     return DirectionOfMotion(values_, Value(state.angle), Value(state.rate));
   }
 
   /// Moves `state` to the next reversal, or to the end; false when the trial cannot be traced.
   bool Swing(double direction, State<T>& state) {
+    segment_.order = order_;
+    segment_.derivative_order = derivative_order_;
     while (Value(state.time) < options_.end) {
-      ExpandSwing(pendulum_, direction, order_, state, segment_.angle, rate_);
+      expansion_.Expand(direction, state);
       const double step = StepLength(segment_.angle, order_, options_.tolerance, longest_step_);
       if (!(step > 0) || ++summary_.steps > options_.max_steps) {
         summary_.outcome = TraceSummary::Outcome::kNotTraceable;
         return false;
       }
-      const double root = FirstReversal(rate_, order_ - 1, direction, step);
+      const double end_rate = EvaluateSeries(rate_.value, order_ - 1, step);
+      const double root = FirstReversal(rate_.value, order_ - 1, direction, step, end_rate);
       const double length = root > 0 ? root : step;
-      const State<T> next = root > 0 ? StateAtReversal(state, segment_.angle, rate_, order_, length)
-                                     : State<T>{state.time + length, EvaluateSeries(segment_.angle, order_, length),
-                                                EvaluateSeries(rate_, order_ - 1, length)};
-      FixAbsoluteTime(state.time, order_, segment_.angle);
+      State<T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
+      if constexpr (DualNumber<T>) {
+        next.angle.v = EvaluatePartials(segment_.dual, derivative_order_, length);
+        next.rate.v = EvaluatePartials(rate_.dual, derivative_order_ - 1, length);
+        FixAbsoluteTime(state.time, derivative_order_ - 1, rate_.value, segment_.dual);
+      }
       VisitSwing(Value(state.time), length);
       state = next;
       if (root > 0) {
-        NoteReversal(Value(state.angle));
+        Reverse(direction, state);
         return true;
       }
     }
     return true;
   }
 
+  void Reverse(double direction, State<T>& state) {
+    const double angle = Value(state.angle);
+    const double torque = GravityTorque(values_.gravity, angle) + F::Torque(0.0, direction, values_.friction.data());
+    state = StateAtReversal(state, -torque / values_.inertia);
+    NoteReversal(angle);
+  }
+
   void VisitSwing(double start, double length) {
     segment_.start = start;
     segment_.end = std::min(start + length, options_.end);
-    segment_.order = order_;
     visit_(std::as_const(segment_));
   }
 
@@ -156,18 +184,21 @@ class Tracer {
     segment_.start = start;
     segment_.end = std::min(end, options_.end);
     segment_.order = 0;
-    segment_.angle[0] = angle;
+    segment_.angle[0] = Value(angle);
+    segment_.derivative_order = 0;
+    if constexpr (DualNumber<T>) segment_.dual[0] = angle;
     visit_(std::as_const(segment_));
   }
 
-  const Pendulum<F, T>& pendulum_;
   const Pendulum<F, double> values_;
   const TraceOptions& options_;
   const int order_;
+  const int derivative_order_;
   const double longest_step_;
   Visitor& visit_;
-  Series<T> rate_;
   Segment<T> segment_;
+  RateSeries<T> rate_;
+  SwingExpansion<F, T> expansion_;
   TraceSummary summary_;
 };
 

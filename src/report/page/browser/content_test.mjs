@@ -106,6 +106,7 @@ test('without samples the tables remain', async (t) => {
 test('no number of a full report is NaN', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   for (const summary of await page.locator('summary').all()) await summary.click();
+  await page.waitForFunction(() => [...document.querySelectorAll('details[open]')].every((part) => part.children.length > 1));
   assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|\bnull\b|Infinity/);
 });
 

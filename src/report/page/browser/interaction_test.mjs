@@ -98,6 +98,7 @@ test('amplitudes on a logarithmic axis', async (t) => {
   await page.waitForSelector('#envelope .plot[aria-label*=logarithmic]');
   assert.ok((await ink(page, '#envelope .plot')) > 3000);
   await page.locator('#envelope summary').click();
+  await page.waitForSelector('#envelope details tbody tr'); // filled after the click, when the browser says it is open
   assert.equal(await page.locator('#envelope details tbody tr').count(), makeSeries().peaks.length);
 });
 

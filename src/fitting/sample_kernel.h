@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+#include "pendulum/base/instruction_set.h"
+#include "pendulum/model/series.h"
+
+/// The arithmetic that every sample costs. It is compiled for each instruction set that is worth it and chosen by what
+/// the processor has: see instruction_set.h.
+namespace pendulum {
+
+/// Samples are worked on in blocks of consecutive ones: their columns stay in the nearest cache, and sums over a block
+/// do not depend on which thread makes them.
+inline constexpr std::size_t kBlock = 256;
+inline constexpr std::size_t kBlockStride = kBlock + 16;  ///< Of a block's rows: vectors reach beyond the last sample.
+inline constexpr std::size_t kParts = 4;                  ///< Partial sums of a product over a block.
+
+/// Polynomials in τ of everything that is wanted at a sample: W columns, the last to `order`, those before it, which
+/// are derivatives, to derivative_order, which is at most `order`.
+template <int W>
+struct Polynomials {
+  int order = 0;
+  int derivative_order = 0;
+  std::array<std::array<double, W>, kMaxOrder + 1> coefficient;
+};
+
+/// R rows of numbers, one for each sample of a block.
+template <int R>
+struct SampleBlock {
+  alignas(64) std::array<std::array<double, kBlockStride>, R> row;
+};
+
+/// Products of R rows summed over a block: (0,0), (1,0), (1,1), (2,0), ...
+template <int R>
+using RowProducts = std::array<double, R*(R + 1) / 2>;
+
+namespace baseline {
+inline constexpr std::size_t kLanes = 2;
+using Vector [[gnu::vector_size(16)]] = double;
+#include "sample_kernel_body.h"
+}  // namespace baseline
+
+#ifdef PENDULUM_HAS_AVX2
+#pragma GCC push_options
+#pragma GCC target("avx2,fma")
+namespace avx2 {
+inline constexpr std::size_t kLanes = 4;
+using Vector [[gnu::vector_size(32)]] = double;
+#include "sample_kernel_body.h"
+}  // namespace avx2
+#pragma GCC pop_options
+#endif
+
+/// Values of the polynomials at `count` τ into W rows. Reads and writes up to 3 beyond.
+template <int W>
+void EvaluateAt(const Polynomials<W>& polynomials, const double* tau, int count, double* rows) {
+#ifdef PENDULUM_HAS_AVX2
+  if (kUseAvx2) return avx2::Evaluate<W>(polynomials, tau, count, rows);
+#endif
+  baseline::Evaluate<W>(polynomials, tau, count, rows);
+}
+
+/// All products of the first `count` samples' rows; overwrites what is beyond the last of them.
+template <int R>
+void SumProducts(SampleBlock<R>& block, int count, RowProducts<R>& sums) {
+  for (auto& row : block.row) std::fill_n(row.begin() + count, kParts, 0.0);
+#ifdef PENDULUM_HAS_AVX2
+  if (kUseAvx2) return avx2::SumProducts<R>(block.row[0].data(), count, sums.data());
+#endif
+  baseline::SumProducts<R>(block.row[0].data(), count, sums.data());
+}
+
+}  // namespace pendulum

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <benchmark/benchmark.h>
+
+#include "pendulum/fitting/bootstrap.h"
+#include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/profile.h"
+#include "pendulum/fitting/search.h"
+#include "pendulum/trajectory/tolerance.h"
+#include "pendulum_benchmarks.h"
+#include "reference_run.h"
+
+namespace pendulum::benchmarks {
+namespace {
+
+/// The reference run after its fit and before it is judged. The cost looks into the problem.
+struct SolvedRun {
+  std::unique_ptr<FitProblem> problem;
+  std::unique_ptr<TrajectoryCost> cost;
+  Solution solution;
+};
+
+SolvedRun SolveReferenceRun() {
+  FitOptions options;
+  options.rig = ReferenceRig();
+  SolvedRun run;
+  run.problem = std::make_unique<FitProblem>(Expect(MakeFitProblem(ReferenceRecording(), options)));
+  const FitProblem& problem = *run.problem;
+  run.cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
+  run.cost->set_tolerance(TraceTolerance(options.max_trace_error, problem.start.amplitude));
+  run.cost->set_noise(problem.noise);
+  run.solution = Search(
+      *run.cost, problem.data, [&](const auto& fixed) { return FirstGuess(problem, fixed); }, problem.solve);
+  MaximizeLikelihood(*run.cost, problem, options, run.solution);
+  return run;
+}
+
+/// Information and its inverse at the optimum, residuals without memory: one pass over the samples and some algebra.
+void FindCovariance(benchmark::State& state) {
+  SolvedRun run = SolveReferenceRun();
+  for (auto _ : state) {
+    double& last = run.solution.parameters.back();
+    last = std::nextafter(last, 1.0);  // the cost remembers the sums of the last point
+    const std::optional<Optimum> optimum = Linearize(run.problem->solve, *run.cost, run.solution);
+    if (!optimum || !optimum->inverse.identifiable) return state.SkipWithError("not identifiable");
+    Errors errors = ComputeErrors(*run.problem, *run.cost, run.solution, *optimum, {});
+    benchmark::DoNotOptimize(errors.covariance.data());
+  }
+  state.counters["samples"] = kSamples;
+}
+
+/// Profile-likelihood intervals of all free parameters.
+void FindProfiles(benchmark::State& state) {
+  const SolvedRun run = SolveReferenceRun();
+  const std::optional<Optimum> optimum = Linearize(run.problem->solve, *run.cost, run.solution);
+  if (!optimum) return state.SkipWithError("no trajectory");
+  const int before = run.cost->traces();
+  for (auto _ : state) {
+    for (const int k : optimum->free) {
+      const ProfileInterval interval = ProfileParameter(*run.cost, *run.problem, run.solution, *optimum, {}, k);
+      if (!interval.lower || !interval.upper) return state.SkipWithError(interval.open.c_str());
+    }
+  }
+  state.counters["parameters"] = static_cast<double>(optimum->free.size());
+  state.counters["traces"] = benchmark::Counter(run.cost->traces() - before, benchmark::Counter::kAvgIterations);
+  state.counters["samples"] = kSamples;
+}
+
+/// A fit whose intervals are those of refits, on one thread.
+void FitWithBootstrap(benchmark::State& state) {
+  FitOptions options;
+  options.rig = ReferenceRig();
+  options.interval = IntervalMethod::kBootstrap;
+  options.threads = 1;
+  const Recording recording = ReferenceRecording();
+  for (auto _ : state) {
+    const Result<FitReport> fit = FitRecording(recording, options);
+    if (!fit || fit->termination != Termination::kConverged) return state.SkipWithError("not converged");
+  }
+  state.counters["refits"] = kBootstrapFits;
+  state.counters["samples"] = kSamples;
+}
+
+}  // namespace
+
+void RegisterErrorBenchmarks() {
+  benchmark::RegisterBenchmark("covariance", FindCovariance)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("profile", FindProfiles)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("bootstrap", FitWithBootstrap)->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace pendulum::benchmarks

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ceres_users.h"
+#include "odeint_swing.h"
+#include "users_costs.h"
+
+namespace pendulum::benchmarks {
+
+/// Always flattened: the integrator off the shelf at its best.
+std::unique_ptr<ceres::CostFunction> MakeLocatedOdeintCost(const Recording& recording) {
+  return MakeUsersCost<FlattenedResiduals<OdeintSwing>>(recording);
+}
+
+}  // namespace pendulum::benchmarks

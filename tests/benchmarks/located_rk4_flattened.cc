@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ceres_users.h"
+#include "users_costs.h"
+
+namespace pendulum::benchmarks {
+
+std::unique_ptr<ceres::CostFunction> MakeLocatedRk4FlattenedCost(const Recording& recording) {
+  return MakeUsersCost<FlattenedResiduals<LocatedSwing>>(recording);
+}
+
+}  // namespace pendulum::benchmarks

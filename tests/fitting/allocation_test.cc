@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// That what a solver calls again and again allocates nothing. A program of its own: it replaces operator new, and is
+// linked with --wrap=malloc so that it also sees what Eigen takes.
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/trajectory_cost.h"
+#include "tests/fitting/trajectory_cost_examples.h"
+
+namespace {
+std::atomic<int> allocations = 0;
+}  // namespace
+
+extern "C" {
+void* __real_malloc(std::size_t size);
+void* __wrap_malloc(std::size_t size) {
+  ++allocations;
+  return __real_malloc(size);
+}
+}
+
+// Not inlined, or g++ thinks that the two do not belong together.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+
+namespace pendulum::allocation_test {
+namespace {
+
+TEST(Allocations, AreSeen) {
+  int before = allocations;
+  const Eigen::VectorXd vector = Eigen::VectorXd::Constant(1000, allocations);
+  EXPECT_EQ(allocations - before, 1) << vector.sum();
+  before = allocations;
+  void* const memory = ::operator new(4);  // called as a function, or a compiler may leave it out
+  EXPECT_EQ(allocations - before, 1) << memory;
+  ::operator delete(memory);
+}
+
+/// Residuals and, if asked for, derivatives as Ceres asks for them, each at another point than the last.
+void EvaluateAtManyPoints(const TrajectoryCost& cost, const std::vector<double>& at, bool with_jacobians) {
+  std::array<double, 16> p{};
+  std::array<double, 16> residuals{};
+  std::array<std::array<double, 16>, 16> jacobian{};
+  std::array<double*, 16> jacobians{};
+  std::array<const double*, 16> blocks{};
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    p[i] = at[i];
+    blocks[i] = &p[i];
+    jacobians[i] = jacobian[i].data();
+  }
+  for (int evaluation = 0; evaluation < 5; ++evaluation) {
+    p[0] *= 1.0001;
+    EXPECT_TRUE(cost.Evaluate(blocks.data(), residuals.data(), with_jacobians ? jacobians.data() : nullptr));
+  }
+}
+
+void ExpectNoAllocations(const NoiseModel& noise) {
+  ForEachCase([&](const MotionModel& model, StartKind start, Quantity quantity) {
+    const std::vector<double> p = TypicalParameters(model, start);
+    const TrajectoryData data = Simulated(model, start, quantity, 2000, p, 0.003);
+    const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model, start, data);
+    cost->set_noise(noise);
+    for (const bool with_jacobians : {true, false}) {
+      EvaluateAtManyPoints(*cost, p, with_jacobians);  // makes room
+      const int before = allocations;
+      EvaluateAtManyPoints(*cost, p, with_jacobians);
+      EXPECT_EQ(allocations - before, 0) << "with derivatives: " << with_jacobians;
+    }
+  });
+}
+
+TEST(Allocations, AreNoneInLeastSquares) { ExpectNoAllocations({}); }
+
+TEST(Allocations, AreNoneInTheLikelihoodOfLevels) {
+  NoiseModel noise;
+  noise.family = NoiseFamily::kQuantized;
+  noise.sigma = 0.002;
+  noise.resolution = 0.0035;
+  ExpectNoAllocations(noise);
+}
+
+}  // namespace
+}  // namespace pendulum::allocation_test
