@@ -106,17 +106,17 @@ class SineSeries {
   /// n > 1.
   template <int n>
   void Advance(const Series<double>& rate) {
-    constexpr int m = n - 1;
+    const int last = n - 1;
     Sums low;
     Sums high;
 #pragma GCC unroll 32
-    for (int k = m / 2; k > 0; --k) {
-      low.Add(rate[k], cos_[m - k], sin_[m - k]);
-      if (k != m - k) high.Add(rate[m - k], cos_[k], sin_[k]);
+    for (int k = last / 2; k > 0; --k) {
+      low.Add(rate[k], cos_[last - k], sin_[last - k]);
+      if (k != last - k) high.Add(rate[last - k], cos_[k], sin_[k]);
     }
     const double first = rate[0] * kInverse[n];
-    sin_[n] = (low.sine + high.sine) * kInverse[n] + rate[m] * (cos_[0] * kInverse[n]) + first * cos_[m];
-    cos_[n] = -((low.cosine + high.cosine) * kInverse[n] + rate[m] * (sin_[0] * kInverse[n]) + first * sin_[m]);
+    sin_[n] = (low.sine + high.sine) * kInverse[n] + rate[last] * (cos_[0] * kInverse[n]) + first * cos_[last];
+    cos_[n] = -((low.cosine + high.cosine) * kInverse[n] + rate[last] * (sin_[0] * kInverse[n]) + first * sin_[last]);
   }
 
   Series<double> sin_;
