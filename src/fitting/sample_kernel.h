@@ -17,14 +17,12 @@ namespace pendulum {
 /// do not depend on which thread makes them.
 inline constexpr std::size_t kBlock = 256;
 inline constexpr std::size_t kBlockStride = kBlock + 16;  ///< Of a block's rows: vectors reach beyond the last sample.
-inline constexpr std::size_t kParts = 4;                  ///< Partial sums of a product over a block.
+inline constexpr std::size_t kParts = 8;                  ///< Partial sums of a product over a block.
 
-/// Polynomials in τ of everything that is wanted at a sample: W columns, the last to `order`, those before it, which
-/// are derivatives, to derivative_order, which is at most `order`.
+/// Polynomials in τ of everything that is wanted at a sample: W columns.
 template <int W>
 struct Polynomials {
   int order = 0;
-  int derivative_order = 0;
   std::array<std::array<double, W>, kMaxOrder + 1> coefficient;
 };
 
@@ -44,7 +42,7 @@ using Vector [[gnu::vector_size(16)]] = double;
 #include "sample_kernel_body.h"
 }  // namespace baseline
 
-#ifdef PENDULUM_HAS_AVX2
+#ifdef PENDULUM_HAS_AVX
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
 namespace avx2 {
@@ -52,14 +50,21 @@ inline constexpr std::size_t kLanes = 4;
 using Vector [[gnu::vector_size(32)]] = double;
 #include "sample_kernel_body.h"
 }  // namespace avx2
+#pragma GCC target("avx2,fma,avx512f,avx512dq,avx512vl")
+namespace avx512 {
+inline constexpr std::size_t kLanes = 8;
+using Vector [[gnu::vector_size(64)]] = double;
+#include "sample_kernel_body.h"
+}  // namespace avx512
 #pragma GCC pop_options
 #endif
 
 /// Values of the polynomials at `count` τ into W rows. Reads and writes up to 3 beyond.
 template <int W>
 void EvaluateAt(const Polynomials<W>& polynomials, const double* tau, int count, double* rows) {
-#ifdef PENDULUM_HAS_AVX2
-  if (kUseAvx2) return avx2::Evaluate<W>(polynomials, tau, count, rows);
+#ifdef PENDULUM_HAS_AVX
+  if (kInstructionSet == InstructionSet::kAvx512) return avx512::Evaluate<W>(polynomials, tau, count, rows);
+  if (kInstructionSet == InstructionSet::kAvx2) return avx2::Evaluate<W>(polynomials, tau, count, rows);
 #endif
   baseline::Evaluate<W>(polynomials, tau, count, rows);
 }
@@ -68,8 +73,9 @@ void EvaluateAt(const Polynomials<W>& polynomials, const double* tau, int count,
 template <int R>
 void SumProducts(SampleBlock<R>& block, int count, RowProducts<R>& sums) {
   for (auto& row : block.row) std::fill_n(row.begin() + count, kParts, 0.0);
-#ifdef PENDULUM_HAS_AVX2
-  if (kUseAvx2) return avx2::SumProducts<R>(block.row[0].data(), count, sums.data());
+#ifdef PENDULUM_HAS_AVX
+  if (kInstructionSet == InstructionSet::kAvx512) return avx512::SumProducts<R>(block.row[0].data(), count, sums.data());
+  if (kInstructionSet == InstructionSet::kAvx2) return avx2::SumProducts<R>(block.row[0].data(), count, sums.data());
 #endif
   baseline::SumProducts<R>(block.row[0].data(), count, sums.data());
 }

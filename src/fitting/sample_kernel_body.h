@@ -18,14 +18,9 @@ inline void EvaluateVectors(const Polynomials<W>& polynomials, const double* tau
   std::array<std::array<Vector, W>, G> sum;
   for (int g = 0; g < G; ++g) {
     at[g] = Load(&tau[g * kLanes]);
-    for (int w = 0; w < W; ++w) {
-      sum[g][w] = Vector{} + polynomials.coefficient[w + 1 == W ? polynomials.order : polynomials.derivative_order][w];
-    }
+    for (int w = 0; w < W; ++w) sum[g][w] = Vector{} + polynomials.coefficient[polynomials.order][w];
   }
-  for (int k = polynomials.order - 1; k >= polynomials.derivative_order; --k) {
-    for (int g = 0; g < G; ++g) sum[g][W - 1] = sum[g][W - 1] * at[g] + polynomials.coefficient[k][W - 1];
-  }
-  for (int k = polynomials.derivative_order - 1; k >= 0; --k) {
+  for (int k = polynomials.order - 1; k >= 0; --k) {
     for (int w = 0; w < W; ++w) {
       for (int g = 0; g < G; ++g) sum[g][w] = sum[g][w] * at[g] + polynomials.coefficient[k][w];
     }
@@ -37,7 +32,7 @@ inline void EvaluateVectors(const Polynomials<W>& polynomials, const double* tau
 
 template <int W>
 void Evaluate(const Polynomials<W>& polynomials, const double* tau, int count, double* rows) {
-  constexpr int kVectors = W == 1 ? 4 : W <= 6 ? 2 : 1;  // as many as there are registers for
+  constexpr int kVectors = W == 1 ? 4 : W <= 6 || (kLanes == 8 && W <= 10) ? 2 : 1;  // as many as there are registers for
   int i = 0;
   for (; i + static_cast<int>((kVectors - 1) * kLanes) < count; i += static_cast<int>(kVectors * kLanes)) {
     EvaluateVectors<kVectors, W>(polynomials, tau + i, rows + i);
@@ -60,7 +55,7 @@ inline void SumRow(const double* rows, int count, double* sums) {
   for (int j = 0; j <= I; ++j) {
     std::array<double, kParts> parts;
     for (std::size_t v = 0; v < kVectors; ++v) Store(sum[j][v], &parts[v * kLanes]);
-    sums[j] = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+    sums[j] = ((parts[0] + parts[1]) + (parts[2] + parts[3])) + ((parts[4] + parts[5]) + (parts[6] + parts[7]));
   }
 }
 

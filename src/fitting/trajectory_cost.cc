@@ -6,17 +6,13 @@
 #include <cmath>
 #include <functional>
 
-#include <ceres/jet.h>
-
 #include "block_samples.h"
 #include "depth_table.h"
+#include "pendulum/model/dual.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
 namespace {
-
-/// Derivatives stay within 1e-7 of their largest where the angle is within 1e-10 rad: no step or error bar needs more.
-constexpr double kDerivativeShare = 0.8;
 
 /// A trial that asks for more steps than this has a time scale far from that of the start values: a period takes
 /// some 12.
@@ -32,7 +28,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   static constexpr int kZero = kParameters - 1;
   static_assert(kParameters + 1 <= kMostCompressed);
   static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
-  using Dual = ceres::Jet<double, kCarried>;
+  using Dual = pendulum::Dual<kCarried>;
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
@@ -277,7 +273,6 @@ class TrajectoryCostFor final : public TrajectoryCost {
     TraceOptions options;
     options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
     options.tolerance = tolerance_;
-    options.derivative_share = kDerivativeShare;
     options.max_steps =
         static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMostSteps, 1e9));
     return options;
@@ -316,24 +311,24 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// before it: the carried ones and, for a release, that by release time, which is minus its time derivative.
   template <int kDerivative, typename T, int W>
   static void FillColumns(const Segment<T>& segment, Polynomials<W>& columns) {
-    const auto factor = [](int k) { return kDerivative == 0 ? 1.0 : k + 1.0; };
     columns.order = std::max(segment.order - kDerivative, 0);
-    columns.derivative_order = std::max(segment.derivative_order - kDerivative, 0);
     if (segment.order < kDerivative) {  // the rate at rest
       columns.coefficient[0].fill(0);
       return;
     }
     for (int k = 0; k <= columns.order; ++k) {
-      columns.coefficient[k][W - 1] = factor(k) * segment.angle[k + kDerivative];
-    }
-    if constexpr (DualNumber<T>) {
-      for (int k = 0; k <= columns.derivative_order; ++k) {
-        auto& row = columns.coefficient[k];
-        for (int i = 0; i < kCarried; ++i) row[i] = factor(k) * segment.dual[k + kDerivative].v[i];
-        if constexpr (kStart == StartKind::kRelease) {
-          row[kCarried] = k < columns.order ? -(k + 1) * columns.coefficient[k + 1][W - 1] : 0.0;
-        }
+      const double factor = kDerivative == 0 ? 1.0 : k + 1.0;
+      auto& row = columns.coefficient[k];
+      row[W - 1] = factor * segment.angle[k + kDerivative];
+      if constexpr (DualNumber<T>) {
+        for (int i = 0; i < kCarried; ++i) row[i] = factor * segment.dual[k + kDerivative].v[i];
       }
+    }
+    if constexpr (DualNumber<T> && kStart == StartKind::kRelease) {
+      for (int k = 0; k < columns.order; ++k) {
+        columns.coefficient[k][kCarried] = -(k + 1) * columns.coefficient[k + 1][W - 1];
+      }
+      columns.coefficient[columns.order][kCarried] = 0;
     }
   }
 

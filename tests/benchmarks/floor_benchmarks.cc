@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <ceres/jet.h>
 
 #include "floor_kernel.h"
+#include "pendulum/model/dual.h"
 #include "pendulum/model/friction/coulomb.h"
 #include "pendulum/trajectory/tolerance.h"
 #include "pendulum/trajectory/trajectory.h"
@@ -19,7 +19,7 @@
 namespace pendulum::benchmarks {
 namespace {
 
-using Dual = ceres::Jet<double, 4>;  // by inertia, viscous, coulomb, release_angle
+using Dual = pendulum::Dual<4>;  // by inertia, viscous, coulomb, release_angle
 
 /// All that is known before the samples are looked at, taken down once, and the samples.
 struct FloorRun {

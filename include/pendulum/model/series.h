@@ -5,30 +5,16 @@
 #include <cmath>
 #include <cstddef>
 
+#include "pendulum/model/dual.h"
+
 namespace pendulum {
 
 /// The highest order of a Taylor expansion: what OrderForTolerance asks for at a local tolerance of 4e-15.
 inline constexpr int kMaxOrder = 25;
 
-/// Coefficients of a truncated Taylor series Σ c_n τⁿ, τ in s; T is double or a dual number (ceres::Jet).
+/// Coefficients of a truncated Taylor series Σ c_n τⁿ, τ in s; T is double or Dual.
 template <typename T>
 using Series = std::array<T, kMaxOrder + 1>;
-
-/// A dual number: value `a` and partial derivatives `v`, as in ceres::Jet, which this floor does not include.
-template <typename T>
-concept DualNumber = requires(T x) {
-  x.a;
-  x.v;
-};
-
-template <typename T>
-double Value(const T& x) {
-  if constexpr (DualNumber<T>) {
-    return x.a;
-  } else {
-    return x;
-  }
-}
 
 /// 1/n: a division would hold up every coefficient.
 inline constexpr std::array<double, kMaxOrder + 1> kInverse = [] {
@@ -53,74 +39,113 @@ T SquareCoefficient(const Series<T>& x, int n) {
   return 2.0 * sum;
 }
 
-/// Coefficients of sin θ and cos θ along a trajectory, one after the other, by the coupled recurrence n sin_n = Σ ω_j
-/// cos_{n-1-j}, n cos_n = -Σ ω_j sin_{n-1-j} with ω = θ' (MODEL.md eq. (14)). Sums go from the middle outwards: what
-/// was known last is added last, and nothing else has to wait for it.
+/// Coefficients of sin θ and cos θ along a trajectory, one after the other, by the coupled recurrence n sin_n = Σ ω_k
+/// cos_{n-1-k}, n cos_n = -Σ ω_k sin_{n-1-k} with ω = θ' (MODEL.md eq. (14)). What makes it fast: sums of sine and
+/// cosine of two successive coefficients are made side by side; they go from the middle outwards, so that what was
+/// known last is added last, and nothing else waits for it.
 class SineSeries {
  public:
   /// Coefficient n of the sine, n = 0, 1, 2, ... in this order, from θ_0 and coefficients 0..n-1 of ω.
   template <int n>
-  double Next(double angle, const Series<double>& rate) {
+  [[gnu::always_inline]] double Next(double angle, const Series<double>& rate) {
     if constexpr (n == 0) {
-      sin_[0] = std::sin(angle);
-      cos_[0] = std::cos(angle);
-    } else if constexpr (n == 1) {
-      sin_[1] = rate[0] * cos_[0];
-      cos_[1] = -rate[0] * sin_[0];
+      return Set<n>(std::sin(angle), std::cos(angle));
     } else {
-      Advance<n>(rate);
+      Sums sums = InnerSums<n>(rate);
+      constexpr int kMiddle = kInPairs<n> ? kOuter : (n - 1) / 2;
+      constexpr bool kAlone = kInPairs<n> == (n % 2 == 0);
+      if constexpr (kAlone && kMiddle > 0) Add(rate[kMiddle], n - 1 - kMiddle, sums);
+#pragma GCC unroll 32
+      for (int k = kMiddle - (kAlone ? 1 : 0); k > 0; --k) {
+        Add(rate[n - 1 - k], k, sums);
+        Add(rate[k], n - 1 - k, sums);
+      }
+      if constexpr (n > 1) Add(rate[n - 1], 0, sums);
+      const double first = rate[0] * kInverse[n];
+      return Set<n>(sums.sine * kInverse[n] + first * cosine_[n - 1],
+                    sums.cosine * -kInverse[n] - first * sine_[n - 1]);
     }
-    return sin_[n];
   }
 
   /// Partial derivatives of coefficient n, which is known already, from those of coefficients 0..n of θ: d sin θ = cos
-  /// θ dθ (MODEL.md eq. (15)) costs one product of series per parameter, the recurrence in dual numbers four.
-  template <int n, DualNumber T>
-  auto Partials(const Series<T>& angle) const {
-    decltype(T::v) low = cos_[n - n / 2] * angle[n / 2].v;
-    if constexpr (n > 1) {
-      decltype(T::v) high = n % 2 == 1 ? cos_[n / 2] * angle[n - n / 2].v : cos_[n / 2 - 1] * angle[n / 2 + 1].v;
+  /// θ dθ (MODEL.md eq. (15)) costs one product of series per parameter, the recurrence in dual numbers four. An even
+  /// n leaves to its successor, in `next`, what can be known of it.
+  template <int n, int P>
+  [[gnu::always_inline]] Partials<P> PartialsOf(const Series<Dual<P>>& angle, Partials<P>& next) const {
+    if constexpr (n % 2 == 1) {
+      Partials<P> sum = next;
+      sum.AddProduct(spread_cosine_[0], angle[n].v);
+      sum.AddProduct(spread_cosine_[n], angle[0].v);
+      return sum;
+    } else {
+      constexpr int kMiddle = n / 2;
+      Partials<P> low, high, next_low, next_high;
+      low.AddProduct(spread_cosine_[kMiddle], angle[kMiddle].v);
+      if constexpr (n > 0) next_low.AddProduct(spread_cosine_[kMiddle], angle[kMiddle + 1].v);
 #pragma GCC unroll 32
-      for (int k = n / 2 - 1; k >= 0; --k) {
-        low += cos_[n - k] * angle[k].v;
-        if (n % 2 == 1 || k > 0) high += cos_[k - 1 + n % 2] * angle[n - k + 1 - n % 2].v;
+      for (int k = kMiddle - 1; k >= 0; --k) {
+        low.AddProduct(spread_cosine_[n - k], angle[k].v);
+        next_low.AddProduct(spread_cosine_[n - k], angle[k + 1].v);
+        high.AddProduct(spread_cosine_[k], angle[n - k].v);
+        if (k > 0) next_high.AddProduct(spread_cosine_[k], angle[n + 1 - k].v);
       }
-      low += high;
-    } else if constexpr (n == 1) {
-      low += cos_[0] * angle[1].v;
+      next = next_low + next_high;
+      return low + high;
     }
-    return low;
   }
 
  private:
+  /// Terms k <= kOuter and their mirror images are added one by one, for they are known late.
+  static constexpr int kOuter = 2;
+  template <int n>
+  static constexpr bool kInPairs = n > 2 * kOuter + 1;
+
   /// Partial sums of n sin_n and -n cos_n.
   struct Sums {
     double sine = 0, cosine = 0;
-
-    void Add(double rate, double cosine_before, double sine_before) {
-      sine += rate * cosine_before;
-      cosine += rate * sine_before;
-    }
   };
 
-  /// n > 1.
+  /// What is between the outer terms: of coefficient n, and if n is even of its successor, too.
   template <int n>
-  void Advance(const Series<double>& rate) {
-    const int last = n - 1;
-    Sums low;
-    Sums high;
+  [[gnu::always_inline]] Sums InnerSums(const Series<double>& rate) {
+    if constexpr (!kInPairs<n>) {
+      return {};
+    } else if constexpr (n % 2 == 1) {
+      return next_;
+    } else {
+      constexpr int kMiddle = n / 2;
+      Quad low = rate[kMiddle] * pair_[n - 1 - kMiddle];
+      Quad high{};
 #pragma GCC unroll 32
-    for (int k = last / 2; k > 0; --k) {
-      low.Add(rate[k], cos_[last - k], sin_[last - k]);
-      if (k != last - k) high.Add(rate[last - k], cos_[k], sin_[k]);
+      for (int k = kMiddle - 1; k > kOuter; --k) {
+        high += rate[n - k] * pair_[k - 1];
+        low += rate[k] * pair_[n - 1 - k];
+      }
+      low += high;
+      next_ = {low[2], low[3]};
+      return {low[0], low[1]};
     }
-    const double first = rate[0] * kInverse[n];
-    sin_[n] = (low.sine + high.sine) * kInverse[n] + rate[last] * (cos_[0] * kInverse[n]) + first * cos_[last];
-    cos_[n] = -((low.cosine + high.cosine) * kInverse[n] + rate[last] * (sin_[0] * kInverse[n]) + first * sin_[last]);
   }
 
-  Series<double> sin_;
-  Series<double> cos_;
+  [[gnu::always_inline]] void Add(double rate, int n, Sums& sums) const {
+    sums.sine += rate * cosine_[n];
+    sums.cosine += rate * sine_[n];
+  }
+
+  template <int n>
+  [[gnu::always_inline]] double Set(double sine, double cosine) {
+    sine_[n] = sine;
+    cosine_[n] = cosine;
+    spread_cosine_[n] = Quad{cosine, cosine, cosine, cosine};
+    if constexpr (n > 0) pair_[n - 1] = Quad{cosine_[n - 1], sine_[n - 1], cosine, sine};
+    return sine;
+  }
+
+  Series<double> sine_{};
+  Series<double> cosine_{};
+  Series<Quad> spread_cosine_{};  ///< In all lanes.
+  Series<Quad> pair_{};           ///< cos_n, sin_n, cos_{n+1}, sin_{n+1}
+  Sums next_;
 };
 
 }  // namespace pendulum

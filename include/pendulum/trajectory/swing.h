@@ -37,52 +37,53 @@ struct DualSeries {};
 template <DualNumber T>
 struct DualSeries<T> : Series<T> {};
 
+/// Partial derivatives like those of a dual T; of another, nothing.
+template <typename T>
+struct DualOnly {};
+template <DualNumber T>
+struct DualOnly<T> {
+  decltype(T::v) partials;
+};
+
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// With a dual T the partial derivatives of θ at a fixed absolute time t are Σ dual[n].v (t - start)^n, n =
-/// 0..derivative_order.
+/// With a dual T the partial derivatives of θ at a fixed absolute time t are Σ dual[n].v (t - start)^n.
 template <typename T>
 struct Segment {
   double start = 0, end = 0;  ///< s
   int order = 0;
-  int derivative_order = 0;
   Series<double> angle;
   DualSeries<T> dual;
 };
 
-/// The rate along a swing, as Segment has the angle; orders are one less.
+/// The rate along a swing, as Segment has the angle; its order is one less.
 template <typename T>
 struct RateSeries {
   Series<double> value;
   DualSeries<T> dual;
 };
 
-/// Σ c_k τ^k for k = 0..order, by Horner's rule over even and odd powers apart: neither waits for the other.
-template <typename T>
-T EvaluateSeries(const Series<T>& c, int order, double tau) {
+/// Σ coefficient(k) τ^k for k = 0..order, by Horner's rule over even and odd powers apart: neither waits for the other.
+template <typename V, typename Coefficient>
+V EvaluatePolynomial(const Coefficient& coefficient, int order, double tau) {
   const double square = tau * tau;
-  T odd(0.0);
-  T even = order % 2 == 0 ? c[order] : T(0.0);
-  for (int k = order % 2 == 0 ? order - 1 : order; k > 0; k -= 2) {
-    odd = odd * square + c[k];
-    even = even * square + c[k - 1];
+  V odd{};
+  V even{};
+  if (order % 2 == 0) even = coefficient(order);
+  for (int k = order - (order + 1) % 2; k > 0; k -= 2) {
+    odd = square * odd + coefficient(k);
+    even = square * even + coefficient(k - 1);
   }
-  return even + odd * tau;
+  return even + tau * odd;
+}
+
+inline double EvaluateSeries(const Series<double>& c, int order, double tau) {
+  return EvaluatePolynomial<double>([&](int k) { return c[k]; }, order, tau);
 }
 
 /// Partial derivatives of EvaluateSeries.
 template <DualNumber T>
 auto EvaluatePartials(const Series<T>& c, int order, double tau) {
-  const double square = tau * tau;
-  decltype(T::v) even = c[order].v;
-  if (order == 0) return even;
-  decltype(T::v) odd = c[order - 1].v;
-  for (int k = order - 2; k >= 0; k -= 2) {
-    even = even * square + c[k].v;
-    if (k > 0) odd = odd * square + c[k - 1].v;
-  }
-  (order % 2 == 0 ? odd : even) *= tau;
-  even += odd;
-  return even;
+  return EvaluatePolynomial<decltype(T::v)>([&](int k) { return c[k].v; }, order, tau);
 }
 
 /// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic
@@ -170,7 +171,7 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
 template <typename T>
 State<T> StateAtReversal(const State<T>& state, double acceleration) {
   State<T> reversal{state.time, state.angle, T(0.0)};
-  if constexpr (DualNumber<T>) reversal.time.v -= state.rate.v / acceleration;
+  if constexpr (DualNumber<T>) reversal.time.v -= (1 / acceleration) * state.rate.v;
   return reversal;
 }
 

@@ -23,7 +23,7 @@ class SwingExpansion {
         rate_(rate) {}
 
   /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate in one direction of motion from a
-  /// state (MODEL.md eq. (12)); with a dual T also their partial derivatives, up to angle.derivative_order.
+  /// state (MODEL.md eq. (12)); with a dual T also their partial derivatives.
   void Expand(double direction, const State<T>& from) {
     direction_ = direction;
     angle_.angle[0] = Value(from.angle);
@@ -32,40 +32,45 @@ class SwingExpansion {
       angle_.dual[0] = from.angle;
       rate_.dual[0] = from.rate;
     }
+    pendulum_.gravity == Gravity::kSine ? FindAll<Gravity::kSine>() : FindAll<Gravity::kLinear>();
+  }
+
+ private:
+  template <Gravity kGravity>
+  void FindAll() {
     const auto next = [&]<int n>() {
-      FindValue<n>();
-      if constexpr (DualNumber<T>) {
-        if (n < angle_.derivative_order) FindPartials<n>();
-      }
+      FindValue<kGravity, n>();
+      if constexpr (DualNumber<T>) FindPartials<kGravity, n>();
       return n + 1 < angle_.order;
     };
     [&]<int... n>(std::integer_sequence<int, n...>) { (void)(next.template operator()<n>() && ...); }
     (std::make_integer_sequence<int, kMaxOrder>());
   }
 
- private:
-  template <int n>
+  template <Gravity kGravity, int n>
   void FindValue() {
     angle_.angle[n + 1] = rate_.value[n] * kInverse[n + 1];
     if (n + 1 == angle_.order) return;
-    const double gravity = IsSine() ? sine_.template Next<n>(angle_.angle[0], rate_.value) : angle_.angle[n];
-    const double torque = gravity + friction_(n, rate_.value, direction_, values_.friction.data());
-    rate_.value[n + 1] = torque * (inverse_inertia_ * -kInverse[n + 1]);
+    const double gravity =
+        kGravity == Gravity::kSine ? sine_.template Next<n>(angle_.angle[0], rate_.value) : angle_.angle[n];
+    const double friction = friction_(n, rate_.value, direction_, values_.friction.data());
+    rate_.value[n + 1] = (gravity + friction) * (inverse_inertia_ * -kInverse[n + 1]);
   }
 
   /// Linear equations along the swing: (12) and (15), differentiated.
-  template <int n>
+  template <Gravity kGravity, int n>
   void FindPartials() {
     angle_.dual[n + 1].a = angle_.angle[n + 1];
-    angle_.dual[n + 1].v = rate_.dual[n].v * kInverse[n + 1];
-    if (n + 1 == angle_.derivative_order) return;
-    auto torque = IsSine() ? sine_.template Partials<n>(angle_.dual) : angle_.dual[n].v;
-    torque += dual_friction_(n, rate_.dual, direction_, pendulum_.friction.data()).v;
+    angle_.dual[n + 1].v = kInverse[n + 1] * rate_.dual[n].v;
+    if (n + 1 == angle_.order) return;
+    auto gravity = angle_.dual[n].v;
+    if constexpr (kGravity == Gravity::kSine) gravity = sine_.template PartialsOf<n>(angle_.dual, next_sine_.partials);
+    const auto friction = dual_friction_(n, rate_.dual, direction_, pendulum_.friction.data()).v;
+    const double factor = inverse_inertia_ * -kInverse[n + 1];
+    const auto known_early = factor * gravity - (inverse_inertia_ * rate_.value[n + 1]) * pendulum_.inertia.v;
     rate_.dual[n + 1].a = rate_.value[n + 1];
-    rate_.dual[n + 1].v = inverse_inertia_ * (torque * -kInverse[n + 1] - rate_.value[n + 1] * pendulum_.inertia.v);
+    rate_.dual[n + 1].v = known_early + factor * friction;
   }
-
-  bool IsSine() const { return pendulum_.gravity == Gravity::kSine; }
 
   const Pendulum<F, T>& pendulum_;
   const Pendulum<F, double> values_;
@@ -74,6 +79,7 @@ class SwingExpansion {
   Segment<T>& angle_;
   RateSeries<T>& rate_;
   SineSeries sine_;
+  DualOnly<T> next_sine_;
   typename F::template Recurrence<double> friction_;
   typename F::template Recurrence<T> dual_friction_;
 };

@@ -29,10 +29,9 @@ struct Start {
 
 /// How far and how accurately to trace.
 struct TraceOptions {
-  double begin = 0, end = 0;    ///< s; a hold is reported from `begin` to the release.
-  double tolerance = 1e-10;     ///< rad, local: the truncation error of one step. See TraceTolerance.
-  double derivative_share = 1;  ///< Of the orders: derivatives are as exact as tolerance to that power would be.
-  int max_steps = 2'000'000;    ///< Beyond this the trial is refused: its time scale is absurd.
+  double begin = 0, end = 0;  ///< s; a hold is reported from `begin` to the release.
+  double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
+  int max_steps = 2'000'000;  ///< Beyond this the trial is refused: its time scale is absurd.
 };
 
 /// What happened on the way.
@@ -83,34 +82,44 @@ template <FrictionModel F, typename T, typename Visitor>
 class Tracer {
  public:
   Tracer(const Pendulum<F, T>& pendulum, const TraceOptions& options, Visitor& visit)
-      : values_(Values(pendulum)),
+      : pendulum_(pendulum),
+        values_(Values(pendulum)),
         options_(options),
         order_(OrderForTolerance(options.tolerance)),
-        derivative_order_(static_cast<int>(std::ceil(options.derivative_share * order_))),
         longest_step_(0.5 * kPi * std::sqrt(values_.inertia)),
-        visit_(visit),
-        expansion_(pendulum, segment_, rate_) {}
+        visit_(visit) {}
 
   TraceSummary Run(const Start<T>& start) {
-#ifdef PENDULUM_HAS_AVX2
-    if (kUseAvx2) return RunAvx2(start);
+#ifdef PENDULUM_HAS_AVX
+    if (kInstructionSet == InstructionSet::kAvx512) return RunAvx512(start);
+    if (kInstructionSet == InstructionSet::kAvx2) return RunAvx2(start);
 #endif
     return RunAnywhere(start);
   }
 
  private:
-#ifdef PENDULUM_HAS_AVX2
+#ifdef PENDULUM_HAS_AVX
   [[PENDULUM_AVX2, gnu::flatten]] TraceSummary RunAvx2(const Start<T>& start) { return RunAnywhere(start); }
+  [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunAnywhere(start); }
 #endif
 
+  /// The series of a swing but for what visitors see: on the stack, so that the compiler knows who can change it.
+  struct Expander {
+    RateSeries<T> rate{};
+    SwingExpansion<F, T> expansion;
+
+    Expander(const Pendulum<F, T>& pendulum, Segment<T>& segment) : expansion(pendulum, segment, rate) {}
+  };
+
   TraceSummary RunAnywhere(const Start<T>& start) {
+    Expander expander(pendulum_, segment_);
     State<T> state{T(start.time), start.angle, start.rate};
     if (start.kind == StartKind::kRelease && start.time > options_.begin)
       VisitRest(options_.begin, start.time, start.angle);
     double direction = Direction(state);
     if (direction == 0) summary_.outcome = TraceSummary::Outcome::kNeverMoved;
     while (direction != 0 && Value(state.time) < options_.end) {
-      if (!Swing(direction, state)) return summary_;
+      if (!Swing(direction, state, expander)) return summary_;
       direction = Direction(state);
     }
     if (direction == 0) {
@@ -125,24 +134,24 @@ class Tracer {
   }
 
   /// Moves `state` to the next reversal, or to the end; false when the trial cannot be traced.
-  bool Swing(double direction, State<T>& state) {
+  bool Swing(double direction, State<T>& state, Expander& expander) {
     segment_.order = order_;
-    segment_.derivative_order = derivative_order_;
+    const RateSeries<T>& rate = expander.rate;
     while (Value(state.time) < options_.end) {
-      expansion_.Expand(direction, state);
+      expander.expansion.Expand(direction, state);
       const double step = StepLength(segment_.angle, order_, options_.tolerance, longest_step_);
       if (!(step > 0) || ++summary_.steps > options_.max_steps) {
         summary_.outcome = TraceSummary::Outcome::kNotTraceable;
         return false;
       }
-      const double end_rate = EvaluateSeries(rate_.value, order_ - 1, step);
-      const double root = FirstReversal(rate_.value, order_ - 1, direction, step, end_rate);
+      const double end_rate = EvaluateSeries(rate.value, order_ - 1, step);
+      const double root = FirstReversal(rate.value, order_ - 1, direction, step, end_rate);
       const double length = root > 0 ? root : step;
       State<T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
       if constexpr (DualNumber<T>) {
-        next.angle.v = EvaluatePartials(segment_.dual, derivative_order_, length);
-        next.rate.v = EvaluatePartials(rate_.dual, derivative_order_ - 1, length);
-        FixAbsoluteTime(state.time, derivative_order_ - 1, rate_.value, segment_.dual);
+        next.angle.v = EvaluatePartials(segment_.dual, order_, length);
+        next.rate.v = EvaluatePartials(rate.dual, order_ - 1, length);
+        FixAbsoluteTime(state.time, order_ - 1, rate.value, segment_.dual);
       }
       VisitSwing(Value(state.time), length);
       state = next;
@@ -185,20 +194,17 @@ class Tracer {
     segment_.end = std::min(end, options_.end);
     segment_.order = 0;
     segment_.angle[0] = Value(angle);
-    segment_.derivative_order = 0;
     if constexpr (DualNumber<T>) segment_.dual[0] = angle;
     visit_(std::as_const(segment_));
   }
 
+  const Pendulum<F, T>& pendulum_;
   const Pendulum<F, double> values_;
   const TraceOptions& options_;
   const int order_;
-  const int derivative_order_;
   const double longest_step_;
   Visitor& visit_;
   Segment<T> segment_;
-  RateSeries<T> rate_;
-  SwingExpansion<F, T> expansion_;
   TraceSummary summary_;
 };
 

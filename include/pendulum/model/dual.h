@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+namespace pendulum {
+
+/// Four doubles side by side; a processor that has no room for as many takes them two by two.
+using Quad [[gnu::vector_size(32)]] = double;
+
+/// Partial derivatives by P parameters, in as many quads as it takes. All is inlined: no quad is handed to a function,
+/// which instruction sets do differently.
+template <int P>
+class Partials {
+ public:
+  [[gnu::always_inline]] double operator[](int i) const { return quad_[i / 4][i % 4]; }
+  [[gnu::always_inline]] void set(int i, double value) { quad_[i / 4][i % 4] = value; }
+
+  /// Adds s y for an s that is the same in all lanes.
+  [[gnu::always_inline]] void AddProduct(const Quad& s, const Partials& y) {
+    for (std::size_t i = 0; i < kQuads; ++i) quad_[i] += s * y.quad_[i];
+  }
+
+  [[gnu::always_inline]] Partials& operator+=(const Partials& y) {
+    for (std::size_t i = 0; i < kQuads; ++i) quad_[i] += y.quad_[i];
+    return *this;
+  }
+
+  [[gnu::always_inline]] Partials& operator-=(const Partials& y) {
+    for (std::size_t i = 0; i < kQuads; ++i) quad_[i] -= y.quad_[i];
+    return *this;
+  }
+
+  [[gnu::always_inline]] Partials& operator*=(double s) {
+    for (std::size_t i = 0; i < kQuads; ++i) quad_[i] *= s;
+    return *this;
+  }
+
+  [[gnu::always_inline]] friend Partials operator+(const Partials& x, const Partials& y) {
+    Partials sum = x;
+    sum += y;
+    return sum;
+  }
+
+  [[gnu::always_inline]] friend Partials operator-(const Partials& x, const Partials& y) {
+    Partials difference = x;
+    difference -= y;
+    return difference;
+  }
+
+  [[gnu::always_inline]] friend Partials operator*(double s, const Partials& x) {
+    Partials product = x;
+    product *= s;
+    return product;
+  }
+
+ private:
+  static constexpr std::size_t kQuads = (P + 3) / 4;
+
+  std::array<Quad, kQuads> quad_{};
+};
+
+/// A dual number: value `a` and partial derivatives `v` by P parameters, as ceres::Jet has them, which this floor does
+/// not include. It has what equations of motion are written with.
+template <int P>
+struct Dual {
+  Partials<P> v;
+  double a = 0;
+
+  Dual() = default;
+  [[gnu::always_inline]] explicit Dual(double value) : a(value) {}
+  /// Parameter number i.
+  [[gnu::always_inline]] Dual(double value, int i) : a(value) { v.set(i, 1.0); }
+  [[gnu::always_inline]] Dual(double value, const Partials<P>& partials) : v(partials), a(value) {}
+
+  [[gnu::always_inline]] Dual& operator+=(const Dual& y) { return *this = *this + y; }
+
+  [[gnu::always_inline]] friend Dual operator+(const Dual& x, const Dual& y) { return {x.a + y.a, x.v + y.v}; }
+  [[gnu::always_inline]] friend Dual operator-(const Dual& x, const Dual& y) { return {x.a - y.a, x.v - y.v}; }
+  [[gnu::always_inline]] friend Dual operator*(const Dual& x, const Dual& y) {
+    return {x.a * y.a, y.a * x.v + x.a * y.v};
+  }
+  [[gnu::always_inline]] friend Dual operator/(const Dual& x, const Dual& y) {
+    const double quotient = x.a / y.a;
+    return {quotient, (1 / y.a) * (x.v - quotient * y.v)};
+  }
+
+  [[gnu::always_inline]] friend Dual operator+(double x, const Dual& y) { return {x + y.a, y.v}; }
+  [[gnu::always_inline]] friend Dual operator+(const Dual& x, double y) { return {x.a + y, x.v}; }
+  [[gnu::always_inline]] friend Dual operator-(double x, const Dual& y) { return Dual(x) - y; }
+  [[gnu::always_inline]] friend Dual operator-(const Dual& x, double y) { return {x.a - y, x.v}; }
+  [[gnu::always_inline]] friend Dual operator-(const Dual& x) { return -1.0 * x; }
+  [[gnu::always_inline]] friend Dual operator*(double x, const Dual& y) { return {x * y.a, x * y.v}; }
+  [[gnu::always_inline]] friend Dual operator*(const Dual& x, double y) { return y * x; }
+  [[gnu::always_inline]] friend Dual operator/(double x, const Dual& y) { return Dual(x) / y; }
+  [[gnu::always_inline]] friend Dual operator/(const Dual& x, double y) { return (1 / y) * x; }
+
+  [[gnu::always_inline]] friend bool operator==(const Dual& x, const Dual& y) { return x.a == y.a; }
+
+  [[gnu::always_inline]] friend Dual exp(const Dual& x) {
+    const double value = std::exp(x.a);
+    return {value, value * x.v};
+  }
+  [[gnu::always_inline]] friend Dual tanh(const Dual& x) {
+    const double value = std::tanh(x.a);
+    return {value, (1 - value * value) * x.v};
+  }
+  [[gnu::always_inline]] friend Dual sqrt(const Dual& x) {
+    const double value = std::sqrt(x.a);
+    return {value, (0.5 / value) * x.v};
+  }
+};
+
+/// Whether T is a Dual.
+template <typename T>
+concept DualNumber = requires(T x) {
+  x.a;
+  x.v;
+};
+
+template <typename T>
+double Value(const T& x) {
+  if constexpr (DualNumber<T>) {
+    return x.a;
+  } else {
+    return x;
+  }
+}
+
+}  // namespace pendulum
