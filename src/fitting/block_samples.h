@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -13,49 +12,73 @@
 
 namespace pendulum {
 
-/// Brings the stretches of a trajectory, as they are traced, to the samples of a recording, block by block: kBlock
-/// consecutive samples, whatever the stretches. Blocks are worked on by as many threads as there are; what they give
-/// (Part) is added up in their order, so that a sum does not depend on the number of threads.
-template <int W, int R, typename Part>
+/// Brings the segments of a trajectory, as they are traced, to the samples of a recording, block by block: kBlock
+/// consecutive samples, whatever the segments. Of a long recording segments are kept until there are blocks enough for
+/// several threads; what blocks give (Part) is added up in their order, so that a sum does not depend on the number of
+/// threads. The first rows of a block are a segment's columns (EvaluateAt), R rows there are.
+template <typename T, bool kRelease, int R, typename Part>
 class BlockSamples {
  public:
-  /// What a stretch says of the samples from `first` on, up to the next one's first.
-  struct Piece {
-    double start = 0;
-    std::size_t first = 0;
-    Polynomials<W> polynomials;
-  };
-
   void Restart(std::span<const double> time, int threads) {
     time_ = time;
-    threads_ = ThreadsOrCores(threads);
-    used_ = 0;
+    threads_ = time.size() < 2 * kShare * kBlock ? 1 : ThreadsOrCores(threads);
+    kept_ = 0;
     next_ = done_ = 0;
   }
 
-  /// A piece for the samples before `end` that no piece was for yet, or null when there are none.
-  Piece* Add(double start, double end) {
-    std::size_t next = next_;
-    while (next < time_.size() && time_[next] < end) ++next;
-    if (next == next_) return nullptr;
-    if (used_ == pieces_.size()) pieces_.emplace_back();
-    Piece& piece = pieces_[used_++];
-    piece.start = start;
-    piece.first = next_;
-    next_ = next;
-    return &piece;
+  /// Works on the samples before the segment's end that no segment was for yet: calls work(SampleBlock<R>&, first
+  /// sample, count, Part&), then add(Part), for each block that is complete.
+  template <typename Work, typename Add>
+  void Take(const Segment<T>& segment, const Work& work, const Add& add) {
+    const std::size_t first = next_;
+    while (next_ < time_.size() && time_[next_] < segment.end) ++next_;
+    if (next_ == first) return;
+    if (threads_ > 1) {
+      Keep(segment, first);
+      Share(work, add);
+      return;
+    }
+    for (std::size_t begin = first; begin < next_;) {
+      const std::size_t block = begin / kBlock * kBlock;
+      const std::size_t end = std::min(next_, block + kBlock);
+      Evaluate(segment, begin, end, block_, block);
+      begin = end;
+      if (end < std::min(time_.size(), block + kBlock)) break;
+      work(block_, block, static_cast<int>(end - block), part_);
+      add(part_);
+    }
   }
 
   bool is_complete() const { return next_ == time_.size(); }
 
-  /// Works on full blocks once there are enough of them to share, or `all` there are: evaluates rows 0 to W - 1 of
-  /// each, calls work(SampleBlock<R>&, first sample, count, Part&), then add(Part) in the blocks' order.
+ private:
+  static constexpr std::size_t kShare = 128;  ///< Blocks that are worth a thread: some hundred microseconds.
+
+  /// A segment and the first of the samples it is for, up to the next one's.
+  struct Kept {
+    std::size_t first = 0;
+    Segment<T> segment;
+  };
+
+  /// Samples `begin` to end - 1, of a block that begins with sample `first`.
+  void Evaluate(const Segment<T>& segment, std::size_t begin, std::size_t end, SampleBlock<R>& block,
+                std::size_t first) const {
+    double* const rows = block.row[0].data() + (begin - first);
+    EvaluateAt<kRelease>(segment, &time_[begin], static_cast<int>(end - begin), rows);
+  }
+
+  void Keep(const Segment<T>& segment, std::size_t first) {
+    if (kept_ == segments_.size()) segments_.emplace_back();
+    segments_[kept_++] = {first, segment};
+  }
+
+  /// Works on all full blocks once there are enough of them, and on what is left when the last sample has come.
   template <typename Work, typename Add>
-  void Flush(bool all, const Work& work, const Add& add) {
-    constexpr std::size_t kMostPieces = 4096;
-    const std::size_t ready = all ? (next_ - done_ + kBlock - 1) / kBlock : (next_ - done_) / kBlock;
-    const std::size_t wanted = threads_ == 1 ? 1 : kShare * static_cast<std::size_t>(threads_);
-    if (ready == 0 || (!all && ready < wanted && used_ < kMostPieces)) return;
+  void Share(const Work& work, const Add& add) {
+    constexpr std::size_t kMostKept = 4096;
+    const std::size_t ready = is_complete() ? (next_ - done_ + kBlock - 1) / kBlock : (next_ - done_) / kBlock;
+    const std::size_t wanted = kShare * static_cast<std::size_t>(threads_);
+    if (ready == 0 || (!is_complete() && ready < wanted && kept_ < kMostKept)) return;
     if (parts_.size() < ready) parts_.resize(ready);
     const auto one = [&](int b) {
       const std::size_t first = done_ + static_cast<std::size_t>(b) * kBlock;
@@ -65,39 +88,36 @@ class BlockSamples {
     ParallelFor(static_cast<int>(ready), std::min(worth, threads_), std::ref(one));
     for (std::size_t b = 0; b < ready; ++b) add(parts_[b]);
     done_ = std::min(done_ + ready * kBlock, next_);
-    const auto left = PieceOf(done_);
-    used_ = static_cast<std::size_t>(std::move(left, End(), pieces_.begin()) - pieces_.begin());
+    const auto left = KeptFor(done_);
+    kept_ = static_cast<std::size_t>(std::move(left, End(), segments_.begin()) - segments_.begin());
   }
 
- private:
-  static constexpr std::size_t kShare = 128;  ///< Blocks that are worth a thread: some hundred microseconds.
+  auto End() { return segments_.begin() + static_cast<std::ptrdiff_t>(kept_); }
 
-  auto End() { return pieces_.begin() + static_cast<std::ptrdiff_t>(used_); }
-
-  auto PieceOf(std::size_t sample) {
+  auto KeptFor(std::size_t sample) {
     if (sample == next_) return End();
-    return std::ranges::upper_bound(pieces_.begin(), End(), sample, {}, &Piece::first) - 1;
+    return std::ranges::upper_bound(segments_.begin(), End(), sample, {}, &Kept::first) - 1;
   }
 
   template <typename Work>
   void WorkOn(std::size_t first, std::size_t count, const Work& work, Part& part) {
     SampleBlock<R> block;
-    std::array<double, kBlockStride> tau{};
-    for (auto piece = PieceOf(first); piece != End() && piece->first < first + count; ++piece) {
-      const std::size_t begin = std::max(piece->first, first);
-      const std::size_t end = std::min(piece + 1 == End() ? next_ : (piece + 1)->first, first + count);
-      for (std::size_t i = begin; i < end; ++i) tau[i - begin] = time_[i] - piece->start;
-      EvaluateAt(piece->polynomials, tau.data(), static_cast<int>(end - begin), block.row[0].data() + (begin - first));
+    for (auto kept = KeptFor(first); kept != End() && kept->first < first + count; ++kept) {
+      const std::size_t begin = std::max(kept->first, first);
+      const std::size_t end = std::min(kept + 1 == End() ? next_ : (kept + 1)->first, first + count);
+      Evaluate(kept->segment, begin, end, block, first);
     }
     work(block, first, static_cast<int>(count), part);
   }
 
   std::span<const double> time_;
   int threads_ = 1;
-  std::vector<Piece> pieces_;  ///< The first used_ of them; the others are room.
-  std::size_t used_ = 0;
-  std::size_t next_ = 0;  ///< The first sample that no piece was for.
-  std::size_t done_ = 0;  ///< The first sample that was not worked on.
+  std::size_t next_ = 0;  ///< The first sample that no segment was for.
+  SampleBlock<R> block_;
+  Part part_;
+  std::size_t done_ = 0;        ///< The first sample that was not worked on, where segments are kept.
+  std::vector<Kept> segments_;  ///< The first kept_ of them; the others are room.
+  std::size_t kept_ = 0;
   std::vector<Part> parts_;
 };
 

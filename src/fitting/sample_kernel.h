@@ -7,7 +7,8 @@
 #include <cstring>
 
 #include "pendulum/base/instruction_set.h"
-#include "pendulum/model/series.h"
+#include "pendulum/model/dual.h"
+#include "pendulum/trajectory/swing.h"
 
 /// The arithmetic that every sample costs. It is compiled for each instruction set that is worth it and chosen by what
 /// the processor has: see instruction_set.h.
@@ -19,13 +20,6 @@ inline constexpr std::size_t kBlock = 256;
 inline constexpr std::size_t kBlockStride = kBlock + 16;  ///< Of a block's rows: vectors reach beyond the last sample.
 inline constexpr std::size_t kParts = 8;                  ///< Partial sums of a product over a block.
 
-/// Polynomials in τ of everything that is wanted at a sample: W columns.
-template <int W>
-struct Polynomials {
-  int order = 0;
-  std::array<std::array<double, W>, kMaxOrder + 1> coefficient;
-};
-
 /// R rows of numbers, one for each sample of a block.
 template <int R>
 struct SampleBlock {
@@ -35,6 +29,27 @@ struct SampleBlock {
 /// Products of R rows summed over a block: (0,0), (1,0), (1,1), (2,0), ...
 template <int R>
 using RowProducts = std::array<double, R*(R + 1) / 2>;
+
+/// What is wanted at a sample of a trajectory of T: the angle, with a dual T its partial derivatives at a fixed time,
+/// and, for a release, that by its instant, -θ'.
+template <typename T, bool kRelease>
+inline constexpr int kColumns = 1;
+template <int P, bool kRelease>
+inline constexpr int kColumns<Dual<P>, kRelease> = P + 1 + (kRelease ? 1 : 0);
+
+/// Partial derivatives of a dual number, and none of another.
+inline const double* PartialsOf(double /*x*/) { return nullptr; }
+template <DualNumber T>
+const double* PartialsOf(const T& x) {
+  return x.v.data();
+}
+
+/// Those of coefficient k.
+inline const double* PartialsOf(const DualSeries<double>& /*series*/, int /*k*/) { return nullptr; }
+template <DualNumber T>
+const double* PartialsOf(const DualSeries<T>& series, int k) {
+  return series[k].v.data();
+}
 
 namespace baseline {
 inline constexpr std::size_t kLanes = 2;
@@ -59,25 +74,27 @@ using Vector [[gnu::vector_size(64)]] = double;
 #pragma GCC pop_options
 #endif
 
-/// Values of the polynomials at `count` τ into W rows. Reads and writes up to 3 beyond.
-template <int W>
-void EvaluateAt(const Polynomials<W>& polynomials, const double* tau, int count, double* rows) {
+/// A segment's columns at `count` samples' times [s], into rows: derivatives by the parameters of T, by the instant of
+/// release, the angle. Rows are written up to 15 beyond the last sample.
+template <bool kRelease, typename T>
+void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX
-  if (kInstructionSet == InstructionSet::kAvx512) return avx512::Evaluate<W>(polynomials, tau, count, rows);
-  if (kInstructionSet == InstructionSet::kAvx2) return avx2::Evaluate<W>(polynomials, tau, count, rows);
+  if (kInstructionSet == InstructionSet::kAvx512) return avx512::Evaluate<kRelease>(segment, time, count, rows);
+  if (kInstructionSet == InstructionSet::kAvx2) return avx2::Evaluate<kRelease>(segment, time, count, rows);
 #endif
-  baseline::Evaluate<W>(polynomials, tau, count, rows);
+  baseline::Evaluate<kRelease>(segment, time, count, rows);
 }
 
 /// All products of the first `count` samples' rows; overwrites what is beyond the last of them.
 template <int R>
 void SumProducts(SampleBlock<R>& block, int count, RowProducts<R>& sums) {
   for (auto& row : block.row) std::fill_n(row.begin() + count, kParts, 0.0);
+  const double* const rows = block.row[0].data();
 #ifdef PENDULUM_HAS_AVX
-  if (kInstructionSet == InstructionSet::kAvx512) return avx512::SumProducts<R>(block.row[0].data(), count, sums.data());
-  if (kInstructionSet == InstructionSet::kAvx2) return avx2::SumProducts<R>(block.row[0].data(), count, sums.data());
+  if (kInstructionSet == InstructionSet::kAvx512) return avx512::SumProducts<R>(rows, count, sums.data());
+  if (kInstructionSet == InstructionSet::kAvx2) return avx2::SumProducts<R>(rows, count, sums.data());
 #endif
-  baseline::SumProducts<R>(block.row[0].data(), count, sums.data());
+  baseline::SumProducts<R>(rows, count, sums.data());
 }
 
 }  // namespace pendulum

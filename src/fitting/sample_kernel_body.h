@@ -11,33 +11,50 @@ inline Vector Load(const double* from) {
 
 inline void Store(const Vector& vector, double* to) { std::memcpy(to, &vector, sizeof(vector)); }
 
-/// G vectors of samples: W chains of multiplications and additions for each, none of which waits for another.
-template <int G, int W>
-inline void EvaluateVectors(const Polynomials<W>& polynomials, const double* tau, double* rows) {
+/// G vectors of samples, τ after a segment's start: Horner chains for each column and for the rate, which is the slope
+/// of the angle's. None waits for another.
+template <int G, bool kRelease, int P, typename T>
+inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double* rows) {
   std::array<Vector, G> at;
-  std::array<std::array<Vector, W>, G> sum;
+  std::array<Vector, G> angle;
+  std::array<Vector, G> rate{};
+  std::array<std::array<Vector, G>, P> partial;
   for (int g = 0; g < G; ++g) {
     at[g] = Load(&tau[g * kLanes]);
-    for (int w = 0; w < W; ++w) sum[g][w] = Vector{} + polynomials.coefficient[polynomials.order][w];
+    angle[g] = Vector{} + segment.angle[segment.order];
+    for (int p = 0; p < P; ++p) partial[p][g] = Vector{} + PartialsOf(segment.dual, segment.order)[p];
   }
-  for (int k = polynomials.order - 1; k >= 0; --k) {
-    for (int w = 0; w < W; ++w) {
-      for (int g = 0; g < G; ++g) sum[g][w] = sum[g][w] * at[g] + polynomials.coefficient[k][w];
+  for (int k = segment.order - 1; k >= 0; --k) {
+    for (int g = 0; g < G; ++g) {
+      if constexpr (P > 0) rate[g] = rate[g] * at[g] + angle[g];
+      angle[g] = angle[g] * at[g] + segment.angle[k];
+    }
+    for (int p = 0; p < P; ++p) {
+      for (int g = 0; g < G; ++g) partial[p][g] = partial[p][g] * at[g] + PartialsOf(segment.dual, k)[p];
     }
   }
-  for (int w = 0; w < W; ++w) {
-    for (int g = 0; g < G; ++g) Store(sum[g][w], &rows[w * kBlockStride + g * kLanes]);
+  for (int g = 0; g < G; ++g) {
+    double* const to = &rows[g * kLanes];
+    for (int p = 0; p < P; ++p) Store(partial[p][g] - rate[g] * PartialsOf(segment.start)[p], &to[p * kBlockStride]);
+    if constexpr (kRelease && P > 0) Store(-rate[g], &to[P * kBlockStride]);
+    Store(angle[g], &to[(kColumns<T, kRelease> - 1) * kBlockStride]);
   }
 }
 
-template <int W>
-void Evaluate(const Polynomials<W>& polynomials, const double* tau, int count, double* rows) {
-  constexpr int kVectors = W == 1 ? 4 : W <= 6 || (kLanes == 8 && W <= 10) ? 2 : 1;  // as many as there are registers for
+template <bool kRelease, typename T>
+void Evaluate(const Segment<T>& segment, const double* time, int count, double* rows) {
+  constexpr int P = kPartials<T>;
+  constexpr int kRegisters = kLanes == 8 ? 32 : 16;
+  constexpr int kVectors = P == 0 ? 4 : 2 * (P + 3) <= kRegisters ? 2 : 1;
+  std::array<double, kBlockStride> tau;
+  const double start = Value(segment.start);
+  for (int i = 0; i < count; ++i) tau[i] = time[i] - start;
+  std::fill_n(tau.begin() + count, kBlockStride - kBlock, 0.0);
   int i = 0;
   for (; i + static_cast<int>((kVectors - 1) * kLanes) < count; i += static_cast<int>(kVectors * kLanes)) {
-    EvaluateVectors<kVectors, W>(polynomials, tau + i, rows + i);
+    EvaluateVectors<kVectors, kRelease, P>(segment, &tau[i], rows + i);
   }
-  for (; i < count; i += static_cast<int>(kLanes)) EvaluateVectors<1, W>(polynomials, tau + i, rows + i);
+  for (; i < count; i += static_cast<int>(kLanes)) EvaluateVectors<1, kRelease, P>(segment, &tau[i], rows + i);
 }
 
 /// Products of row I with rows 0 to I, each in kParts partial sums whatever the instruction set.

@@ -29,6 +29,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
   static_assert(kParameters + 1 <= kMostCompressed);
   static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
   using Dual = pendulum::Dual<kCarried>;
+  template <typename T, int R, typename Sum>
+  using Samples = BlockSamples<T, kStart == StartKind::kRelease, R, Sum>;
+  static_assert(kColumns<Dual, kStart == StartKind::kRelease> == kParameters);
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
@@ -87,7 +90,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       part = 0;
       for (int i = 0; i < count; ++i) part += At(data_.value[first + i], row[i]).deviance;
     };
-    if (!VisitSamples<double, 1>(values_, p, work, [&](double part) { deviance += part; })) return false;
+    if (!VisitSamples(values_, p, work, [&](double part) { deviance += part; })) return false;
     if (noise_.IsPlain()) deviance /= noise_.sigma * noise_.sigma;
     *sum = deviance + PriorSum(p);
     return std::isfinite(*sum);
@@ -118,7 +121,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& /*part*/) {
         read(block.row[0].data(), first, count);
       };
-      return VisitSamples<double, 1>(values_, p, work, add);
+      return VisitSamples(values_, p, work, add);
     }
     jacobian->resize(readings->size(), count_);
     const auto work = [&](SampleBlock<kParameters>& block, std::size_t first, int count, double& /*part*/) {
@@ -127,8 +130,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
       jacobian->col(kZero).segment(first, count).setOnes();
       if (data_.drifts) jacobian->col(kZero + 1).segment(first, count) = data_.times().segment(first, count);
     };
-    BlockSamples<kParameters, kParameters, double> columns;
-    return VisitSamples<Dual, kParameters>(columns, p, work, add);
+    Samples<Dual, kParameters, double> columns;
+    return VisitSamples(columns, p, work, add);
   }
 
   /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
@@ -228,7 +231,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       total.deviance += part.deviance;
       for (std::size_t k = 0; k < total.products.size(); ++k) total.products[k] += part.products[k];
     };
-    if (!VisitSamples<Dual, kResidual + 1>(samples, p, work, add)) return false;
+    if (!VisitSamples(samples, p, work, add)) return false;
     read_.SetAt(p, *this);
     const double scale = noise_.IsPlain() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
     sums->resize(kResidual + 1, kResidual + 1);
@@ -284,52 +287,21 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   /// Traces the motion through all samples: rows 0 to W - 1 of each block are derivatives by all parameters but zero,
-  /// in the parameters' order, and the model's reading; with T = double the reading alone. See BlockSamples::Flush.
-  template <typename T, int R, int W, typename Sum, typename Work, typename Add>
-  bool VisitSamples(BlockSamples<W, R, Sum>& samples, std::span<const double> p, const Work& work,
-                    const Add& add) const {
+  /// in the parameters' order, and the model's reading; with T = double the reading alone. See BlockSamples::Take.
+  template <typename T, int R, typename Sum, typename Work, typename Add>
+  bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
     if (!IsAdmissible(p)) return false;
     samples.Restart({data_.time.data(), used_samples_}, threads_);
     const auto visit = [&](const Segment<T>& segment) {
-      auto* piece = samples.Add(segment.start, segment.end);
-      if (piece == nullptr) return;
-      data_.quantity == Quantity::kAngle ? FillColumns<0>(segment, piece->polynomials)
-                                         : FillColumns<1>(segment, piece->polynomials);
-      samples.Flush(false, work, add);
+      samples.Take(data_.quantity == Quantity::kAngle ? segment : RateOf(segment), work, add);
     };
     ++traces_;
     // One tracer for all visitors: it is by far the most code here.
     const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
     const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visitor);
     if (summary.outcome != TraceSummary::Outcome::kComplete || !samples.is_complete()) return false;
-    samples.Flush(true, work, add);
     if constexpr (DualNumber<T>) traced_.SetAt(p, *this, summary);
     return true;
-  }
-
-  /// Coefficients of the reading, the angle's time derivative number kDerivative, and with a dual T of its derivatives
-  /// before it: the carried ones and, for a release, that by release time, which is minus its time derivative.
-  template <int kDerivative, typename T, int W>
-  static void FillColumns(const Segment<T>& segment, Polynomials<W>& columns) {
-    columns.order = std::max(segment.order - kDerivative, 0);
-    if (segment.order < kDerivative) {  // the rate at rest
-      columns.coefficient[0].fill(0);
-      return;
-    }
-    for (int k = 0; k <= columns.order; ++k) {
-      const double factor = kDerivative == 0 ? 1.0 : k + 1.0;
-      auto& row = columns.coefficient[k];
-      row[W - 1] = factor * segment.angle[k + kDerivative];
-      if constexpr (DualNumber<T>) {
-        for (int i = 0; i < kCarried; ++i) row[i] = factor * segment.dual[k + kDerivative].v[i];
-      }
-    }
-    if constexpr (DualNumber<T> && kStart == StartKind::kRelease) {
-      for (int k = 0; k < columns.order; ++k) {
-        columns.coefficient[k][kCarried] = -(k + 1) * columns.coefficient[k + 1][W - 1];
-      }
-      columns.coefficient[columns.order][kCarried] = 0;
-    }
   }
 
   /// Something known, and where: solver, active set, search and judgement ask for it at the same point, one by one.
@@ -368,9 +340,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
   mutable int trials_since_step_ = 0;  // of the solver that calls Evaluate
   // Room that evaluations leave to the next one.
   mutable Eigen::MatrixXd scratch_;
-  mutable BlockSamples<1, 1, double> values_;
-  mutable BlockSamples<kParameters, kZero + 2, Part<1>> steady_;
-  mutable BlockSamples<kParameters, kZero + 3, Part<2>> drifting_;
+  mutable Samples<double, 1, double> values_;
+  mutable Samples<Dual, kZero + 2, Part<1>> steady_;
+  mutable Samples<Dual, kZero + 3, Part<2>> drifting_;
 };
 
 }  // namespace

@@ -33,14 +33,14 @@ struct FloorRun {
 
 FloorSegment TakeDown(const Segment<Dual>& segment, const std::vector<double>& time, int first) {
   FloorSegment floor;
-  floor.start = segment.start;
+  floor.start = Value(segment.start);
   floor.order = segment.order;
   floor.first = floor.last = first;
   while (floor.last < static_cast<int>(time.size()) && time[floor.last] < segment.end) ++floor.last;
   for (int k = 0; k <= segment.order; ++k) {
     auto& row = floor.coefficient[k];
     row[0] = segment.angle[k];
-    for (int i = 0; i < 4; ++i) row[1 + i] = segment.dual[k].v[i];
+    for (int i = 0; i < 4; ++i) row[1 + i] = PartialsAtFixedTime(segment, k)[i];
     row[5] = k < segment.order ? -(k + 1) * segment.angle[k + 1] : 0.0;
   }
   return floor;

@@ -17,6 +17,8 @@ template <int P>
 class Partials {
  public:
   [[gnu::always_inline]] double operator[](int i) const { return quad_[i / 4][i % 4]; }
+  /// P numbers, one behind the other.
+  [[gnu::always_inline]] const double* data() const { return reinterpret_cast<const double*>(quad_.data()); }
   [[gnu::always_inline]] void set(int i, double value) { quad_[i / 4][i % 4] = value; }
 
   /// Adds s y for an s that is the same in all lanes.
@@ -120,6 +122,12 @@ concept DualNumber = requires(T x) {
   x.a;
   x.v;
 };
+
+/// The number of a T's partial derivatives.
+template <typename T>
+inline constexpr int kPartials = 0;
+template <int P>
+inline constexpr int kPartials<Dual<P>> = P;
 
 template <typename T>
 double Value(const T& x) {

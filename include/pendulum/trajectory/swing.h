@@ -46,14 +46,39 @@ struct DualOnly<T> {
 };
 
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// With a dual T the partial derivatives of θ at a fixed absolute time t are Σ dual[n].v (t - start)^n.
+/// With a dual T the partial derivatives of `dual` are those at a fixed time since `start`, which moves itself: see
+/// PartialsAtFixedTime.
 template <typename T>
 struct Segment {
-  double start = 0, end = 0;  ///< s
+  T start{};       ///< s
+  double end = 0;  ///< s
   int order = 0;
   Series<double> angle;
   DualSeries<T> dual;
 };
+
+/// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md eq.
+/// (17)).
+template <DualNumber T>
+auto PartialsAtFixedTime(const Segment<T>& segment, int n) {
+  const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
+  return segment.dual[n].v - rate * segment.start.v;
+}
+
+/// The segment's rate, as a segment.
+template <typename T>
+Segment<T> RateOf(const Segment<T>& segment) {
+  Segment<T> rate;
+  rate.start = segment.start;
+  rate.end = segment.end;
+  rate.order = std::max(segment.order - 1, 0);
+  for (int n = 0; n <= rate.order; ++n) {
+    const double factor = segment.order == 0 ? 0.0 : n + 1.0;  // at rest there is none
+    rate.angle[n] = factor * segment.angle[n + 1];
+    if constexpr (DualNumber<T>) rate.dual[n] = factor * segment.dual[n + 1];
+  }
+  return rate;
+}
 
 /// The rate along a swing, as Segment has the angle; its order is one less.
 template <typename T>
@@ -173,13 +198,6 @@ State<T> StateAtReversal(const State<T>& state, double acceleration) {
   State<T> reversal{state.time, state.angle, T(0.0)};
   if constexpr (DualNumber<T>) reversal.time.v -= (1 / acceleration) * state.rate.v;
   return reversal;
-}
-
-/// Turns partial derivatives at fixed time since `start` into those at fixed absolute time: θ_p - θ' start_p,
-/// coefficient by coefficient up to `order` (MODEL.md eq. (17)).
-template <DualNumber T>
-void FixAbsoluteTime(const T& start, int order, const Series<double>& rate, Series<T>& dual_angle) {
-  for (int k = 0; k <= order; ++k) dual_angle[k].v -= rate[k] * start.v;
 }
 
 }  // namespace pendulum

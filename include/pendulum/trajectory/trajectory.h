@@ -151,9 +151,8 @@ class Tracer {
       if constexpr (DualNumber<T>) {
         next.angle.v = EvaluatePartials(segment_.dual, order_, length);
         next.rate.v = EvaluatePartials(rate.dual, order_ - 1, length);
-        FixAbsoluteTime(state.time, order_ - 1, rate.value, segment_.dual);
       }
-      VisitSwing(Value(state.time), length);
+      VisitSwing(state.time, length);
       state = next;
       if (root > 0) {
         Reverse(direction, state);
@@ -170,9 +169,9 @@ class Tracer {
     NoteReversal(angle);
   }
 
-  void VisitSwing(double start, double length) {
+  void VisitSwing(const T& start, double length) {
     segment_.start = start;
-    segment_.end = std::min(start + length, options_.end);
+    segment_.end = std::min(Value(start) + length, options_.end);
     visit_(std::as_const(segment_));
   }
 
@@ -190,7 +189,7 @@ class Tracer {
   }
 
   void VisitRest(double start, double end, const T& angle) {
-    segment_.start = start;
+    segment_.start = T(start);
     segment_.end = std::min(end, options_.end);
     segment_.order = 0;
     segment_.angle[0] = Value(angle);
