@@ -22,6 +22,7 @@ class BlockSamples {
   void Restart(std::span<const double> time, int threads) {
     time_ = time;
     threads_ = time.size() < 2 * kShare * kBlock ? 1 : ThreadsOrCores(threads);
+    samples_per_second_ = time.size() < 2 ? 0 : static_cast<double>(time.size() - 1) / (time.back() - time.front());
     kept_ = 0;
     next_ = done_ = 0;
   }
@@ -31,7 +32,7 @@ class BlockSamples {
   template <typename Work, typename Add>
   void Take(const Segment<T>& segment, const Work& work, const Add& add) {
     const std::size_t first = next_;
-    while (next_ < time_.size() && time_[next_] < segment.end) ++next_;
+    next_ = FirstNotBefore(segment.end);
     if (next_ == first) return;
     if (threads_ > 1) {
       Keep(segment, first);
@@ -59,6 +60,16 @@ class BlockSamples {
     std::size_t first = 0;
     Segment<T> segment;
   };
+
+  /// The first sample from next_ on that is not before `end` [s]: near where evenly spaced ones have it.
+  std::size_t FirstNotBefore(double end) const {
+    if (next_ == time_.size() || !(time_[next_] < end)) return next_;
+    const double guess = (end - time_[next_]) * samples_per_second_;
+    std::size_t sample = next_ + static_cast<std::size_t>(std::min(guess, static_cast<double>(time_.size() - next_)));
+    while (sample > next_ && !(time_[sample - 1] < end)) --sample;
+    while (sample < time_.size() && time_[sample] < end) ++sample;
+    return sample;
+  }
 
   /// Samples `begin` to end - 1, of a block that begins with sample `first`.
   void Evaluate(const Segment<T>& segment, std::size_t begin, std::size_t end, SampleBlock<R>& block,
@@ -112,6 +123,7 @@ class BlockSamples {
 
   std::span<const double> time_;
   int threads_ = 1;
+  double samples_per_second_ = 0;
   std::size_t next_ = 0;  ///< The first sample that no segment was for.
   SampleBlock<R> block_;
   Part part_;

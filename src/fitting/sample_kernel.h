@@ -17,8 +17,8 @@ namespace pendulum {
 /// Samples are worked on in blocks of consecutive ones: their columns stay in the nearest cache, and sums over a block
 /// do not depend on which thread makes them.
 inline constexpr std::size_t kBlock = 256;
-inline constexpr std::size_t kBlockStride = kBlock + 16;  ///< Of a block's rows: vectors reach beyond the last sample.
-inline constexpr std::size_t kParts = 8;                  ///< Partial sums of a product over a block.
+inline constexpr std::size_t kBlockStride = kBlock + 8;  ///< Of a block's rows: vectors reach beyond the last sample.
+inline constexpr std::size_t kParts = 8;                 ///< Partial sums of a product over a block.
 
 /// R rows of numbers, one for each sample of a block.
 template <int R>
@@ -36,20 +36,6 @@ template <typename T, bool kRelease>
 inline constexpr int kColumns = 1;
 template <int P, bool kRelease>
 inline constexpr int kColumns<Dual<P>, kRelease> = P + 1 + (kRelease ? 1 : 0);
-
-/// Partial derivatives of a dual number, and none of another.
-inline const double* PartialsOf(double /*x*/) { return nullptr; }
-template <DualNumber T>
-const double* PartialsOf(const T& x) {
-  return x.v.data();
-}
-
-/// Those of coefficient k.
-inline const double* PartialsOf(const DualSeries<double>& /*series*/, int /*k*/) { return nullptr; }
-template <DualNumber T>
-const double* PartialsOf(const DualSeries<T>& series, int k) {
-  return series[k].v.data();
-}
 
 namespace baseline {
 inline constexpr std::size_t kLanes = 2;
@@ -75,7 +61,7 @@ using Vector [[gnu::vector_size(64)]] = double;
 #endif
 
 /// A segment's columns at `count` samples' times [s], into rows: derivatives by the parameters of T, by the instant of
-/// release, the angle. Rows are written up to 15 beyond the last sample.
+/// release, the angle. Rows are written up to 7 beyond the last sample.
 template <bool kRelease, typename T>
 void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX

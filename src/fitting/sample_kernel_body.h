@@ -22,7 +22,7 @@ inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double
   for (int g = 0; g < G; ++g) {
     at[g] = Load(&tau[g * kLanes]);
     angle[g] = Vector{} + segment.angle[segment.order];
-    for (int p = 0; p < P; ++p) partial[p][g] = Vector{} + PartialsOf(segment.dual, segment.order)[p];
+    for (int p = 0; p < P; ++p) partial[p][g] = Vector{} + segment.partials[segment.order].data()[p];
   }
   for (int k = segment.order - 1; k >= 0; --k) {
     for (int g = 0; g < G; ++g) {
@@ -30,31 +30,36 @@ inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double
       angle[g] = angle[g] * at[g] + segment.angle[k];
     }
     for (int p = 0; p < P; ++p) {
-      for (int g = 0; g < G; ++g) partial[p][g] = partial[p][g] * at[g] + PartialsOf(segment.dual, k)[p];
+      for (int g = 0; g < G; ++g) partial[p][g] = partial[p][g] * at[g] + segment.partials[k].data()[p];
     }
   }
   for (int g = 0; g < G; ++g) {
     double* const to = &rows[g * kLanes];
-    for (int p = 0; p < P; ++p) Store(partial[p][g] - rate[g] * PartialsOf(segment.start)[p], &to[p * kBlockStride]);
+    for (int p = 0; p < P; ++p)
+      Store(partial[p][g] - rate[g] * segment.start_partials.data()[p], &to[p * kBlockStride]);
     if constexpr (kRelease && P > 0) Store(-rate[g], &to[P * kBlockStride]);
     Store(angle[g], &to[(kColumns<T, kRelease> - 1) * kBlockStride]);
   }
+}
+
+/// Samples from number i on, G vectors of them at once as long as there are as many, then fewer.
+template <int G, bool kRelease, int P, typename T>
+inline void EvaluateFrom(int i, const Segment<T>& segment, const double* tau, int count, double* rows) {
+  for (; i + (G - 1) * static_cast<int>(kLanes) < count; i += G * static_cast<int>(kLanes)) {
+    EvaluateVectors<G, kRelease, P>(segment, tau + i, rows + i);
+  }
+  if constexpr (G > 1) EvaluateFrom<G - 1, kRelease, P>(i, segment, tau, count, rows);
 }
 
 template <bool kRelease, typename T>
 void Evaluate(const Segment<T>& segment, const double* time, int count, double* rows) {
   constexpr int P = kPartials<T>;
   constexpr int kRegisters = kLanes == 8 ? 32 : 16;
-  constexpr int kVectors = P == 0 ? 4 : 2 * (P + 3) <= kRegisters ? 2 : 1;
+  constexpr int kVectors = P == 0 ? 4 : std::clamp(kRegisters / (P + 3), 1, 3);
   std::array<double, kBlockStride> tau;
-  const double start = Value(segment.start);
-  for (int i = 0; i < count; ++i) tau[i] = time[i] - start;
+  for (int i = 0; i < count; ++i) tau[i] = time[i] - segment.start;
   std::fill_n(tau.begin() + count, kBlockStride - kBlock, 0.0);
-  int i = 0;
-  for (; i + static_cast<int>((kVectors - 1) * kLanes) < count; i += static_cast<int>(kVectors * kLanes)) {
-    EvaluateVectors<kVectors, kRelease, P>(segment, &tau[i], rows + i);
-  }
-  for (; i < count; i += static_cast<int>(kLanes)) EvaluateVectors<1, kRelease, P>(segment, &tau[i], rows + i);
+  EvaluateFrom<kVectors, kRelease, P>(0, segment, tau.data(), count, rows);
 }
 
 /// Products of row I with rows 0 to I, each in kParts partial sums whatever the instruction set.

@@ -79,10 +79,10 @@ class TrajectoryCostFor final : public TrajectoryCost {
     double deviance = 0;
     const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& part) {
       auto& row = block.row[0];
-      AddZero(p, first, count, row.data());
+      Read(p, row.data(), first, count, row.data());
       if (noise_.IsPlain()) {
         RowProducts<1> square;
-        Subtract(first, count, row.data());
+        FindResiduals(row.data(), first, count, row.data());
         SumProducts(block, count, square);
         part = square[0];
         return;
@@ -108,9 +108,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
     readings->resize(static_cast<Eigen::Index>(used_samples_));
-    const auto read = [&](double* row, std::size_t first, int count) {
-      AddZero(p, first, count, row);
-      std::copy_n(row, count, readings->data() + first);
+    const auto read = [&](const double* row, std::size_t first, int count) {
+      Read(p, row, first, count, readings->data() + first);
     };
     const auto add = [](double /*part*/) {};
     if (jacobian == nullptr) {
@@ -153,12 +152,12 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
  private:
-  /// Makes a row of the model's values readings: adds what the sensor shows when the angle, or rate, is zero.
-  void AddZero(std::span<const double> p, std::size_t first, int count, double* row) const {
+  /// Readings of the model's values: what the sensor shows when the angle, or rate, is zero is added.
+  void Read(std::span<const double> p, const double* row, std::size_t first, int count, double* readings) const {
     const double zero = p[kZero];
-    for (int i = 0; i < count; ++i) row[i] += zero;
+    for (int i = 0; i < count; ++i) readings[i] = row[i] + zero;
     if (!data_.drifts) return;
-    for (int i = 0; i < count; ++i) row[i] += p[kZero + 1] * data_.time[first + i];
+    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.time[first + i];
   }
 
   /// As noise_.At, without an exponential and an error function for every sample of a level.
@@ -171,10 +170,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
             std::max(-level.curvature, 0.0) * per_level * per_level};
   }
 
-  /// Turns a row of readings into residuals.
-  void Subtract(std::size_t first, int count, double* row) const {
+  void FindResiduals(const double* readings, std::size_t first, int count, double* residuals) const {
     const double* const value = &data_.value[first];
-    for (int i = 0; i < count; ++i) row[i] = value[i] - row[i];
+    for (int i = 0; i < count; ++i) residuals[i] = value[i] - readings[i];
   }
 
   /// The rows of a block whose products are wanted: derivatives, zero, its drift if there is one, residuals.
@@ -188,21 +186,21 @@ class TrajectoryCostFor final : public TrajectoryCost {
     double deviance = 0;
   };
 
-  /// Turns readings, in the last row, and derivatives into rows. A plain residual's are divided by σ when all are
-  /// summed up.
+  /// Completes the rows behind the derivatives and weighs them all; gives the deviance. Plain residuals are divided by
+  /// σ when all are summed up.
   template <int kBaseline>
-  double Prepare(std::size_t first, int count, Rows<kBaseline>& block) const {
+  double Prepare(const double* readings, std::size_t first, int count, Rows<kBaseline>& block) const {
     constexpr int kResidual = kZero + kBaseline;
     auto& residual = block.row[kResidual];
     std::fill_n(block.row[kZero].begin(), count, 1.0);
     if constexpr (kBaseline == 2) std::copy_n(data_.time.begin() + first, count, block.row[kZero + 1].begin());
     if (noise_.IsPlain()) {
-      Subtract(first, count, residual.data());
+      FindResiduals(readings, first, count, residual.data());
       return 0;
     }
     double deviance = 0;
     for (int i = 0; i < count; ++i) {
-      const SampleLikelihood sample = At(data_.value[first + i], residual[i]);
+      const SampleLikelihood sample = At(data_.value[first + i], readings[i]);
       deviance += sample.deviance;
       const double root_weight = std::sqrt(sample.weight);
       residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;
@@ -219,11 +217,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
     read_.parameters.clear();
     read_.value.resize(static_cast<Eigen::Index>(used_samples_));
     const auto work = [&](Rows<kBaseline>& block, std::size_t first, int count, Part<kBaseline>& part) {
-      auto& residual = block.row[kResidual];
-      std::copy_n(block.row[kModel].begin(), count, residual.begin());
-      AddZero(p, first, count, residual.data());
-      std::copy_n(residual.begin(), count, read_.value.data() + first);
-      part.deviance = Prepare<kBaseline>(first, count, block);
+      double* const readings = read_.value.data() + first;
+      Read(p, block.row[kModel].data(), first, count, readings);
+      part.deviance = Prepare<kBaseline>(readings, first, count, block);
       SumProducts(block, count, part.products);
     };
     Part<kBaseline> total{};

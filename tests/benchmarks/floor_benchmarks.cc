@@ -33,7 +33,7 @@ struct FloorRun {
 
 FloorSegment TakeDown(const Segment<Dual>& segment, const std::vector<double>& time, int first) {
   FloorSegment floor;
-  floor.start = Value(segment.start);
+  floor.start = segment.start;
   floor.order = segment.order;
   floor.first = floor.last = first;
   while (floor.last < static_cast<int>(time.size()) && time[floor.last] < segment.end) ++floor.last;

@@ -16,6 +16,15 @@ using Quad [[gnu::vector_size(32)]] = double;
 template <int P>
 class Partials {
  public:
+  // Copied quad by quad: left to itself, g++ copies in halves, and quads that are read at once have to wait for both.
+  Partials() = default;
+  [[gnu::always_inline]] Partials(const Partials& other) { *this = other; }
+  [[gnu::always_inline]] Partials& operator=(const Partials& other) {
+    for (std::size_t i = 0; i < kQuads; ++i) quad_[i] = other.quad_[i];
+    return *this;
+  }
+  ~Partials() = default;
+
   [[gnu::always_inline]] double operator[](int i) const { return quad_[i / 4][i % 4]; }
   /// P numbers, one behind the other.
   [[gnu::always_inline]] const double* data() const { return reinterpret_cast<const double*>(quad_.data()); }
@@ -128,6 +137,9 @@ template <typename T>
 inline constexpr int kPartials = 0;
 template <int P>
 inline constexpr int kPartials<Dual<P>> = P;
+
+template <typename T>
+using PartialsFor = Partials<kPartials<T>>;
 
 template <typename T>
 double Value(const T& x) {

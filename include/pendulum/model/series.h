@@ -71,32 +71,32 @@ class SineSeries {
   /// θ dθ (MODEL.md eq. (15)) costs one product of series per parameter, the recurrence in dual numbers four. An even
   /// n leaves to its successor, in `next`, what can be known of it.
   template <int n, int P>
-  [[gnu::always_inline]] Partials<P> PartialsOf(const Series<Dual<P>>& angle, Partials<P>& next) const {
+  [[gnu::always_inline]] Partials<P> PartialsOf(const Series<Partials<P>>& angle, Partials<P>& next) const {
     if constexpr (n % 2 == 1) {
       Partials<P> sum = next;
-      sum.AddProduct(spread_cosine_[0], angle[n].v);
-      sum.AddProduct(spread_cosine_[n], angle[0].v);
+      sum.AddProduct(spread_cosine_[0], angle[n]);
+      sum.AddProduct(spread_cosine_[n], angle[0]);
       return sum;
     } else {
       constexpr int kMiddle = n / 2;
-      Partials<P> low, high, next_low, next_high;
-      low.AddProduct(spread_cosine_[kMiddle], angle[kMiddle].v);
-      if constexpr (n > 0) next_low.AddProduct(spread_cosine_[kMiddle], angle[kMiddle + 1].v);
+      Partials<P> sum;
+      next = {};
+      sum.AddProduct(spread_cosine_[kMiddle], angle[kMiddle]);
+      if constexpr (n > 0) next.AddProduct(spread_cosine_[kMiddle], angle[kMiddle + 1]);
 #pragma GCC unroll 32
       for (int k = kMiddle - 1; k >= 0; --k) {
-        low.AddProduct(spread_cosine_[n - k], angle[k].v);
-        next_low.AddProduct(spread_cosine_[n - k], angle[k + 1].v);
-        high.AddProduct(spread_cosine_[k], angle[n - k].v);
-        if (k > 0) next_high.AddProduct(spread_cosine_[k], angle[n + 1 - k].v);
+        sum.AddProduct(spread_cosine_[n - k], angle[k]);
+        next.AddProduct(spread_cosine_[n - k], angle[k + 1]);
+        sum.AddProduct(spread_cosine_[k], angle[n - k]);
+        if (k > 0) next.AddProduct(spread_cosine_[k], angle[n + 1 - k]);
       }
-      next = next_low + next_high;
-      return low + high;
+      return sum;
     }
   }
 
  private:
   /// Terms k <= kOuter and their mirror images are added one by one, for they are known late.
-  static constexpr int kOuter = 2;
+  static constexpr int kOuter = 1;
   template <int n>
   static constexpr bool kInPairs = n > 2 * kOuter + 1;
 

@@ -31,38 +31,24 @@ struct State {
   T time, angle, rate;  ///< s, rad, rad/s
 };
 
-/// The series of a dual T; of another, nothing.
-template <typename T>
-struct DualSeries {};
-template <DualNumber T>
-struct DualSeries<T> : Series<T> {};
-
-/// Partial derivatives like those of a dual T; of another, nothing.
-template <typename T>
-struct DualOnly {};
-template <DualNumber T>
-struct DualOnly<T> {
-  decltype(T::v) partials;
-};
-
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// With a dual T the partial derivatives of `dual` are those at a fixed time since `start`, which moves itself: see
-/// PartialsAtFixedTime.
+/// With a dual T `partials` are the derivatives of these coefficients at a fixed time since `start`, which moves
+/// itself: see PartialsAtFixedTime. With another they are empty.
 template <typename T>
 struct Segment {
-  T start{};       ///< s
-  double end = 0;  ///< s
+  double start = 0, end = 0;  ///< s
+  PartialsFor<T> start_partials;
   int order = 0;
   Series<double> angle;
-  DualSeries<T> dual;
+  Series<PartialsFor<T>> partials;
 };
 
 /// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md eq.
 /// (17)).
 template <DualNumber T>
-auto PartialsAtFixedTime(const Segment<T>& segment, int n) {
+PartialsFor<T> PartialsAtFixedTime(const Segment<T>& segment, int n) {
   const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
-  return segment.dual[n].v - rate * segment.start.v;
+  return segment.partials[n] - rate * segment.start_partials;
 }
 
 /// The segment's rate, as a segment.
@@ -71,20 +57,21 @@ Segment<T> RateOf(const Segment<T>& segment) {
   Segment<T> rate;
   rate.start = segment.start;
   rate.end = segment.end;
+  rate.start_partials = segment.start_partials;
   rate.order = std::max(segment.order - 1, 0);
   for (int n = 0; n <= rate.order; ++n) {
     const double factor = segment.order == 0 ? 0.0 : n + 1.0;  // at rest there is none
     rate.angle[n] = factor * segment.angle[n + 1];
-    if constexpr (DualNumber<T>) rate.dual[n] = factor * segment.dual[n + 1];
+    rate.partials[n] = factor * segment.partials[n + 1];
   }
   return rate;
 }
 
-/// The rate along a swing, as Segment has the angle; its order is one less.
+/// The rate along a swing, as numbers and as dual numbers if T is. The order is one less than the angle's.
 template <typename T>
 struct RateSeries {
   Series<double> value;
-  DualSeries<T> dual;
+  Series<T> dual;
 };
 
 /// Σ coefficient(k) τ^k for k = 0..order, by Horner's rule over even and odd powers apart: neither waits for the other.
@@ -101,14 +88,15 @@ V EvaluatePolynomial(const Coefficient& coefficient, int order, double tau) {
   return even + tau * odd;
 }
 
-inline double EvaluateSeries(const Series<double>& c, int order, double tau) {
-  return EvaluatePolynomial<double>([&](int k) { return c[k]; }, order, tau);
+template <typename V>
+V EvaluateSeries(const Series<V>& c, int order, double tau) {
+  return EvaluatePolynomial<V>([&](int k) { return c[k]; }, order, tau);
 }
 
 /// Partial derivatives of EvaluateSeries.
 template <DualNumber T>
-auto EvaluatePartials(const Series<T>& c, int order, double tau) {
-  return EvaluatePolynomial<decltype(T::v)>([&](int k) { return c[k].v; }, order, tau);
+PartialsFor<T> EvaluatePartials(const Series<T>& c, int order, double tau) {
+  return EvaluatePolynomial<PartialsFor<T>>([&](int k) { return c[k].v; }, order, tau);
 }
 
 /// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic

@@ -16,11 +16,11 @@ class SwingExpansion {
  public:
   /// Writes to `angle` and `rate` on each call.
   SwingExpansion(const Pendulum<F, T>& pendulum, Segment<T>& angle, RateSeries<T>& rate)
-      : pendulum_(pendulum),
-        values_(Values(pendulum)),
-        inverse_inertia_(1 / values_.inertia),
-        angle_(angle),
-        rate_(rate) {}
+      : pendulum_(pendulum), values_(Values(pendulum)), angle_(angle), rate_(rate) {
+    const double inverse_inertia = 1 / values_.inertia;
+    for (int n = 1; n <= kMaxOrder; ++n) per_torque_[n] = -inverse_inertia * kInverse[n];
+    if constexpr (DualNumber<T>) inertia_ = inverse_inertia * pendulum.inertia.v;
+  }
 
   /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate in one direction of motion from a
   /// state (MODEL.md eq. (12)); with a dual T also their partial derivatives.
@@ -29,7 +29,7 @@ class SwingExpansion {
     angle_.angle[0] = Value(from.angle);
     rate_.value[0] = Value(from.rate);
     if constexpr (DualNumber<T>) {
-      angle_.dual[0] = from.angle;
+      angle_.partials[0] = from.angle.v;
       rate_.dual[0] = from.rate;
     }
     pendulum_.gravity == Gravity::kSine ? FindAll<Gravity::kSine>() : FindAll<Gravity::kLinear>();
@@ -54,32 +54,34 @@ class SwingExpansion {
     const double gravity =
         kGravity == Gravity::kSine ? sine_.template Next<n>(angle_.angle[0], rate_.value) : angle_.angle[n];
     const double friction = friction_(n, rate_.value, direction_, values_.friction.data());
-    rate_.value[n + 1] = (gravity + friction) * (inverse_inertia_ * -kInverse[n + 1]);
+    rate_.value[n + 1] = (gravity + friction) * per_torque_[n + 1];
   }
 
   /// Linear equations along the swing: (12) and (15), differentiated.
   template <Gravity kGravity, int n>
   void FindPartials() {
-    angle_.dual[n + 1].a = angle_.angle[n + 1];
-    angle_.dual[n + 1].v = kInverse[n + 1] * rate_.dual[n].v;
+    angle_.partials[n + 1] = kInverse[n + 1] * rate_.dual[n].v;
     if (n + 1 == angle_.order) return;
-    auto gravity = angle_.dual[n].v;
-    if constexpr (kGravity == Gravity::kSine) gravity = sine_.template PartialsOf<n>(angle_.dual, next_sine_.partials);
+    auto gravity = angle_.partials[n];
+    if constexpr (kGravity == Gravity::kSine) {
+      gravity = sine_.template PartialsOf<n>(angle_.partials, next_sine_);
+    }
     const auto friction = dual_friction_(n, rate_.dual, direction_, pendulum_.friction.data()).v;
-    const double factor = inverse_inertia_ * -kInverse[n + 1];
-    const auto known_early = factor * gravity - (inverse_inertia_ * rate_.value[n + 1]) * pendulum_.inertia.v;
-    rate_.dual[n + 1].a = rate_.value[n + 1];
-    rate_.dual[n + 1].v = known_early + factor * friction;
+    const double rate = rate_.value[n + 1];
+    const double factor = per_torque_[n + 1];
+    const auto known_early = factor * gravity - rate * inertia_;
+    rate_.dual[n + 1] = T(rate, known_early + factor * friction);
   }
 
   const Pendulum<F, T>& pendulum_;
   const Pendulum<F, double> values_;
-  const double inverse_inertia_;
+  Series<double> per_torque_{};  ///< -1 / (I n)
+  PartialsFor<T> inertia_;       ///< Of the inertia, over the inertia.
   double direction_ = 1;
   Segment<T>& angle_;
   RateSeries<T>& rate_;
   SineSeries sine_;
-  DualOnly<T> next_sine_;
+  PartialsFor<T> next_sine_;
   typename F::template Recurrence<double> friction_;
   typename F::template Recurrence<T> dual_friction_;
 };

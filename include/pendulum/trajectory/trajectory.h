@@ -149,7 +149,7 @@ class Tracer {
       const double length = root > 0 ? root : step;
       State<T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
       if constexpr (DualNumber<T>) {
-        next.angle.v = EvaluatePartials(segment_.dual, order_, length);
+        next.angle.v = EvaluateSeries(segment_.partials, order_, length);
         next.rate.v = EvaluatePartials(rate.dual, order_ - 1, length);
       }
       VisitSwing(state.time, length);
@@ -163,24 +163,26 @@ class Tracer {
   }
 
   void Reverse(double direction, State<T>& state) {
-    const double angle = Value(state.angle);
-    const double torque = GravityTorque(values_.gravity, angle) + F::Torque(0.0, direction, values_.friction.data());
+    const double gravity = GravityTorque(values_.gravity, Value(state.angle));
+    const double torque = gravity + F::Torque(0.0, direction, values_.friction.data());
     state = StateAtReversal(state, -torque / values_.inertia);
-    NoteReversal(angle);
+    NoteReversal(gravity);
   }
 
   void VisitSwing(const T& start, double length) {
-    segment_.start = start;
-    segment_.end = std::min(Value(start) + length, options_.end);
+    segment_.start = Value(start);
+    if constexpr (DualNumber<T>) segment_.start_partials = start.v;
+    segment_.end = std::min(segment_.start + length, options_.end);
     visit_(std::as_const(segment_));
   }
 
-  void NoteReversal(double angle) {
+  /// Between gravity and what would hold the pendulum, were it to go on the other way.
+  void NoteReversal(double gravity) {
     ++summary_.reversals;
-    const double direction = angle > 0 ? -1.0 : 1.0;
+    const double direction = gravity > 0 ? -1.0 : 1.0;
     const double holding = direction * F::Torque(0.0, direction, values_.friction.data());
-    summary_.smallest_reversal_margin = std::min(summary_.smallest_reversal_margin,
-                                                 std::abs(std::abs(GravityTorque(values_.gravity, angle)) - holding));
+    summary_.smallest_reversal_margin =
+        std::min(summary_.smallest_reversal_margin, std::abs(std::abs(gravity) - holding));
   }
 
   /// Rest after a stop: the reading stays, whatever the instant of the stop, for the rate there is 0.
@@ -189,11 +191,12 @@ class Tracer {
   }
 
   void VisitRest(double start, double end, const T& angle) {
-    segment_.start = T(start);
+    segment_.start = start;
+    segment_.start_partials = {};
     segment_.end = std::min(end, options_.end);
     segment_.order = 0;
     segment_.angle[0] = Value(angle);
-    if constexpr (DualNumber<T>) segment_.dual[0] = angle;
+    if constexpr (DualNumber<T>) segment_.partials[0] = angle.v;
     visit_(std::as_const(segment_));
   }
 
