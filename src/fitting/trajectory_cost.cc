@@ -289,7 +289,11 @@ class TrajectoryCostFor final : public TrajectoryCost {
     if (!IsAdmissible(p)) return false;
     samples.Restart({data_.time.data(), used_samples_}, threads_);
     const auto visit = [&](const Segment<T>& segment) {
-      samples.Take(data_.quantity == Quantity::kAngle ? segment : RateOf(segment), work, add);
+      if (data_.quantity == Quantity::kAngle) {
+        samples.Take(segment, work, add);
+      } else {
+        samples.Take(RateOf(segment), work, add);
+      }
     };
     ++traces_;
     // One tracer for all visitors: it is by far the most code here.

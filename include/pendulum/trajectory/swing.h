@@ -151,7 +151,7 @@ inline double StepLength(const Series<double>& angle, int order, double toleranc
 /// First root of the rate in (0, step], or a negative number when the direction of motion holds throughout. The step is
 /// at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end, of end_rate,
 /// decides. From rest the rate's root at 0 is divided out. Halley's method from the chord, kept inside a bisection's
-/// bracket: a relative step of 1e-6 is the last, what would follow is its cube.
+/// bracket: a relative step of 1e-4 is the last, what would follow is its cube.
 inline double FirstReversal(const Series<double>& rate, int order, double direction, double step, double end_rate) {
   if (direction * end_rate > 0) return -1;
   const double begin_rate = rate[0];
@@ -171,7 +171,7 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
     if (value == 0) break;
     (direction * value > 0 ? low : high) = root;
     const double next = root - value * slope / (slope * slope - value * half_bend);
-    const bool last = std::abs(next - root) <= 1e-6 * root;
+    const bool last = std::abs(next - root) <= 1e-4 * root;
     const bool inside = next > low && next < high;
     root = last || inside ? std::clamp(next, low, high) : 0.5 * (low + high);
     if (last) break;
