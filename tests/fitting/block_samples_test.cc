@@ -15,7 +15,7 @@ using testing::DoubleNear;
 using testing::ElementsAreArray;
 using testing::Pointwise;
 
-using Samples = BlockSamples<1, 1, double>;
+using Samples = BlockSamples<double, false, 1, double>;
 
 /// What the blocks read, in their order, and the sums they gave in the order they were added.
 struct Collected {
@@ -24,7 +24,7 @@ struct Collected {
   bool is_complete = false;
 };
 
-/// Lays the line 3 t + 1 through all times in pieces that begin at multiples of `length`, up to `end`.
+/// Lays the line 3 t + 1 through all times in segments that begin at multiples of `length`, up to `end`.
 Collected LayLine(Samples& samples, const std::vector<double>& time, int threads, double length, double end) {
   Collected collected;
   collected.readings.resize(time.size());
@@ -35,15 +35,15 @@ Collected LayLine(Samples& samples, const std::vector<double>& time, int threads
   };
   const auto add = [&](double sum) { collected.sums.push_back(sum); };
   for (double start = 0; start < end; start += length) {
-    auto* const piece = samples.Add(start, start + length);
-    if (piece == nullptr) continue;
-    piece->polynomials.order = 1;
-    piece->polynomials.coefficient[0][0] = 3 * start + 1;
-    piece->polynomials.coefficient[1][0] = 3;
-    samples.Flush(false, work, add);
+    Segment<double> segment;
+    segment.start = start;
+    segment.end = start + length;
+    segment.order = 1;
+    segment.angle[0] = 3 * start + 1;
+    segment.angle[1] = 3;
+    samples.Take(segment, work, add);
   }
   collected.is_complete = samples.is_complete();
-  samples.Flush(true, work, add);
   return collected;
 }
 
@@ -59,7 +59,7 @@ std::vector<double> Line(const std::vector<double>& time) {
   return line;
 }
 
-TEST(BlockSamples, ReadsEachSampleFromItsPieceWhateverThePieces) {
+TEST(BlockSamples, ReadsEachSampleFromItsSegmentWhateverTheSegments) {
   for (const std::size_t count : {1UL, 255UL, 256UL, 257UL, 1000UL}) {
     const std::vector<double> time = Times(count);
     for (const double length : {0.003, 0.01, 0.37, 2.56, 100.0}) {
@@ -71,7 +71,7 @@ TEST(BlockSamples, ReadsEachSampleFromItsPieceWhateverThePieces) {
   }
 }
 
-// More pieces than are kept before they are worked on, and more blocks than one thread takes.
+// More segments than are kept before they are worked on, and more blocks than one thread takes.
 TEST(BlockSamples, SumsInTheSameOrderOnAnyNumberOfThreads) {
   const std::vector<double> time = Times(150'000);
   for (const double length : {0.013, 7.7}) {

@@ -15,54 +15,92 @@ namespace {
 using testing::DoubleNear;
 using testing::Pointwise;
 
-constexpr int kColumns = 6;
 constexpr int kRows = 7;
 constexpr int kFull = kBlock;
+constexpr double kStart = 1.25;  // s
 
 /// Coefficients of both signs that fall off as those of a swing do.
-Polynomials<kColumns> Swings() {
-  Polynomials<kColumns> polynomials;
-  polynomials.order = 15;
-  polynomials.derivative_order = 11;
-  for (int k = 0; k <= polynomials.order; ++k) {
-    for (int w = 0; w < kColumns; ++w) polynomials.coefficient[k][w] = std::cos(k + 0.7 * w) * std::pow(0.4, k);
+template <typename T>
+Segment<T> Swing() {
+  Segment<T> segment;
+  segment.start = kStart;
+  segment.order = 15;
+  for (int k = 0; k <= segment.order; ++k) {
+    segment.angle[k] = std::cos(k) * std::pow(0.4, k);
+    if constexpr (DualNumber<T>) {
+      for (int p = 0; p < kPartials<T>; ++p) segment.partials[k].set(p, std::cos(k + 0.7 * (p + 1)) * std::pow(0.4, k));
+    }
   }
-  return polynomials;
+  if constexpr (DualNumber<T>) {
+    for (int p = 0; p < kPartials<T>; ++p) segment.start_partials.set(p, 0.1 * p - 0.2);
+  }
+  return segment;
 }
 
 struct Block {
   SampleBlock<kRows> block;
-  std::array<double, kBlockStride> tau{};
+  std::array<double, kBlockStride> time{};
 
   Block() {
     for (auto& row : block.row) row.fill(0.25);
-    for (std::size_t i = 0; i < kBlockStride; ++i) tau[i] = 0.3 * std::sin(0.1 * static_cast<double>(i));
+    for (std::size_t i = 0; i < kBlockStride; ++i) time[i] = kStart + 0.3 * std::sin(0.1 * static_cast<double>(i));
   }
   double* rows() { return block.row[0].data(); }
 };
 
-TEST(EvaluateAt, IsThePolynomialAtEverySampleOfAnyCount) {
-  const Polynomials<kColumns> swings = Swings();
-  for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 12, 31, kFull}) {
+/// Σ coefficient(k) τ^k, plainly.
+template <typename Coefficient>
+double Polynomial(const Coefficient& coefficient, int order, double tau) {
+  double sum = 0;
+  for (int k = order; k >= 0; --k) sum += coefficient(k) * std::pow(tau, k);
+  return sum;
+}
+
+/// What row w has at τ: partial derivatives at fixed time, for a release -θ', the angle.
+template <bool kRelease, typename T>
+double Expected(const Segment<T>& swing, int w, double tau) {
+  if (w + 1 == kColumns<T, kRelease>) return Polynomial([&](int k) { return swing.angle[k]; }, swing.order, tau);
+  const auto rate = [&](int k) { return (k + 1) * swing.angle[k + 1]; };
+  if (w == kPartials<T>) return -Polynomial(rate, swing.order - 1, tau);
+  if constexpr (DualNumber<T>) {
+    return Polynomial([&](int k) { return PartialsAtFixedTime(swing, k)[w]; }, swing.order, tau);
+  }
+  return 0;
+}
+
+template <typename T, bool kRelease>
+void ExpectColumns() {
+  const Segment<T> swing = Swing<T>();
+  constexpr int kWidth = kColumns<T, kRelease>;
+  for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 12, 17, 24, 31, kFull}) {
     const auto at = std::make_unique<Block>();
-    EvaluateAt(swings, at->tau.data(), count, at->rows());
-    for (int w = 0; w < kColumns; ++w) {
+    EvaluateAt<kRelease>(swing, at->time.data(), count, at->rows());
+    for (int w = 0; w < kWidth; ++w) {
       for (int i = 0; i < count; ++i) {
-        double expected = 0;
-        const int order = w + 1 == kColumns ? swings.order : swings.derivative_order;
-        for (int k = order; k >= 0; --k) expected += swings.coefficient[k][w] * std::pow(at->tau[i], k);
+        const double expected = Expected<kRelease>(swing, w, at->time[i] - kStart);
         ASSERT_THAT(at->block.row[w][i], DoubleNear(expected, 1e-15)) << "column " << w << ", sample " << i;
       }
-      EXPECT_EQ(at->block.row[w][count + 4], 0.25) << "beyond what vectors may reach, of " << count;
+      if (count + 7 < kFull) {
+        EXPECT_EQ(at->block.row[w][count + 7], 0.25) << "beyond what vectors may reach";
+      }
     }
-    EXPECT_EQ(at->block.row[kColumns][0], 0.25) << "another row";
+    if (kWidth < kRows) {
+      EXPECT_EQ(at->block.row[kWidth][0], 0.25) << "another row";
+    }
   }
+}
+
+TEST(EvaluateAt, IsTheSegmentAtEverySampleOfAnyCount) {
+  ExpectColumns<double, false>();
+  ExpectColumns<double, true>();
+  ExpectColumns<Dual<4>, true>();
+  ExpectColumns<Dual<5>, false>();
 }
 
 TEST(SumProducts, AreTheSumsOverTheSamplesAlone) {
   for (const int count : {1, 3, 4, 30, kFull}) {
     const auto at = std::make_unique<Block>();
-    EvaluateAt(Swings(), at->tau.data(), count, at->rows());
+    EvaluateAt<true>(Swing<Dual<4>>(), at->time.data(), count, at->rows());
     RowProducts<kRows> products;
     SumProducts(at->block, count, products);
     for (int i = 0, k = 0; i < kRows; ++i) {
@@ -77,30 +115,51 @@ TEST(SumProducts, AreTheSumsOverTheSamplesAlone) {
   }
 }
 
-#ifdef PENDULUM_HAS_AVX2
-TEST(InstructionSets, AgreeUpToRounding) {
-  if (!kUseAvx2) GTEST_SKIP() << "this processor has no AVX2";
-  const Polynomials<kColumns> swings = Swings();
+#ifdef PENDULUM_HAS_AVX
+/// Columns and sums of products by two forms of the kernel.
+template <typename Narrow, typename Wide>
+void ExpectAgreement(const Narrow& narrow, const Wide& wide) {
   for (const int count : {3, 12, 255, kFull}) {
-    const auto narrow = std::make_unique<Block>();
-    const auto wide = std::make_unique<Block>();
-    baseline::Evaluate(swings, narrow->tau.data(), count, narrow->rows());
-    avx2::Evaluate(swings, wide->tau.data(), count, wide->rows());
-    for (int w = 0; w < kColumns; ++w) {
+    std::array<std::unique_ptr<Block>, 2> at = {std::make_unique<Block>(), std::make_unique<Block>()};
+    std::array<RowProducts<kRows>, 2> sums;
+    narrow(*at[0], count, sums[0]);
+    wide(*at[1], count, sums[1]);
+    for (int w = 0; w < kRows; ++w) {
       for (int i = 0; i < count; ++i) {
-        ASSERT_THAT(wide->block.row[w][i], DoubleNear(narrow->block.row[w][i], 1e-15)) << w << ", " << i;
+        ASSERT_THAT(at[1]->block.row[w][i], DoubleNear(at[0]->block.row[w][i], 1e-15)) << w << ", " << i;
       }
     }
-    RowProducts<kRows> of_narrow;
-    RowProducts<kRows> of_wide;
-    for (const auto& block : {narrow.get(), wide.get()}) {
-      for (auto& row : block->block.row) std::fill_n(row.begin() + count, kParts, 0.0);
-    }
-    baseline::SumProducts<kRows>(narrow->rows(), count, of_narrow.data());
-    avx2::SumProducts<kRows>(wide->rows(), count, of_wide.data());
-    EXPECT_NE(of_wide.back(), 0);
-    EXPECT_THAT(of_wide, Pointwise(DoubleNear(1e-13), of_narrow)) << count;
+    EXPECT_NE(sums[1].back(), 0);
+    EXPECT_THAT(sums[1], Pointwise(DoubleNear(1e-13), sums[0])) << count;
   }
+}
+
+void ClearBeyond(Block& at, int count) {
+  for (auto& row : at.block.row) std::fill_n(row.begin() + count, kParts, 0.0);
+}
+
+void Narrow(Block& at, int count, RowProducts<kRows>& sums) {
+  baseline::Evaluate<true>(Swing<Dual<4>>(), at.time.data(), count, at.rows());
+  ClearBeyond(at, count);
+  baseline::SumProducts<kRows>(at.rows(), count, sums.data());
+}
+
+TEST(InstructionSets, OfAvx2AgreeUpToRounding) {
+  if (kInstructionSet < InstructionSet::kAvx2) GTEST_SKIP() << "this processor has no AVX2";
+  ExpectAgreement(Narrow, [](Block& at, int count, RowProducts<kRows>& sums) {
+    avx2::Evaluate<true>(Swing<Dual<4>>(), at.time.data(), count, at.rows());
+    ClearBeyond(at, count);
+    avx2::SumProducts<kRows>(at.rows(), count, sums.data());
+  });
+}
+
+TEST(InstructionSets, OfAvx512AgreeUpToRounding) {
+  if (kInstructionSet < InstructionSet::kAvx512) GTEST_SKIP() << "this processor has no AVX-512";
+  ExpectAgreement(Narrow, [](Block& at, int count, RowProducts<kRows>& sums) {
+    avx512::Evaluate<true>(Swing<Dual<4>>(), at.time.data(), count, at.rows());
+    ClearBeyond(at, count);
+    avx512::SumProducts<kRows>(at.rows(), count, sums.data());
+  });
 }
 #endif
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <ceres/jet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,9 +34,11 @@ TEST(EvaluateSeries, IsThePolynomialUpToTheOrderGiven) {
 }
 
 TEST(EvaluatePartials, AreTheDerivativesOfThePolynomialOfAnyOrder) {
-  using Dual = ceres::Jet<double, 2>;
-  Series<Dual> series;
-  for (int k = 0; k <= kMaxOrder; ++k) series[k] = Dual(7.0, Eigen::Vector2d(k + 1, 1));
+  Series<Dual<2>> series;
+  for (int k = 0; k <= kMaxOrder; ++k) {
+    series[k].v.set(0, k + 1);
+    series[k].v.set(1, 1);
+  }
   double power = 1, weighted = 0, sum = 0;  // Σ 2^k, Σ (k + 1) 2^k
   for (int order = 0; order <= kMaxOrder; ++order, power *= 2) {
     weighted += (order + 1) * power;
@@ -101,7 +102,7 @@ struct Expanded {
 template <FrictionModel F, typename T>
 Expanded<T> ExpandedFrom(const Pendulum<F, T>& pendulum, double direction, const State<T>& state) {
   Expanded<T> swing;
-  swing.angle.order = swing.angle.derivative_order = kMaxOrder;
+  swing.angle.order = kMaxOrder;
   SwingExpansion<F, T>(pendulum, swing.angle, swing.rate).Expand(direction, state);
   return swing;
 }
@@ -196,14 +197,14 @@ TEST(FirstReversal, IsFoundNearTheBeginningOfALongStep) {
 template <DualNumber T>
 State<T> StateAfter(const Expanded<T>& swing, const State<T>& start, double tau) {
   State<T> state{start.time + tau, T(EvaluateSeries(swing.angle.angle, kMaxOrder, tau)), T(0.0)};
-  state.angle.v = EvaluatePartials(swing.angle.dual, kMaxOrder, tau);
+  state.angle.v = EvaluateSeries(swing.angle.partials, kMaxOrder, tau);
   state.rate.v = EvaluatePartials(swing.rate.dual, kMaxOrder - 1, tau);
   return state;
 }
 
 // Linear, θ = v √I sin(τ / √I): the turn is at τ = π √I / 2, θ = v √I, for v = I = 1; I, v carry derivatives.
 TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
-  using Dual = ceres::Jet<double, 2>;
+  using Dual = pendulum::Dual<2>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   const State<Dual> start{Dual(3.0), Dual(0.0), Dual(1, 1)};
   const auto swing = ExpandedFrom(pendulum, 1.0, start);
@@ -217,34 +218,58 @@ TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
   EXPECT_THAT(reversal.angle.v[0], DoubleNear(0.5, 1e-13));  // d(v √I)/dI
   EXPECT_THAT(reversal.angle.v[1], DoubleNear(1, 1e-13));
   EXPECT_EQ(reversal.rate.a, 0);
-  EXPECT_EQ(reversal.rate.v.norm(), 0);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(reversal.rate.v[i], 0);
 }
 
 TEST(StateAtReversal, AddsToTheShiftThatThePreviousReversalsLeft) {
-  using Dual = ceres::Jet<double, 1>;
+  using Dual = pendulum::Dual<1>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   State<Dual> start{Dual(0.0), Dual(0.0), Dual(1.0)};
-  start.time.v[0] = 10;
+  start.time.v.set(0, 10);
   const auto swing = ExpandedFrom(pendulum, 1.0, start);
   const State<Dual> reversal = StateAtReversal(StateAfter(swing, start, kPi / 2), -1.0);
   EXPECT_THAT(reversal.time.v[0], DoubleNear(10 + kPi / 4, 1e-13));
 }
 
-// θ = 1 + 3 τ + 5 τ², θ_p = 10 + 20 τ + 30 τ² at fixed τ, ∂start/∂p = 2: θ_p - 2 (3 + 10 τ).
-TEST(FixAbsoluteTime, SubtractsTheRateTimesTheShiftOfTheStart) {
-  using Dual = ceres::Jet<double, 1>;
-  Series<Dual> angle;
-  const std::array<double, 3> derivatives = {10, 20, 30};
-  for (int k = 0; k < 3; ++k) angle[k].v[0] = derivatives[k];
-  Dual start(7.0);
-  start.v[0] = 2;
-  FixAbsoluteTime(start, 2, Coefficients({3, 10, 0}), angle);
+// θ = 1 + 3 τ + 5 τ², θ_p = 10 + 20 τ + 30 τ² at fixed τ, ∂start/∂p = 2.
+Segment<Dual<1>> MovingParabola() {
+  Segment<Dual<1>> segment;
+  segment.start_partials.set(0, 2);
+  segment.order = 2;
+  segment.angle = Coefficients({1, 3, 5});
+  for (int n = 0; n < 3; ++n) segment.partials[n].set(0, 10 * (n + 1));
+  return segment;
+}
+
+// θ_p - 2 (3 + 10 τ)
+TEST(PartialsAtFixedTime, AreLessByTheRateTimesTheShiftOfTheStart) {
   const std::array<double, 3> expected = {4, 0, 30};
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(angle[k].v[0], expected[k]) << "coefficient " << k;
+  for (int n = 0; n < 3; ++n) EXPECT_EQ(PartialsAtFixedTime(MovingParabola(), n)[0], expected[n]) << n;
+}
+
+// 3 + 10 τ, 20 + 60 τ - 2 · 10
+TEST(RateOf, IsTheDerivativeByTime) {
+  const Segment<Dual<1>> rate = RateOf(MovingParabola());
+  EXPECT_EQ(rate.order, 1);
+  const std::array<double, 2> value = {3, 10};
+  const std::array<double, 2> partial = {0, 60};
+  for (int n = 0; n < 2; ++n) {
+    EXPECT_EQ(rate.angle[n], value[n]) << n;
+    EXPECT_EQ(PartialsAtFixedTime(rate, n)[0], partial[n]) << n;
+  }
+}
+
+TEST(RateOf, RestIsNone) {
+  Segment<Dual<1>> rest = MovingParabola();
+  rest.order = 0;
+  const Segment<Dual<1>> rate = RateOf(rest);
+  EXPECT_EQ(rate.order, 0);
+  EXPECT_EQ(rate.angle[0], 0);
+  EXPECT_EQ(PartialsAtFixedTime(rate, 0)[0], 0);
 }
 
 TEST(Values, KeepsTheNumbersAndDropsTheDerivatives) {
-  using Dual = ceres::Jet<double, 2>;
+  using Dual = pendulum::Dual<2>;
   const Pendulum<CoulombFriction, Dual> dual{Gravity::kLinear, Dual(0.04, 0), {Dual(0.5, 1), Dual(0.25)}};
   const Pendulum<CoulombFriction, double> values = Values(dual);
   EXPECT_EQ(values.gravity, Gravity::kLinear);

@@ -31,7 +31,8 @@ struct Start {
 struct TraceOptions {
   double begin = 0, end = 0;  ///< s; a hold is reported from `begin` to the release.
   double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
-  int max_steps = 2'000'000;  ///< Beyond this the trial is refused: its time scale is absurd.
+  InstructionSet instruction_set = kInstructionSet;  ///< At most what the processor has.
+  int max_steps = 2'000'000;                         ///< Beyond this the trial is refused: its time scale is absurd.
 };
 
 /// What happened on the way.
@@ -91,8 +92,8 @@ class Tracer {
 
   TraceSummary Run(const Start<T>& start) {
 #ifdef PENDULUM_HAS_AVX
-    if (kInstructionSet == InstructionSet::kAvx512) return RunAvx512(start);
-    if (kInstructionSet == InstructionSet::kAvx2) return RunAvx2(start);
+    if (options_.instruction_set == InstructionSet::kAvx512) return RunAvx512(start);
+    if (options_.instruction_set == InstructionSet::kAvx2) return RunAvx2(start);
 #endif
     return RunAnywhere(start);
   }
