@@ -8,8 +8,10 @@
 
 namespace pendulum {
 
-/// Four doubles side by side; a processor that has no room for as many takes them two by two.
+/// Four doubles side by side; a processor that has no room for as many takes them two by two. What contains quads says
+/// alignas(kQuadAlignment): code for wider instructions relies on it, and the type alone promises it only there.
 using Quad [[gnu::vector_size(32)]] = double;
+inline constexpr std::size_t kQuadAlignment = 32;
 
 /// Partial derivatives by P parameters, in as many quads as it takes. All is inlined: no quad is handed to a function,
 /// which instruction sets do differently.
@@ -71,8 +73,10 @@ class Partials {
  private:
   static constexpr std::size_t kQuads = (P + 3) / 4;
 
-  std::array<Quad, kQuads> quad_{};
+  alignas(P > 0 ? kQuadAlignment : 1) std::array<Quad, kQuads> quad_{};
 };
+
+static_assert(alignof(Partials<1>) == kQuadAlignment);
 
 /// A dual number: value `a` and partial derivatives `v` by P parameters, as ceres::Jet has them, which this floor does
 /// not include. It has what equations of motion are written with.

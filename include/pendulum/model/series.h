@@ -143,8 +143,8 @@ class SineSeries {
 
   Series<double> sine_{};
   Series<double> cosine_{};
-  Series<Quad> spread_cosine_{};  ///< In all lanes.
-  Series<Quad> pair_{};           ///< cos_n, sin_n, cos_{n+1}, sin_{n+1}
+  alignas(kQuadAlignment) Series<Quad> spread_cosine_{};  ///< In all lanes.
+  alignas(kQuadAlignment) Series<Quad> pair_{};           ///< cos_n, sin_n, cos_{n+1}, sin_{n+1}
   Sums next_;
 };
 
