@@ -100,8 +100,8 @@ PartialsFor<T> EvaluatePartials(const Series<T>& c, int order, double tau) {
 }
 
 /// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic
-/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); each step has a cost of its
-/// own, so more is faster: with the tolerance that each needs for the same global error, 0.6 is slower by a fifth.
+/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); here each step has a cost of
+/// its own, so fewer and longer ones are as fast.
 inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
