@@ -37,7 +37,7 @@ LIBRARY_FLOORS = {
     "openssl": {"recording"},
 }
 # Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.
-TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"trajectory"}, "nlohmann/": set(STANDS_ON)}
+TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
 FREE_TEST_FOLDERS = {"benchmarks", "consumer", "fuzz"}

@@ -109,8 +109,9 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
 }
 
-/// All recordings, in the order of their seeds whoever fits them.
-std::vector<Result<RunOutcome>> RunAll(const CoverageScenario& scenario, const CoverageOptions& options) {
+/// All recordings, in the order of their seeds whoever fits them: each on one thread, for there are many.
+std::vector<Result<RunOutcome>> RunAll(CoverageScenario scenario, const CoverageOptions& options) {
+  scenario.fit.threads = 1;
   std::vector<Result<RunOutcome>> outcomes(static_cast<std::size_t>(options.count));
   std::mutex reporting;
   int done = 0;

@@ -15,7 +15,7 @@ namespace pendulum {
 /// Brings the segments of a trajectory, as they are traced, to the samples of a recording, block by block: kBlock
 /// consecutive samples, whatever the segments. Of a long recording segments are kept until there are blocks enough for
 /// several threads; what blocks give (Part) is added up in their order, so that a sum does not depend on the number of
-/// threads. The first rows of a block are a segment's columns (EvaluateAt), R rows there are.
+/// threads. A block has R rows, the first of them as EvaluateAt fills them.
 template <typename T, bool kRelease, int R, typename Part>
 class BlockSamples {
  public:
@@ -126,7 +126,7 @@ class BlockSamples {
   double samples_per_second_ = 0;
   std::size_t next_ = 0;  ///< The first sample that no segment was for.
   SampleBlock<R> block_;
-  Part part_;
+  Part part_{};
   std::size_t done_ = 0;        ///< The first sample that was not worked on, where segments are kept.
   std::vector<Kept> segments_;  ///< The first kept_ of them; the others are room.
   std::size_t kept_ = 0;

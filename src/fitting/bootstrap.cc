@@ -88,13 +88,12 @@ class Replicas {
     cost->set_priors(problem_.priors);
     Eigen::VectorXd readings;
     Eigen::MatrixXd jacobian;
-    if (!cost->Readings(solution_.parameters, &readings, &jacobian)) return;
+    Eigen::MatrixXd sums;
+    if (!cost->Readings(solution_.parameters, &readings, &jacobian) || !cost->Sums(solution_.parameters, &sums)) return;
     for (int i = 0; i < static_cast<int>(solution_.parameters.size()); ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (!problem_.solve.fixed[at] && BoundSide(problem_.solve, at, solution_.parameters[at]) == 0) free_.push_back(i);
     }
-    Eigen::MatrixXd sums;
-    cost->Sums(solution_.parameters, &sums);  // known to be traced: its readings were
     const auto size = static_cast<Index>(solution_.parameters.size());
     const InformationInverse inverse = InvertInformation(sums.topLeftCorner(size, size), free_);
     if (!inverse.identifiable) return;

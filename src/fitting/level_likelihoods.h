@@ -12,8 +12,8 @@ namespace pendulum {
 
 /// NoiseModel::LikelihoodAt for many readings on levels: by how far the modelled value is from the level it is a smooth
 /// function, taken by cubic interpolation between exact values σ/32 apart: the logarithm within 1e-6, its derivatives
-/// by λ and by the value in σ within 1e-5. Other noise, and values far off, go to the noise itself. (DepthTable, which
-/// says nothing of λ, is for the solver's inner loop.)
+/// by λ = ln σ and by the value in σ within 1e-5. Other noise, and values far off, go to the noise itself. (DepthTable,
+/// which says nothing of λ, is for the solver's inner loop.)
 class LevelLikelihoods {
  public:
   /// For so many readings: a table is made where it has far fewer entries.

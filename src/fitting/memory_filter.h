@@ -2,16 +2,20 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "lanes.h"
 #include "pendulum/fitting/autocorrelation.h"
 
 namespace pendulum {
+
+/// Processes are filtered side by side in lanes: their recursions do not wait for each other and fill vector registers.
+inline constexpr int kLanes = 8;
+using Lanes = std::array<double, kLanes>;
 
 /// A stationary process and white noise over it, in the state space of A. C. Harvey (Forecasting, structural time
 /// series models and the Kalman filter, 1989, section 3.3): a' = T a + R e with T = (φ | shift), reading = a_0 + noise.

@@ -17,8 +17,8 @@ namespace pendulum {
 /// Samples are worked on in blocks of consecutive ones: their columns stay in the nearest cache, and sums over a block
 /// do not depend on which thread makes them.
 inline constexpr std::size_t kBlock = 256;
-inline constexpr std::size_t kBlockStride = kBlock + 8;  ///< Of a block's rows: vectors reach beyond the last sample.
-inline constexpr std::size_t kParts = 8;                 ///< Partial sums of a product over a block.
+inline constexpr std::size_t kParts = 8;  ///< Partial sums of a product over a block: as many as the widest vector has.
+inline constexpr std::size_t kBlockStride = kBlock + kParts;  ///< Of a row: vectors reach beyond the last sample.
 
 /// R rows of numbers, one for each sample of a block.
 template <int R>
@@ -30,12 +30,12 @@ struct SampleBlock {
 template <int R>
 using RowProducts = std::array<double, R*(R + 1) / 2>;
 
-/// What is wanted at a sample of a trajectory of T: the angle, with a dual T its partial derivatives at a fixed time,
-/// and, for a release, that by its instant, -θ'.
+/// How many rows a segment of T fills: with a dual T the partial derivatives of the angle at a fixed time and, for a
+/// release, that by its instant, -θ'; then the angle.
 template <typename T, bool kRelease>
-inline constexpr int kColumns = 1;
+inline constexpr int kSegmentRows = 1;
 template <int P, bool kRelease>
-inline constexpr int kColumns<Dual<P>, kRelease> = P + 1 + (kRelease ? 1 : 0);
+inline constexpr int kSegmentRows<Dual<P>, kRelease> = P + 1 + (kRelease ? 1 : 0);
 
 namespace baseline {
 inline constexpr std::size_t kLanes = 2;
@@ -44,7 +44,7 @@ using Vector [[gnu::vector_size(16)]] = double;
 }  // namespace baseline
 
 #ifdef PENDULUM_HAS_AVX
-#pragma GCC push_options
+#pragma GCC push_options  // the targets of instruction_set.h
 #pragma GCC target("avx2,fma")
 namespace avx2 {
 inline constexpr std::size_t kLanes = 4;
@@ -60,8 +60,8 @@ using Vector [[gnu::vector_size(64)]] = double;
 #pragma GCC pop_options
 #endif
 
-/// A segment's columns at `count` samples' times [s], into rows: derivatives by the parameters of T, by the instant of
-/// release, the angle. Rows are written up to 7 beyond the last sample.
+/// Fills a segment's rows at `count` samples' times [s]: derivatives by the parameters of T, by the instant of release,
+/// the angle (MODEL.md eq. (17)). Rows are written up to kParts - 1 beyond the last sample.
 template <bool kRelease, typename T>
 void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX

@@ -3,6 +3,8 @@
 // Included by sample_kernel.h once for each instruction set, in a namespace of its own: `Vector` is a vector of kLanes
 // doubles that the set has registers for. No guard, and nothing included, for the same reason.
 
+static_assert(kParts % kLanes == 0);
+
 inline Vector Load(const double* from) {
   Vector vector;
   std::memcpy(&vector, from, sizeof(vector));  // from any address
@@ -12,7 +14,7 @@ inline Vector Load(const double* from) {
 inline void Store(const Vector& vector, double* to) { std::memcpy(to, &vector, sizeof(vector)); }
 
 /// G vectors of samples, τ after a segment's start: Horner chains for each column and for the rate, which is the slope
-/// of the angle's. None waits for another.
+/// of the angle's. None waits for another. Derivatives are made those at a fixed time in the end (MODEL.md eq. (17)).
 template <int G, bool kRelease, int P, typename T>
 inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double* rows) {
   std::array<Vector, G> at;
@@ -38,7 +40,7 @@ inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double
     for (int p = 0; p < P; ++p)
       Store(partial[p][g] - rate[g] * segment.start_partials.data()[p], &to[p * kBlockStride]);
     if constexpr (kRelease && P > 0) Store(-rate[g], &to[P * kBlockStride]);
-    Store(angle[g], &to[(kColumns<T, kRelease> - 1) * kBlockStride]);
+    Store(angle[g], &to[(kSegmentRows<T, kRelease> - 1) * kBlockStride]);
   }
 }
 
@@ -53,13 +55,12 @@ inline void EvaluateFrom(int i, const Segment<T>& segment, const double* tau, in
 
 template <bool kRelease, typename T>
 void Evaluate(const Segment<T>& segment, const double* time, int count, double* rows) {
-  constexpr int P = kPartials<T>;
   constexpr int kRegisters = kLanes == 8 ? 32 : 16;
-  constexpr int kVectors = P == 0 ? 4 : std::clamp(kRegisters / (P + 3), 1, 3);
+  constexpr int kVectors = kPartials<T> == 0 ? 4 : std::clamp(kRegisters / (kPartials<T> + 3), 1, 3);
   std::array<double, kBlockStride> tau;
   for (int i = 0; i < count; ++i) tau[i] = time[i] - segment.start;
-  std::fill_n(tau.begin() + count, kBlockStride - kBlock, 0.0);
-  EvaluateFrom<kVectors, kRelease, P>(0, segment, tau.data(), count, rows);
+  std::fill_n(tau.begin() + count, kParts, 0.0);
+  EvaluateFrom<kVectors, kRelease, kPartials<T>>(0, segment, tau.data(), count, rows);
 }
 
 /// Products of row I with rows 0 to I, each in kParts partial sums whatever the instruction set.

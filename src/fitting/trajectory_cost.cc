@@ -31,7 +31,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   using Dual = pendulum::Dual<kCarried>;
   template <typename T, int R, typename Sum>
   using Samples = BlockSamples<T, kStart == StartKind::kRelease, R, Sum>;
-  static_assert(kColumns<Dual, kStart == StartKind::kRelease> == kParameters);
+  static_assert(kSegmentRows<Dual, kStart == StartKind::kRelease> == kParameters);
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
@@ -282,8 +282,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
   }
 
-  /// Traces the motion through all samples: rows 0 to W - 1 of each block are derivatives by all parameters but zero,
-  /// in the parameters' order, and the model's reading; with T = double the reading alone. See BlockSamples::Take.
+  /// Traces the motion through all samples. The first rows of each block are EvaluateAt's: derivatives by all
+  /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
     if (!IsAdmissible(p)) return false;

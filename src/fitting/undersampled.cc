@@ -47,7 +47,7 @@ double DurationOf(const Recording& recording) {
   return recording.clock_scale * (recording.time[recording.size() - 1] - recording.time[0]);
 }
 
-double RateOf(const Recording& recording) {
+double SampleRateOf(const Recording& recording) {
   return DescribeSampling(recording, std::nullopt, std::nullopt).rate_hz / recording.clock_scale;
 }
 
@@ -189,14 +189,14 @@ bool StandsStill(const Recording& used, double frequency) {
   constexpr double kTooNear = 1;  // cycles over the recording
   constexpr double kEven = 0.02;  // cycles; stamps that scatter by more show other phases
   const double jitter = used.clock_scale * DescribeSampling(used, std::nullopt, std::nullopt).jitter;
-  const double apparent = 0.5 * ApparentFrequency(2 * frequency, RateOf(used));
+  const double apparent = 0.5 * ApparentFrequency(2 * frequency, SampleRateOf(used));
   return apparent * DurationOf(used) < kTooNear && jitter * frequency < kEven;
 }
 
 /// What the samples leave open, or nothing.
 std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector<Alias>& aliases,
                                         const Allowed& allowed) {
-  const double rate = RateOf(used);
+  const double rate = SampleRateOf(used);
   const auto near = NearlyAsGood(aliases, kNearlyAsWell);
   if (near.size() > 1) {
     return "several inertias explain the readings nearly as well, for samples at " + Hz(rate) +
@@ -252,7 +252,7 @@ std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>
 /// Takes a fit for what the samples can tell.
 void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
               const std::optional<Refusal>& refusal, FitReport& fit) {
-  const double rate = RateOf(used);
+  const double rate = SampleRateOf(used);
   const bool mirrors = HoldsMirror(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
   const bool ambiguous = refusal && refusal->termination == Termination::kNotIdentifiable;
   if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", refusal->why});
@@ -289,7 +289,7 @@ bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
   // 31 and with 5.9 most, from 0.1 to 1.2 rad.
   constexpr double kFewestPerPeriod = 7;
   const auto expected = ExpectedFrequency(rig);
-  const double rate = RateOf(recording);
+  const double rate = SampleRateOf(recording);
   if (expected) return rate < kFewestPerPeriod * (1 + kExpectedWithin) * *expected;
   if (rate >= 2 * kFastestHz) return false;
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);

@@ -92,7 +92,7 @@ void ReportFloor(benchmark::State& state, const FloorRun& run, const NormalMatri
   state.counters["samples"] = static_cast<double>(run.values.size());
   state.counters["order"] = run.segments.back().order;
   state.counters["segments"] = static_cast<double>(run.segments.size());
-  state.counters["avx2"] = target == FloorTarget::kAvx2 ? 1 : 0;
+  state.counters["lanes"] = target == FloorTarget::kAvx512 ? 8 : target == FloorTarget::kAvx2 ? 4 : 2;
 }
 
 void EvaluateTrajectoryFloor(benchmark::State& state, int samples, FloorTarget target) {

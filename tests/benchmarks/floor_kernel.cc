@@ -7,11 +7,14 @@
 namespace pendulum::benchmarks {
 namespace {
 
-// Written once over vectors of samples and compiled twice: inlined into functions for AVX2 and FMA, and for what every
-// CPU has. Nothing is passed or returned by value, for how that is done depends on the target.
+// Written once over vectors of samples and compiled for each target: inlined into functions for AVX-512, for AVX2 and
+// FMA, and for what every CPU has. Nothing is passed or returned by value, for how that is done depends on the target.
 #define PENDULUM_INLINE [[gnu::always_inline]] inline
 
 /// One register of samples.
+struct Avx512 {
+  using Vector [[gnu::vector_size(64)]] = double;
+};
 struct Avx2 {
   using Vector [[gnu::vector_size(32)]] = double;
 };
@@ -21,11 +24,11 @@ struct Portable {
 
 /// A stretch of samples whose columns fit into the first-level cache, with room for lanes beyond a segment's end.
 constexpr int kBlock = 256;
-constexpr int kRoom = 16;  // four vectors
+constexpr int kRoom = 32;  // four vectors
 
 template <int W>
 struct ColumnBlock {
-  alignas(32) double column[W][kBlock + kRoom];
+  alignas(64) double column[W][kBlock + kRoom];
   int count = 0;  // below kBlock between segments
 };
 
@@ -214,8 +217,17 @@ PENDULUM_INLINE void FillNormalMatrix(const std::vector<FloorSegment>& segments,
   matrix[kOnes][kOnes] = segments.back().last - segments.front().first;
 }
 
-// Elsewhere kAvx2 is never the best target and stands for the portable one.
+// Elsewhere the portable target is the only one.
 #if defined(__x86_64__)
+[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] void SumOfSquaresAvx512(const std::vector<FloorSegment>& segments,
+                                                                              const FloorSamples& samples,
+                                                                              double& result) {
+  SumOfSquares<Avx512>(segments, samples, result);
+}
+[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] void FillNormalMatrixAvx512(
+    const std::vector<FloorSegment>& segments, const FloorSamples& samples, NormalMatrix& matrix) {
+  FillNormalMatrix<Avx512>(segments, samples, matrix);
+}
 [[gnu::target("avx2,fma")]] void SumOfSquaresAvx2(const std::vector<FloorSegment>& segments,
                                                   const FloorSamples& samples, double& result) {
   SumOfSquares<Avx2>(segments, samples, result);
@@ -225,6 +237,8 @@ PENDULUM_INLINE void FillNormalMatrix(const std::vector<FloorSegment>& segments,
   FillNormalMatrix<Avx2>(segments, samples, matrix);
 }
 #else
+constexpr auto SumOfSquaresAvx512 = SumOfSquares<Portable>;
+constexpr auto FillNormalMatrixAvx512 = FillNormalMatrix<Portable>;
 constexpr auto SumOfSquaresAvx2 = SumOfSquares<Portable>;
 constexpr auto FillNormalMatrixAvx2 = FillNormalMatrix<Portable>;
 #endif
@@ -233,14 +247,19 @@ constexpr auto FillNormalMatrixAvx2 = FillNormalMatrix<Portable>;
 
 FloorTarget BestFloorTarget() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0) return FloorTarget::kAvx2;
+  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+  const bool has_avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+                          __builtin_cpu_supports("avx512vl") != 0;
+  if (has_avx2) return has_avx512 ? FloorTarget::kAvx512 : FloorTarget::kAvx2;
 #endif
   return FloorTarget::kPortable;
 }
 
 double FloorSumOfSquares(const std::vector<FloorSegment>& segments, const FloorSamples& samples, FloorTarget target) {
   double result = 0;
-  if (target == FloorTarget::kAvx2) {
+  if (target == FloorTarget::kAvx512) {
+    SumOfSquaresAvx512(segments, samples, result);
+  } else if (target == FloorTarget::kAvx2) {
     SumOfSquaresAvx2(segments, samples, result);
   } else {
     SumOfSquares<Portable>(segments, samples, result);
@@ -251,7 +270,9 @@ double FloorSumOfSquares(const std::vector<FloorSegment>& segments, const FloorS
 NormalMatrix FloorNormalMatrix(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
                                FloorTarget target) {
   NormalMatrix matrix{};
-  if (target == FloorTarget::kAvx2) {
+  if (target == FloorTarget::kAvx512) {
+    FillNormalMatrixAvx512(segments, samples, matrix);
+  } else if (target == FloorTarget::kAvx2) {
     FillNormalMatrixAvx2(segments, samples, matrix);
   } else {
     FillNormalMatrix<Portable>(segments, samples, matrix);

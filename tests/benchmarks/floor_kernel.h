@@ -30,10 +30,10 @@ struct FloorSamples {
 inline constexpr int kNormalSize = kFloorColumns + 1;
 using NormalMatrix = std::array<std::array<double, kNormalSize>, kNormalSize>;
 
-/// What the kernels are compiled for: AVX2 and FMA where the CPU has them, or what every CPU of the kind has.
-enum class FloorTarget { kAvx2, kPortable };
+/// What the kernels are compiled for: what every CPU of the kind has, AVX2 with FMA, AVX-512.
+enum class FloorTarget { kPortable, kAvx2, kAvx512 };
 
-/// kAvx2 where that runs.
+/// The widest that runs.
 FloorTarget BestFloorTarget();
 
 /// Σ (value - angle)^2 over all samples of the segments.

@@ -324,7 +324,7 @@ def markdown(results):
         lines += group_text(group, results["table"][group.title])
     lines += ["## Instructions", "",
               "How many machine instructions one more call of what the benchmark of that name times executes, counted "
-              "by valgrind: the same on a busy machine.", "", "| | instructions each |", "|---|---|",
+              "by valgrind, of the form for AVX2, the widest that it knows: the same on a busy machine.", "", "| | instructions each |", "|---|---|",
               *(f"| `{name}` | {f'{count:,.0f}' if count else 'missing'} |"
                 for name, count in results["instructions"].items())]
     return "\n".join(lines) + "\n"

@@ -81,11 +81,8 @@ void RegisterTrajectoryBenchmarks() {
   for (const int samples : {1'000, 10'000, 100'000, 1'000'000}) {
     Register("samples:" + std::to_string(samples), "coulomb", StartKind::kRelease, samples);
   }
-  for (const auto& [name, error] : {std::pair{"1e-6", 1e-6},
-                                    {"5e-7", 5e-7},
-                                    {"1e-8", 1e-8},
-                                    {"1e-10", 1e-10},
-                                    {"1e-12", 1e-12}}) {
+  for (const auto& [name, error] :
+       {std::pair{"1e-6", 1e-6}, {"5e-7", 5e-7}, {"1e-8", 1e-8}, {"1e-10", 1e-10}, {"1e-12", 1e-12}}) {
     const auto run = [error = error](benchmark::State& state) {
       EvaluateSumsTo(state, MakeEvaluationPoint("coulomb", StartKind::kRelease), error);
     };

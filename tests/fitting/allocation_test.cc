@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// That what a solver calls again and again allocates nothing. A program of its own: it replaces operator new, and is
-// linked with --wrap=malloc so that it also sees what Eigen takes.
+// That what a solver calls again and again allocates nothing, for recordings that are not shared among threads. A
+// program of its own: it replaces operator new, and is linked with --wrap=malloc so that it also sees what Eigen takes.
 #include <array>
 #include <atomic>
 #include <cstdlib>
@@ -31,7 +31,17 @@ void* __wrap_malloc(std::size_t size) {
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto align = static_cast<std::size_t>(alignment);
+  if (void* const memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
+  throw std::bad_alloc();
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
+  std::free(memory);
+}
 [[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 
 namespace pendulum::allocation_test {
@@ -45,6 +55,10 @@ TEST(Allocations, AreSeen) {
   void* const memory = ::operator new(4);  // called as a function, or a compiler may leave it out
   EXPECT_EQ(allocations - before, 1) << memory;
   ::operator delete(memory);
+  before = allocations;
+  void* const aligned = ::operator new (64, std::align_val_t{64});
+  EXPECT_EQ(allocations - before, 1) << aligned;
+  ::operator delete (aligned, std::align_val_t{64});
 }
 
 /// Residuals and, if asked for, derivatives as Ceres asks for them, each at another point than the last.

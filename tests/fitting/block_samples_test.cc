@@ -86,12 +86,14 @@ TEST(BlockSamples, SumsInTheSameOrderOnAnyNumberOfThreads) {
 }
 
 TEST(BlockSamples, BeginsAnewAfterATraceThatWasGivenUp) {
-  const std::vector<double> time = Times(1000);
-  Samples samples;
-  EXPECT_FALSE(LayLine(samples, time, 1, 0.37, 4).is_complete);
-  const Collected again = LayLine(samples, time, 1, 0.37, 20);
-  EXPECT_TRUE(again.is_complete);
-  EXPECT_THAT(again.readings, Pointwise(DoubleNear(1e-12), Line(time)));
+  for (const std::size_t count : {1'000UL, 150'000UL}) {  // the second is shared among threads
+    const std::vector<double> time = Times(count);
+    Samples samples;
+    EXPECT_FALSE(LayLine(samples, time, 3, 0.37, 0.4 * time.back()).is_complete);
+    const Collected again = LayLine(samples, time, 3, 0.37, 2 * time.back());
+    EXPECT_TRUE(again.is_complete);
+    EXPECT_THAT(again.readings, Pointwise(DoubleNear(1e-9), Line(time))) << count;
+  }
 }
 
 }  // namespace

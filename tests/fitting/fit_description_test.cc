@@ -31,7 +31,7 @@ TEST(Describe, HasResidualsAndTheirStatistics) {
   ASSERT_EQ(report.fitted.size(), 400);  // 8 s at 50 Hz
   EXPECT_EQ(report.residual, fitted.recording.value - report.fitted);
   const FitStatistics& statistics = report.statistics;
-  EXPECT_DOUBLE_EQ(statistics.rms_residual, std::sqrt(report.residual.squaredNorm() / 400));
+  EXPECT_NEAR(statistics.rms_residual, std::sqrt(report.residual.squaredNorm() / 400), 1e-16);  // summed otherwise
   EXPECT_EQ(statistics.log_likelihood, fitted.solution.log_likelihood);
   EXPECT_NEAR(statistics.aic, 2 * 7 - 2 * statistics.log_likelihood, 1e-9);  // six parameters and σ
   EXPECT_NEAR(statistics.bic, 7 * std::log(400) - 2 * statistics.log_likelihood, 1e-9);

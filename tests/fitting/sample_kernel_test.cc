@@ -59,7 +59,7 @@ double Polynomial(const Coefficient& coefficient, int order, double tau) {
 /// What row w has at τ: partial derivatives at fixed time, for a release -θ', the angle.
 template <bool kRelease, typename T>
 double Expected(const Segment<T>& swing, int w, double tau) {
-  if (w + 1 == kColumns<T, kRelease>) return Polynomial([&](int k) { return swing.angle[k]; }, swing.order, tau);
+  if (w + 1 == kSegmentRows<T, kRelease>) return Polynomial([&](int k) { return swing.angle[k]; }, swing.order, tau);
   const auto rate = [&](int k) { return (k + 1) * swing.angle[k + 1]; };
   if (w == kPartials<T>) return -Polynomial(rate, swing.order - 1, tau);
   if constexpr (DualNumber<T>) {
@@ -71,7 +71,7 @@ double Expected(const Segment<T>& swing, int w, double tau) {
 template <typename T, bool kRelease>
 void ExpectColumns() {
   const Segment<T> swing = Swing<T>();
-  constexpr int kWidth = kColumns<T, kRelease>;
+  constexpr int kWidth = kSegmentRows<T, kRelease>;
   for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 12, 17, 24, 31, kFull}) {
     const auto at = std::make_unique<Block>();
     EvaluateAt<kRelease>(swing, at->time.data(), count, at->rows());

@@ -29,9 +29,10 @@ struct Evaluated {
 
 class Recorded {
  public:
-  explicit Recorded(const NoiseModel& noise) : noise_(noise), p_(TypicalParameters(model_, StartKind::kRelease)) {
+  Recorded(const NoiseModel& noise, StartKind start, Quantity quantity)
+      : start_(start), data_(Samples(quantity, kSamples)), noise_(noise), p_(TypicalParameters(model_, start)) {
     for (double& time : data_.time) time *= 40 / data_.time.back();
-    const auto cost = MakeTrajectoryCost(model_, StartKind::kRelease, data_);
+    const auto cost = MakeTrajectoryCost(model_, start_, data_);
     const Eigen::VectorXd readings = ReadingsOf(*cost, p_);
     for (std::size_t i = 0; i < kSamples; ++i) {
       data_.value[i] = readings[static_cast<Eigen::Index>(i)] + 0.003 * std::sin(17.0 * static_cast<double>(i));
@@ -39,7 +40,7 @@ class Recorded {
   }
 
   Evaluated On(int threads) const {
-    const auto cost = MakeTrajectoryCost(model_, StartKind::kRelease, data_);
+    const auto cost = MakeTrajectoryCost(model_, start_, data_);
     cost->set_threads(threads);
     cost->set_noise(noise_);
     Evaluated all;
@@ -51,13 +52,15 @@ class Recorded {
 
  private:
   MotionModel model_{"coulomb", "coulomb", Gravity::kSine};
-  TrajectoryData data_ = Samples(Quantity::kAngle, kSamples);
+  StartKind start_;
+  TrajectoryData data_;
   NoiseModel noise_;
   std::vector<double> p_;
 };
 
-void ExpectSameOnAnyNumberOfThreads(const NoiseModel& noise) {
-  const Recorded recorded(noise);
+void ExpectSameOnAnyNumberOfThreads(const NoiseModel& noise, StartKind start = StartKind::kRelease,
+                                    Quantity quantity = Quantity::kAngle) {
+  const Recorded recorded(noise, start, quantity);
   const Evaluated one = recorded.On(1);
   ASSERT_GT(one.sum, 0);
   for (const int threads : {2, 3, 8, 0}) {
@@ -73,6 +76,12 @@ TEST(Threads, ChangeNoBitOfLeastSquares) {
   NoiseModel noise;
   noise.sigma = 0.002;
   ExpectSameOnAnyNumberOfThreads(noise);
+}
+
+TEST(Threads, ChangeNoBitForARateOfAMotionThatWasOnItsWay) {
+  NoiseModel noise;
+  noise.sigma = 0.002;
+  ExpectSameOnAnyNumberOfThreads(noise, StartKind::kMoving, Quantity::kRate);
 }
 
 TEST(Threads, ChangeNoBitOfTheLikelihoodOfLevels) {

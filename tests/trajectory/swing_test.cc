@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -262,6 +263,7 @@ TEST(RateOf, IsTheDerivativeByTime) {
 TEST(RateOf, RestIsNone) {
   Segment<Dual<1>> rest = MovingParabola();
   rest.order = 0;
+  rest.angle[1] = std::numeric_limits<double>::quiet_NaN();  // beyond the order anything may stand
   const Segment<Dual<1>> rate = RateOf(rest);
   EXPECT_EQ(rate.order, 0);
   EXPECT_EQ(rate.angle[0], 0);

@@ -3,7 +3,8 @@
 
 // Functions that are compiled for what any processor of its kind has, and again for AVX2 with fused multiplication and
 // for AVX-512: chosen by what the processor has. Fused, results differ in their last bits. Where PENDULUM_HAS_AVX is
-// not defined there is the one form only, so that a build by clang tests it.
+// not defined there is the one form only, so that a build by clang tests it. fitting/sample_kernel.h has the targets
+// once more.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define PENDULUM_HAS_AVX
 #define PENDULUM_AVX2 gnu::target("avx2,fma")
@@ -12,6 +13,7 @@
 
 namespace pendulum {
 
+/// The forms that there are, each with all that the ones before it have.
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
 inline InstructionSet BestInstructionSet() {

@@ -21,6 +21,7 @@ double PriorSum(std::span<const PriorTerm> priors, std::span<const double> param
 /// Adds the priors' part to the (P + 1) x (P + 1) sums of LeastSquares::Sums.
 void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parameters, Eigen::MatrixXd* sums);
 
+/// The most parameters of one recording's cost.
 inline constexpr int kMostCompressed = 16;
 
 /// From such sums the residuals and derivatives of P + 1 equations of the same cost and gradient, P <= kMostCompressed:

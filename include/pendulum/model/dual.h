@@ -16,7 +16,7 @@ inline constexpr std::size_t kQuadAlignment = 32;
 /// Partial derivatives by P parameters, in as many quads as it takes. All is inlined: no quad is handed to a function,
 /// which instruction sets do differently.
 template <int P>
-class Partials {
+class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): moved as it is copied
  public:
   // Copied quad by quad: left to itself, g++ copies in halves, and quads that are read at once have to wait for both.
   Partials() = default;
@@ -25,11 +25,12 @@ class Partials {
     for (std::size_t i = 0; i < kQuads; ++i) quad_[i] = other.quad_[i];
     return *this;
   }
-  ~Partials() = default;
 
   [[gnu::always_inline]] double operator[](int i) const { return quad_[i / 4][i % 4]; }
   /// P numbers, one behind the other.
-  [[gnu::always_inline]] const double* data() const { return reinterpret_cast<const double*>(quad_.data()); }
+  [[gnu::always_inline]] const double* data() const {
+    return reinterpret_cast<const double*>(quad_.data());  // NOLINT: a quad may be read as the doubles it is made of
+  }
   [[gnu::always_inline]] void set(int i, double value) { quad_[i / 4][i % 4] = value; }
 
   /// Adds s y for an s that is the same in all lanes.
@@ -115,6 +116,7 @@ struct Dual {
 
   [[gnu::always_inline]] friend bool operator==(const Dual& x, const Dual& y) { return x.a == y.a; }
 
+  // NOLINTBEGIN(readability-identifier-naming): the names of <cmath>
   [[gnu::always_inline]] friend Dual exp(const Dual& x) {
     const double value = std::exp(x.a);
     return {value, value * x.v};
@@ -127,6 +129,7 @@ struct Dual {
     const double value = std::sqrt(x.a);
     return {value, (0.5 / value) * x.v};
   }
+  // NOLINTEND(readability-identifier-naming)
 };
 
 /// Whether T is a Dual.

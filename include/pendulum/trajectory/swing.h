@@ -32,8 +32,8 @@ struct State {
 };
 
 /// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// With a dual T `partials` are the derivatives of these coefficients at a fixed time since `start`, which moves
-/// itself: see PartialsAtFixedTime. With another they are empty.
+/// Coefficients are in rad s⁻ⁿ. With a dual T `partials` are their derivatives at a fixed time since `start`, which
+/// moves itself: see PartialsAtFixedTime. With T = double `partials` are empty.
 template <typename T>
 struct Segment {
   double start = 0, end = 0;  ///< s
@@ -44,30 +44,34 @@ struct Segment {
 };
 
 /// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md eq.
-/// (17)).
+/// (17)). Where many samples are wanted the same is done at each of them (fitting/sample_kernel.h).
 template <DualNumber T>
 PartialsFor<T> PartialsAtFixedTime(const Segment<T>& segment, int n) {
   const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
   return segment.partials[n] - rate * segment.start_partials;
 }
 
-/// The segment's rate, as a segment.
+/// The segment's rate ω(t) [rad/s], as a segment has the angle.
 template <typename T>
 Segment<T> RateOf(const Segment<T>& segment) {
   Segment<T> rate;
   rate.start = segment.start;
   rate.end = segment.end;
   rate.start_partials = segment.start_partials;
-  rate.order = std::max(segment.order - 1, 0);
+  if (segment.order == 0) {  // at rest there is none
+    rate.angle[0] = 0;
+    rate.partials[0] = {};
+    return rate;
+  }
+  rate.order = segment.order - 1;
   for (int n = 0; n <= rate.order; ++n) {
-    const double factor = segment.order == 0 ? 0.0 : n + 1.0;  // at rest there is none
-    rate.angle[n] = factor * segment.angle[n + 1];
-    rate.partials[n] = factor * segment.partials[n + 1];
+    rate.angle[n] = (n + 1) * segment.angle[n + 1];
+    rate.partials[n] = (n + 1) * segment.partials[n + 1];
   }
   return rate;
 }
 
-/// The rate along a swing, as numbers and as dual numbers if T is. The order is one less than the angle's.
+/// The rate along a swing [rad s⁻¹⁻ⁿ], as numbers and as dual numbers if T is. The order is one less than the angle's.
 template <typename T>
 struct RateSeries {
   Series<double> value;
@@ -101,7 +105,7 @@ PartialsFor<T> EvaluatePartials(const Series<T>& c, int order, double tau) {
 
 /// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic
 /// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); here each step has a cost of
-/// its own, so fewer and longer ones are as fast.
+/// its own, and what follows a step (location of reversals, the samples) gains by fewer, longer ones.
 inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
