@@ -53,7 +53,34 @@ std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
          " choose a window of free swing with --from and --to";
 }
 
-void SetTermination(const FitProblem& problem, const Optimum& optimum, bool correlated, bool on_kink,
+/// RemainingShift, but where the release lies at the instant of a rate's sample: there the sum of squares has a kink.
+/// If it rises on both sides the release is where it belongs, whatever the slope on one of them, and only the step of
+/// the others is left.
+double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                 const Optimum& optimum) {
+  constexpr double kBeside = 1e-5;  // standard errors
+  const double shift = RemainingShift(optimum);
+  const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
+  if (shift <= kLargestShift || !may_have_a_kink) return shift;
+  const auto release = std::ranges::find_if(
+      optimum.free, [&](int i) { return problem.infos[static_cast<std::size_t>(i)].name == "release_time"; });
+  if (release == optimum.free.end()) return shift;
+  const auto k = release - optimum.free.begin();
+  double least = 0;
+  if (!cost.SumOfSquares(solution.parameters, &least)) return shift;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> beside = solution.parameters;
+    beside[static_cast<std::size_t>(*release)] += side * kBeside * std::sqrt(optimum.inverse.matrix(k, k));
+    double sum = 0;
+    if (!cost.SumOfSquares(beside, &sum) || sum < least) return shift;
+  }
+  Optimum others = optimum;
+  others.free.erase(others.free.begin() + k);
+  others.inverse = InvertInformation(others.information, others.free);
+  return others.inverse.identifiable ? RemainingShift(others) : shift;
+}
+
+void SetTermination(const FitProblem& problem, const Optimum& optimum, double shift, bool correlated, bool on_kink,
                     FitReport& report) {
   if (!optimum.inverse.identifiable) {
     report.termination = Termination::kNotIdentifiable;
@@ -61,7 +88,6 @@ void SetTermination(const FitProblem& problem, const Optimum& optimum, bool corr
     return;
   }
   const double unexplained = problem.UnexplainedShare(report.fitted);
-  const double shift = RemainingShift(optimum);
   report.termination = Termination::kNotConverged;
   if (unexplained > MostUnexplained(correlated)) {
     report.reason = UnexplainedReason(problem, unexplained);
@@ -119,7 +145,8 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   if (!optimum) return FailedReport(recording, options, problem, cost, solution);
   Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
   FitReport& report = described.report;
-  SetTermination(problem, *optimum, described.correlated, OnKink(problem, described.trace, solution), report);
+  const double shift = optimum->inverse.identifiable ? ShiftLeft(problem, cost, solution, *optimum) : 0.0;
+  SetTermination(problem, *optimum, shift, described.correlated, OnKink(problem, described.trace, solution), report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) {
     SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
