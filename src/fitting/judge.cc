@@ -5,8 +5,10 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
 #include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
@@ -53,6 +55,13 @@ std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
          " choose a window of free swing with --from and --to";
 }
 
+/// Number of the release time among the parameters, if there is one.
+std::optional<std::size_t> ReleaseTimeOf(const FitProblem& problem) {
+  const auto found = std::ranges::find(problem.infos, "release_time", &ParameterInfo::name);
+  if (found == problem.infos.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - problem.infos.begin());
+}
+
 /// RemainingShift, but where the release lies at the instant of a rate's sample: there the sum of squares has a kink.
 /// If it rises on both sides the release is where it belongs, whatever the slope on one of them, and only the step of
 /// the others is left.
@@ -62,8 +71,7 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
   const double shift = RemainingShift(optimum);
   const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
   if (shift <= kLargestShift || !may_have_a_kink) return shift;
-  const auto release = std::ranges::find_if(
-      optimum.free, [&](int i) { return problem.infos[static_cast<std::size_t>(i)].name == "release_time"; });
+  const auto release = std::ranges::find(optimum.free, static_cast<int>(*ReleaseTimeOf(problem)));
   if (release == optimum.free.end()) return shift;
   const auto k = release - optimum.free.begin();
   double least = 0;
@@ -80,23 +88,43 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
   return others.inverse.identifiable ? RemainingShift(others) : shift;
 }
 
-void SetTermination(const FitProblem& problem, const Optimum& optimum, double shift, bool correlated, bool on_kink,
-                    FitReport& report) {
+/// How many small-angle periods the motion of the solution lasts in the recording.
+double PeriodsOf(const FitProblem& problem, const Solution& solution) {
+  const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
+  const std::optional<std::size_t> release = ReleaseTimeOf(problem);
+  return (problem.data.time.back() - (release ? solution.parameters[*release] : 0.0)) / period;
+}
+
+/// What a solution is judged by.
+struct Judged {
+  double shift = 0;    ///< ShiftLeft
+  double periods = 0;  ///< PeriodsOf
+  bool correlated = false;
+  bool on_kink = false;
+};
+
+void SetTermination(const FitProblem& problem, const Optimum& optimum, const Judged& judged, FitReport& report) {
   if (!optimum.inverse.identifiable) {
     report.termination = Termination::kNotIdentifiable;
     report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
     return;
   }
+  constexpr double kFewestPeriods = 0.5;
   const double unexplained = problem.UnexplainedShare(report.fitted);
   report.termination = Termination::kNotConverged;
-  if (unexplained > MostUnexplained(correlated)) {
+  if (unexplained > MostUnexplained(judged.correlated)) {
     report.reason = UnexplainedReason(problem, unexplained);
-  } else if (!(shift <= kLargestShift)) {
-    report.reason = on_kink
+  } else if (judged.periods < kFewestPeriods) {
+    report.reason = "the motion lasts " + NumberText(judged.periods, 2) +
+                    " of a period of the best trajectory: that is no swing, and hardly anything of the pendulum can be "
+                    "told; record several periods, or choose a window of free swing with --from and --to";
+  } else if (!(judged.shift <= kLargestShift)) {
+    report.reason = judged.on_kink
                         ? "the best trajectory stops just where one half swing more would begin, and there the sum "
                           "of squares has a kink; end the window before the stop (--to) or choose another model"
                         : "a step of " +
-                              (shift < 10 ? NumberText(shift, 2) : std::to_string(std::lround(std::min(shift, 1e6)))) +
+                              (judged.shift < 10 ? NumberText(judged.shift, 2)
+                                                 : std::to_string(std::lround(std::min(judged.shift, 1e6)))) +
                               " standard errors is left to make; a shorter window or another model may converge";
   } else if (optimum.free.empty() && optimum.at_bound.empty()) {
     report.termination = Termination::kConverged;
@@ -146,7 +174,8 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
   FitReport& report = described.report;
   const double shift = optimum->inverse.identifiable ? ShiftLeft(problem, cost, solution, *optimum) : 0.0;
-  SetTermination(problem, *optimum, shift, described.correlated, OnKink(problem, described.trace, solution), report);
+  const bool on_kink = OnKink(problem, described.trace, solution);
+  SetTermination(problem, *optimum, {shift, PeriodsOf(problem, solution), described.correlated, on_kink}, report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) {
     SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
