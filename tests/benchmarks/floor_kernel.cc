@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "pendulum/base/instruction_set.h"
+
 namespace pendulum::benchmarks {
 namespace {
 
@@ -218,22 +220,21 @@ PENDULUM_INLINE void FillNormalMatrix(const std::vector<FloorSegment>& segments,
 }
 
 // Elsewhere the portable target is the only one.
-#if defined(__x86_64__)
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] void SumOfSquaresAvx512(const std::vector<FloorSegment>& segments,
-                                                                              const FloorSamples& samples,
-                                                                              double& result) {
+#ifdef PENDULUM_HAS_AVX
+[[PENDULUM_AVX512]] void SumOfSquaresAvx512(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
+                                            double& result) {
   SumOfSquares<Avx512>(segments, samples, result);
 }
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] void FillNormalMatrixAvx512(
-    const std::vector<FloorSegment>& segments, const FloorSamples& samples, NormalMatrix& matrix) {
+[[PENDULUM_AVX512]] void FillNormalMatrixAvx512(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
+                                                NormalMatrix& matrix) {
   FillNormalMatrix<Avx512>(segments, samples, matrix);
 }
-[[gnu::target("avx2,fma")]] void SumOfSquaresAvx2(const std::vector<FloorSegment>& segments,
-                                                  const FloorSamples& samples, double& result) {
+[[PENDULUM_AVX2]] void SumOfSquaresAvx2(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
+                                        double& result) {
   SumOfSquares<Avx2>(segments, samples, result);
 }
-[[gnu::target("avx2,fma")]] void FillNormalMatrixAvx2(const std::vector<FloorSegment>& segments,
-                                                      const FloorSamples& samples, NormalMatrix& matrix) {
+[[PENDULUM_AVX2]] void FillNormalMatrixAvx2(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
+                                            NormalMatrix& matrix) {
   FillNormalMatrix<Avx2>(segments, samples, matrix);
 }
 #else
@@ -246,13 +247,8 @@ constexpr auto FillNormalMatrixAvx2 = FillNormalMatrix<Portable>;
 }  // namespace
 
 FloorTarget BestFloorTarget() {
-#if defined(__x86_64__)
-  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-                          __builtin_cpu_supports("avx512vl") != 0;
-  if (has_avx2) return has_avx512 ? FloorTarget::kAvx512 : FloorTarget::kAvx2;
-#endif
-  return FloorTarget::kPortable;
+  if (kInstructionSet == InstructionSet::kAvx512) return FloorTarget::kAvx512;
+  return kInstructionSet == InstructionSet::kAvx2 ? FloorTarget::kAvx2 : FloorTarget::kPortable;
 }
 
 double FloorSumOfSquares(const std::vector<FloorSegment>& segments, const FloorSamples& samples, FloorTarget target) {
