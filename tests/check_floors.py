@@ -24,23 +24,27 @@ STANDS_ON = {
     "fitting": ["trajectory", "closed_form"],
     "analysis": ["fitting"],
     "report": ["analysis"],
-    "tools": ["report"],
+    "batch": ["report"],
+    "tools": ["batch"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
 LIBRARY_FLOORS = {
-    "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis"},
+    "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis", "batch"},
     "ceres": {"fitting"},
+    "csv.h": {"batch"},
     "gflags": {"tools", "service"},
     "glog": {"tools", "service"},
-    "nlohmann": {"base", "recording", "model", "report", "tools"},
-    "openssl": {"recording"},
+    "nlohmann": {"base", "recording", "model", "report", "batch", "tools"},
+    "openssl": {"base", "recording"},
+    "sqlite3.h": {"batch"},
+    "SQLiteCpp": {"batch"},
 }
 # Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer", "fuzz"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "fuzz", "packages"}
 
 # What only the floors that talk to people may do.
 TALKING_FLOORS = {"tools", "service"}
@@ -147,6 +151,9 @@ def check_links(root):
 def check_listed(root, path):
     """A file that nobody compiles proves nothing: each is named in a CMakeLists.txt, private headers apart."""
     floor = floor_of(path)
+    if path.parent == pathlib.Path("tests/packages") and path.stem.endswith("_test"):
+        if [path.stem.removesuffix("_test")] not in cmake_calls(root, path.parent, "pendulum_add_package_test"):
+            yield f"{path}:1: {path.parent}/CMakeLists.txt does not name it"
     if floor not in STANDS_ON or (path.parts[0] == "src" and path.suffix == ".h"):
         return
     inner = path.relative_to("include/pendulum" if path.parts[0] == "include" else path.parts[0])
@@ -195,6 +202,9 @@ BAD_TREE = {
     "tests/CMakeLists.txt": ("pendulum_add_tests(base TESTS good LONG_TESTS private)\n"
                              "pendulum_add_tests(trajectory TESTS jet LINKS Ceres::ceres)\n"
                              "# pendulum_add_tests(model TESTS unlisted)\n", None),
+    "tests/packages/CMakeLists.txt": ("pendulum_add_package_test(good)\n", None),
+    "tests/packages/good_test.py": ("", None),
+    "tests/packages/unlisted_test.py": ("", "tests/packages/CMakeLists.txt does not name it"),
     "include/pendulum/attic/x.h": ("", "there is no floor attic"),
     "include/pendulum/recording/up.h": ("#include <pendulum/fitting/fit.h>\n",
                                         "floor recording does not stand on fitting"),

@@ -10,6 +10,7 @@ int ExitCode(StatusCode code) {
     case StatusCode::kDataLoss: return 4;
     case StatusCode::kFailedPrecondition: return 5;
     case StatusCode::kCannotWrite: return 73;
+    case StatusCode::kTryAgain: return 75;
     case StatusCode::kInternal: return 70;
   }
   return 70;

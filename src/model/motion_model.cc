@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/model/motion_model.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 
 #include "pendulum/base/format.h"
@@ -22,6 +24,27 @@ Result<MotionModel> FindMotionModel(std::string_view name) {
   }
   return Error(StatusCode::kInvalidArgument,
                "there is no model '" + std::string(name) + "'; the models are " + MotionModelNames());
+}
+
+Result<std::vector<MotionModel>> FindMotionModels(std::string_view names) {
+  std::vector<MotionModel> models;
+  if (names == "all") {
+    models = MotionModels();
+    std::erase_if(models, [](const MotionModel& model) { return model.name != model.friction; });
+    return models;
+  }
+  for (std::size_t begin = 0; begin <= names.size();) {
+    const std::size_t end = std::min(names.find(',', begin), names.size());
+    const std::string name(names.substr(begin, end - begin));
+    begin = end + 1;
+    const auto found = FindMotionModel(name);
+    if (!found) return Error(StatusCode::kInvalidArgument, found.error().message + "; or all, by itself");
+    if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
+      return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + name + " twice");
+    }
+    models.push_back(*found);
+  }
+  return models;
 }
 
 std::vector<ParameterInfo> PhysicalParameters(const MotionModel& model) {

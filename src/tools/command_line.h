@@ -27,6 +27,9 @@ struct FlagInfo {
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
                                                      std::span<const FlagInfo> flags);
 
+/// The arguments with --model where --models stands: they are one flag.
+std::vector<std::string> WithModelForModels(std::vector<std::string> arguments);
+
 /// What --help prints: the usage, then the own flags.
 std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);
 

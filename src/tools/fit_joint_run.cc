@@ -9,7 +9,7 @@
 #include "pendulum/analysis/joint_comparison.h"
 #include "pendulum/analysis/joint_fit.h"
 #include "pendulum/base/parallel.h"
-#include "tools/run_parts.h"
+#include "pendulum/batch/run_parts.h"
 
 namespace pendulum {
 namespace {

@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "pendulum/fitting/fit.h"
-#include "pendulum/model/motion_model.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/page.h"
@@ -22,54 +21,18 @@
 #include "tools/fit_runs.h"
 #include "tools/gnuplot.h"
 #include "tools/output.h"
+#include "tools/run_flag_definitions.h"
 #include "tools/run_tool.h"
 #include "tools/terminal.h"
-
-const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() +
-                               ", several of them between commas to compare, or all; default coulomb.";
 
 DEFINE_string(data, "",
               "Recording (CSV), or several of one rig between commas, fitted together (--shared); the header names the "
               "columns and their units, such as "
               "time_s,angle_deg; - is standard input.");
-DEFINE_string(calibration, "",
-              "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.");
-DEFINE_string(time_column, "",
-              "Column of times, name or number from 1 on, with :s, :ms or :us where the name tells no "
-              "unit; none takes --sample_rate_hz instead; default by name.");
-DEFINE_string(value_column, "",
-              "Column of the angle or rate, name or number from 1 on; default by the unit in its name.");
-DEFINE_string(unit, "",
-              "Unit of the values: rad, deg, rad_s, deg_s, counts or volts; default that in the column's name.");
-DEFINE_string(sample_rate_hz, "", "Samples per second of a file without times; default its line # sample_rate_hz.");
 DEFINE_string(data_list, "", "File that lists recordings, one path a line, instead of --data; default none.");
-DEFINE_string(release, "", "Which free swing of a recording to fit: a number from 1, or all; default the longest.");
 DEFINE_string(shared, "",
               "What several recordings have in common: all of inertia and friction, some of their names, or none (each "
               "is then fitted by itself); default all of several recordings, none of one recording's releases.");
-DEFINE_string(rig, "", "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.");
-DEFINE_string(model, "coulomb", kModelHelp.c_str());
-DEFINE_string(start, "auto", "How the recording begins: auto (the data tell), release or moving; default auto.");
-DEFINE_string(from, "", "Start of the window to fit, s on the file's clock; default where the free swing begins.");
-DEFINE_string(to, "", "End of the window to fit, s on the file's clock; default where the free swing ends.");
-DEFINE_string(fix, "", "Parameters to hold, name=value,... in SI (rad, s; torques as in the report); default none.");
-DEFINE_string(init, "", "Where parameters begin, name=value,... as in --fix; default where the data say.");
-DEFINE_string(bounds, "", "Bounds of parameters, name=low:high,... as in --fix, either may be left out; default none.");
-DEFINE_string(prior, "", "What is known beforehand, name=mean:std_dev,... as in --fix; default nothing.");
-DEFINE_string(resolution, "",
-              "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.");
-DEFINE_string(range, "", "What the sensor can show, low,high in the file's unit; readings there are censored.");
-DEFINE_string(noise, "auto",
-              "Noise of the readings: gaussian, quantized (rounded to levels) or auto (quantized where rounding "
-              "matters); default auto.");
-DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: huber, student or none; default none.");
-DEFINE_string(interval, "auto",
-              "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");
-DEFINE_string(seed, "", "Seed of the bootstrap and of posterior draws; default 1.");
-DEFINE_string(
-    threads, "",
-    "Threads of the bootstrap, of long recordings and of several, 0 for all cores; the result does not depend on it; "
-    "default 0.");
 DEFINE_bool(closed_form_only, false,
             "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
             "volts without a calibration.");
@@ -101,19 +64,10 @@ constexpr const char* kUsage =
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   FitPendulumFlags flags;
+  static_cast<RunFlags&>(flags) = CurrentRunFlags();
   flags.data = FLAGS_data;
   flags.data_list = FLAGS_data_list;
-  flags.release = FLAGS_release;
   flags.shared = FLAGS_shared;
-  flags.init = FLAGS_init;
-  flags.bounds = FLAGS_bounds;
-  flags.prior = FLAGS_prior;
-  flags.rig = FLAGS_rig;
-  flags.model = FLAGS_model;
-  flags.start = FLAGS_start;
-  flags.from = FLAGS_from;
-  flags.to = FLAGS_to;
-  flags.fix = FLAGS_fix;
   flags.json = FLAGS_json;
   flags.residuals = FLAGS_residuals;
   flags.series = FLAGS_series;
@@ -121,18 +75,6 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.markdown = FLAGS_markdown;
   flags.terminal_plot = FLAGS_terminal_plot;
   flags.closed_form_only = FLAGS_closed_form_only;
-  flags.calibration = FLAGS_calibration;
-  flags.time_column = FLAGS_time_column;
-  flags.value_column = FLAGS_value_column;
-  flags.unit = FLAGS_unit;
-  flags.sample_rate_hz = FLAGS_sample_rate_hz;
-  flags.resolution = FLAGS_resolution;
-  flags.range = FLAGS_range;
-  flags.noise = FLAGS_noise;
-  flags.loss = FLAGS_loss;
-  flags.interval = FLAGS_interval;
-  flags.seed = FLAGS_seed;
-  flags.threads = FLAGS_threads;
   flags.positional = positional;
   return flags;
 }
@@ -228,14 +170,6 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   return outputs;
 }
 
-/// The exit code of a run: that of its fit, of several the recommended one; closed forms are there, or the run is an
-/// error.
-int ExitCodeOf(const Result<FitRun>& run) {
-  if (!run) return ExitCode(run.error().code);
-  const RunReport& report = run->report;
-  return report.fits.empty() ? 0 : ExitCode(report.fits[report.MainFit()].termination);
-}
-
 /// Now and then how far the bootstrap is.
 void SayProgress(int done, int total) {
   Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
@@ -259,7 +193,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!outputs) return tl::unexpected(outputs.error());
   if (const auto written = WriteOutputs(*outputs); !written) return tl::unexpected(written.error());
   int worst = 0;
-  for (const Result<FitRun>& run : *runs) worst = std::max(worst, ExitCodeOf(run));
+  for (const Result<FitRun>& run : *runs) worst = std::max(worst, run ? ExitCodeOf(*run) : ExitCode(run.error().code));
   return worst;
 }
 

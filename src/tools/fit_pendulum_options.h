@@ -5,26 +5,16 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/fitting/fit_swing.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/batch/run_options.h"
 #include "tools/output.h"
+#include "tools/run_flags.h"
 
 namespace pendulum {
 
 /// The flags of fit_pendulum as they were given; empty, or the default, where they were not.
-struct FitPendulumFlags {
+struct FitPendulumFlags : RunFlags {
   std::string data;
   std::string data_list;
-  std::string rig;
-  std::string model = "coulomb";
-  std::string start = "auto";
-  std::string release;
-  std::string from;
-  std::string to;
-  std::string fix;
-  std::string init;
-  std::string bounds;
-  std::string prior;
   std::string json;
   std::string residuals;
   std::string series;
@@ -33,18 +23,6 @@ struct FitPendulumFlags {
   std::string shared;
   bool terminal_plot = false;
   bool closed_form_only = false;
-  std::string calibration;
-  std::string time_column;
-  std::string value_column;
-  std::string unit;
-  std::string sample_rate_hz;
-  std::string resolution;
-  std::string range;
-  std::string noise = "auto";
-  std::string loss = "none";
-  std::string interval = "auto";
-  std::string seed;
-  std::string threads;
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
 };
 
@@ -52,24 +30,19 @@ struct FitPendulumFlags {
 enum class Sharing { kByDefault, kNothing, kAsked };
 
 /// What fit_pendulum is asked to do.
-struct FitPendulumOptions {
+struct FitPendulumOptions : RunOptions {
   std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
   std::string data_list;          ///< Path of a file that lists them instead; empty for none.
   std::string calibration;        ///< Path; empty for none. ReadOptions::calibration is for the caller to read from it.
-  ReadOptions read;
-  std::string rig;  ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
-  SwingChoice swing;
+  std::string rig;        ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
   std::string json;       ///< Path of the result; "-" is standard output; empty for none.
   std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
   std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
   std::string report;     ///< Path of the page that shows all of it; "-" is standard output; empty for none.
   std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
-  bool terminal_plot = false;     ///< Draws the recording on standard output.
-  bool closed_form_only = false;  ///< No fit is made; of `fit`, the model counts.
+  bool terminal_plot = false;  ///< Draws the recording on standard output.
   Sharing sharing = Sharing::kByDefault;
   std::vector<std::string> shared;  ///< Names of the parameters that several recordings share.
-  std::vector<std::string> models;  ///< In the order asked for; several are compared.
-  FitOptions fit;                   ///< Its model is the first of them.
 
   /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;

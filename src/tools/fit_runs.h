@@ -7,19 +7,12 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/batch/fit_run.h"
 #include "pendulum/model/rig.h"
-#include "pendulum/recording/recording.h"
-#include "pendulum/report/run_report.h"
 #include "tools/fit_pendulum_options.h"
 #include "tools/output.h"
 
 namespace pendulum {
-
-/// One free swing of one recording, fitted, or with its closed forms only; or several together.
-struct FitRun {
-  RunReport report;
-  std::vector<Recording> used;  ///< The samples of the swing, or of each recording of a joint fit.
-};
 
 /// What the runs need beside their flags.
 struct Setup {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/flags.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include <gflags/gflags.h>
 
@@ -22,13 +24,19 @@ void ExitWithTwo() {
   if (gflags_is_parsing) std::_Exit(ExitCode(StatusCode::kInvalidArgument));
 }
 
+/// Of the tools' own code, not a library's.
+bool IsOwn(const gflags::CommandLineFlagInfo& flag, std::string_view main_file) {
+  namespace fs = std::filesystem;
+  return fs::path(flag.filename).parent_path() == fs::path(main_file).parent_path();
+}
+
 std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
   std::vector<gflags::CommandLineFlagInfo> registered;
   gflags::GetAllFlags(&registered);
   std::vector<FlagInfo> flags;
   for (const gflags::CommandLineFlagInfo& flag : registered) {
     if (flag.name == "help" || flag.name == "version") continue;
-    flags.push_back({flag.name, flag.description, flag.type, flag.filename == main_file});
+    flags.push_back({flag.name, flag.description, flag.type, IsOwn(flag, main_file)});
   }
   flags.push_back({"help", "Print this text.", "bool", true});
   flags.push_back({"version", "Print the version.", "bool", true});
@@ -39,7 +47,11 @@ std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
 
 Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file, std::string_view usage) {
   const std::vector<FlagInfo> flags = RegisteredFlags(main_file);
-  auto positional = PositionalArguments(std::vector<std::string>(argv + 1, argv + argc), flags);
+  const bool has_model = std::ranges::find(flags, "model", &FlagInfo::name) != flags.end();
+  static std::vector<std::string> arguments;  // gflags keeps pointers
+  arguments = has_model ? WithModelForModels({argv + 1, argv + argc}) : std::vector<std::string>(argv + 1, argv + argc);
+  for (int i = 1; i < argc; ++i) argv[i] = arguments[static_cast<std::size_t>(i - 1)].data();
+  auto positional = PositionalArguments(arguments, flags);
   if (!positional) return tl::unexpected(positional.error());
   std::atexit(ExitWithTwo);
   gflags_is_parsing = true;

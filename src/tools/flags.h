@@ -15,8 +15,8 @@ struct ParsedFlags {
   std::vector<std::string> positional;  ///< What belongs to no flag.
 };
 
-/// Sets the flags that `main_file` (its __FILE__) and the libraries define. The process exits with 2, never 1, should
-/// gflags refuse what PositionalArguments let through. `usage` begins the help.
+/// Sets the flags that `main_file` (its __FILE__), what lies beside it and the libraries define. The process exits with
+/// 2, never 1, should gflags refuse what PositionalArguments let through. `usage` begins the help.
 ///
 /// kInvalidArgument: as PositionalArguments.
 Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file, std::string_view usage);

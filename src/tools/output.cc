@@ -2,13 +2,13 @@
 #include "tools/output.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
-#include <cstdint>
-#include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string_view>
 #include <system_error>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -16,28 +16,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "pendulum/base/staged_file.h"
+
 namespace pendulum {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string SystemWords(int error) { return std::generic_category().message(error); }
-
-tl::unexpected<Status> CannotWrite(const std::string& path, const std::string& why) {
-  return Error(StatusCode::kCannotWrite, "cannot write " + path + ": " + why);
-}
-
-/// The file a path stands for once symbolic links in its last component are followed, whether or not it exists.
-fs::path FollowLinks(fs::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel's own limit
-  std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
-    const fs::path target = fs::read_symlink(path, error);
-    if (error) break;
-    path = path.parent_path() / target;  // an absolute target replaces the whole
-  }
-  return path;
-}
 
 /// True for what is written to as it stands: a pipe, a terminal, another device.
 bool IsStream(const std::string& path) {
@@ -46,24 +30,41 @@ bool IsStream(const std::string& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// The same for all names of one file, be it there or not; empty when that cannot be told.
-std::string Identity(const std::string& path) {
-  if (IsStandardOutput(path)) return "-";
-  struct stat file {};
-  if (::stat(path.c_str(), &file) == 0) return std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino);
-  std::error_code error;
-  const fs::path absolute = fs::absolute(FollowLinks(path), error);
-  if (error) return "";
-  const fs::path canonical = fs::weakly_canonical(absolute, error);
-  return error ? "" : canonical.string();
-}
+fs::path FolderOf(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-/// Identities of many files, each found once: every output is compared with all others.
-std::vector<std::string> Identities(std::span<const NamedFile> files) {
-  std::vector<std::string> identities;
-  for (const NamedFile& file : files) identities.push_back(Identity(file.path));
-  return identities;
-}
+/// What the names of files stand for; what is found out about a folder is found out once.
+class Identities {
+ public:
+  /// The same for all names of one file, be it there or not; empty when that cannot be told.
+  std::string Of(const std::string& path) {
+    if (IsStandardOutput(path)) return "-";
+    struct stat file {};
+    if (::stat(path.c_str(), &file) == 0) return std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino);
+    const fs::path target = FollowLinks(path);
+    const std::string& folder = Canonical(FolderOf(target));
+    return folder.empty() ? "" : (fs::path(folder) / target.filename()).string();
+  }
+
+  std::vector<std::string> Of(std::span<const NamedFile> files) {
+    std::vector<std::string> identities;
+    identities.reserve(files.size());
+    for (const NamedFile& file : files) identities.push_back(Of(file.path));
+    return identities;
+  }
+
+ private:
+  const std::string& Canonical(const fs::path& folder) {
+    const auto [known, is_new] = canonical_.try_emplace(folder.string());
+    if (!is_new) return known->second;
+    std::error_code error;
+    const fs::path absolute = fs::absolute(folder, error);
+    if (!error) known->second = fs::weakly_canonical(absolute, error).string();
+    if (error) known->second.clear();
+    return known->second;
+  }
+
+  std::map<std::string, std::string> canonical_;
+};
 
 bool IsRedirectionOfStdout(const std::string& path) {
   struct stat file {};
@@ -72,81 +73,8 @@ bool IsRedirectionOfStdout(const std::string& path) {
          file.st_dev == out.st_dev && file.st_ino == out.st_ino;
 }
 
-bool WriteAll(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
-/// A file under a temporary name beside its target; removed unless committed.
-class StagedFile {
- public:
-  explicit StagedFile(std::string path) : path_(std::move(path)), target_(FollowLinks(path_)) {}
-  StagedFile(StagedFile&& other) noexcept
-      : path_(std::move(other.path_)),
-        target_(std::move(other.target_)),
-        temporary_(std::exchange(other.temporary_, {})),
-        descriptor_(std::exchange(other.descriptor_, -1)) {}
-  StagedFile(const StagedFile&) = delete;
-  StagedFile& operator=(const StagedFile&) = delete;
-  StagedFile& operator=(StagedFile&&) = delete;
-  ~StagedFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  }
-
-  Result<void> Open() {
-    const fs::path directory = target_.has_parent_path() ? target_.parent_path() : ".";
-    while (descriptor_ < 0) {
-      // A name may be taken by what a process of that number left when it was killed: the next one is tried.
-      static std::atomic<std::uint64_t> names = 0;
-      const std::string name = ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(names++) + ".tmp";
-      const std::string temporary = directory / name;
-      descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ >= 0) {
-        temporary_ = temporary;
-      } else if (errno != EEXIST) {
-        break;
-      }
-    }
-    if (descriptor_ < 0) return CannotWrite(path_, SystemWords(errno));
-    return {};
-  }
-
-  Result<void> Write(std::string_view text) {
-    KeepPermissions();
-    if (!WriteAll(descriptor_, text) || ::fsync(descriptor_) != 0) return CannotWrite(path_, SystemWords(errno));
-    if (::close(std::exchange(descriptor_, -1)) != 0) return CannotWrite(path_, SystemWords(errno));
-    return {};
-  }
-
-  Result<void> Commit() {
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) return CannotWrite(path_, SystemWords(errno));
-    temporary_.clear();
-    return {};
-  }
-
- private:
-  /// Mode of the file to be replaced, and its owner where we may.
-  void KeepPermissions() const {
-    constexpr mode_t kPermissions = 07777;
-    struct stat old {};
-    if (::stat(target_.c_str(), &old) != 0) return;
-    const bool owned = ::fchown(descriptor_, old.st_uid, old.st_gid) == 0;
-    ::fchmod(descriptor_, old.st_mode & (owned ? kPermissions : 0777U));
-  }
-
-  std::string path_;
-  fs::path target_;
-  std::string temporary_;
-  int descriptor_ = -1;
-};
-
-Result<void> CheckWritable(const std::string& path) {
+/// `proven` are folders in which a file has been opened.
+Result<void> CheckWritable(const std::string& path, std::set<fs::path>& proven) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) return CannotWrite(path, "it is a directory");
@@ -155,7 +83,22 @@ Result<void> CheckWritable(const std::string& path) {
   }
   if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0) return CannotWrite(path, SystemWords(errno));
   if (IsStream(path)) return {};
-  return StagedFile(path).Open();
+  const fs::path folder = FolderOf(FollowLinks(path));
+  if (proven.contains(folder)) return {};
+  if (auto opened = StagedFile(path).Open(); !opened) return opened;
+  proven.insert(folder);
+  return {};
+}
+
+/// For each output the flag of the first one after it that is the same file; empty where there is none.
+std::vector<std::string> FlagsOfTheSame(std::span<const NamedFile> outputs, std::span<const std::string> identities) {
+  std::vector<std::string> flags(outputs.size());
+  std::unordered_map<std::string_view, std::size_t> later;
+  for (std::size_t i = outputs.size(); i-- > 0;) {
+    const auto [same, is_new] = later.try_emplace(identities[i], i);
+    if (!is_new) flags[i] = outputs[std::exchange(same->second, i)].flag;
+  }
+  return flags;
 }
 
 Result<void> WriteStream(const Output& output) {
@@ -187,8 +130,11 @@ std::string NumberedPath(const std::string& path, int index, int count) {
 }
 
 Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs) {
-  const std::vector<std::string> written = Identities(outputs);
-  const std::vector<std::string> read = Identities(inputs);
+  Identities identities;
+  const std::vector<std::string> written = identities.Of(outputs);
+  const std::vector<std::string> read = identities.Of(inputs);
+  const std::vector<std::string> same = FlagsOfTheSame(outputs, written);
+  std::set<fs::path> proven;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& path = outputs[i].path;
     const auto refuse = [&](const std::string& why) {
@@ -198,26 +144,25 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
     std::error_code error;
     const bool device = fs::is_character_file(path, error);
     const bool comparable = !device && !written[i].empty();
-    for (std::size_t k = i + 1; comparable && k < outputs.size(); ++k) {
-      if (written[k] == written[i]) return refuse("is the output of " + outputs[k].flag + " too");
-    }
+    if (comparable && !same[i].empty()) return refuse("is the output of " + same[i] + " too");
     for (std::size_t k = 0; comparable && k < inputs.size(); ++k) {
       if (read[k] == written[i]) return refuse("would overwrite the input of " + inputs[k].flag);
     }
     if (IsStandardOutput(path)) continue;
     if (IsRedirectionOfStdout(path)) return refuse("is where standard output goes; give - instead");
-    if (auto writable = CheckWritable(path); !writable) return writable;
+    if (auto writable = CheckWritable(path, proven); !writable) return writable;
   }
   return {};
 }
 
-Result<void> WriteOutputs(std::span<const Output> outputs) {
+Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability) {
   std::vector<StagedFile> files;
   for (const Output& output : outputs) {
     if (IsStandardOutput(output.path) || IsStream(output.path)) continue;
-    files.emplace_back(output.path);
+    files.emplace_back(output.path, durability);
     if (auto opened = files.back().Open(); !opened) return opened;
     if (auto written = files.back().Write(output.text); !written) return written;
+    if (auto finished = files.back().Finish(); !finished) return finished;
   }
   for (StagedFile& file : files) {
     if (auto committed = file.Commit(); !committed) return committed;
@@ -226,6 +171,49 @@ Result<void> WriteOutputs(std::span<const Output> outputs) {
     if (!IsStandardOutput(output.path) && !IsStream(output.path)) continue;
     if (auto written = WriteStream(output); !written) return written;
   }
+  return {};
+}
+
+namespace {
+
+/// A stream takes its text at once, for it cannot be taken back.
+Result<void> WriteStreamOfPieces(const std::string& path, int count,
+                                 const std::function<Result<std::string>(int)>& piece) {
+  Output output{path, ""};
+  for (int i = 0; i < count; ++i) {
+    const Result<std::string> text = piece(i);
+    if (!text) return tl::unexpected(text.error());
+    output.text += *text;
+  }
+  return WriteStream(output);
+}
+
+}  // namespace
+
+Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece) {
+  if (IsStandardOutput(path) || IsStream(path)) return WriteStreamOfPieces(path, count, piece);
+  StagedFile file(path);
+  if (auto opened = file.Open(); !opened) return opened;
+  for (int i = 0; i < count; ++i) {
+    const Result<std::string> text = piece(i);
+    if (!text) return tl::unexpected(text.error());
+    if (auto written = file.Write(*text); !written) return written;
+  }
+  if (auto finished = file.Finish(); !finished) return finished;
+  return file.Commit();
+}
+
+Result<void> SynchroniseFileSystem(const std::string& path) {
+  const fs::path folder = FolderOf(FollowLinks(path));
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) {
+    ::sync();  // A folder that may be written to but not read: all file systems, then.
+    return {};
+  }
+  const bool synchronised = ::syncfs(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  if (!synchronised) return CannotWrite(path, SystemWords(error));
   return {};
 }
 

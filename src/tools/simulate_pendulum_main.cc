@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulates recordings of a pendulum's free swing, with the truth, or predicts what they will tell: flags, files and
 // exit codes.
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,11 +11,10 @@
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/report/plan_text.h"
-#include "pendulum/trajectory/synthetic.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
+#include "tools/simulate_pendulum_files.h"
 #include "tools/simulate_pendulum_options.h"
-#include "tools/simulate_pendulum_text.h"
 
 DEFINE_string(model, "coulomb", "Equation of motion, one of the models named above; default coulomb.");
 DEFINE_string(gravity, "", "Law of gravity's torque, sin or linear; default the model's own.");
@@ -25,13 +23,21 @@ DEFINE_string(set, "",
               "Parameters, name=value,... in SI: inertia (default the rig's), the model's friction (default 0), "
               "release_angle and release_time or initial_angle and initial_rate, zero_angle or, for a rate, rate_bias "
               "(default 0).");
+DEFINE_string(
+    spread, "",
+    "Standard deviations, name=std_dev,... in SI, with which the truth of each recording scatters normally about "
+    "--set, by the recording's seed and within the bounds of each parameter; default none.");
 DEFINE_string(out, "", "Where to write the recording as CSV; - is standard output.");
 DEFINE_string(truth, "", "Where to write the truth, the parameters, as JSON; - is standard output; default nowhere.");
+DEFINE_string(manifest, "",
+              "Where to list the recordings as CSV once all are made: path, id, rig, seed and the truth; - is standard "
+              "output; default nowhere.");
 DEFINE_bool(plan, false,
             "Makes no recording, but predicts the standard error of each parameter (Cramér-Rao), and how amplitude, "
             "duration, rate and resolution change it; default off.");
 DEFINE_int32(count, 1, "Recordings, with seeds --seed, --seed + 1, ... in run_001.csv, run_002.csv, ...; default 1.");
-DEFINE_uint64(seed, 1, "Seed of noise and jitter; default 1.");
+DEFINE_uint64(seed, 1, "Seed of noise, jitter and --spread; default 1.");
+DEFINE_int32(threads, 0, "Threads, on which the result does not depend; default 0, as many as there are cores.");
 DEFINE_double(duration, 20, "Length of the recording, s; default 20.");
 DEFINE_double(rate, 100, "Sampling rate, Hz; default 100.");
 DEFINE_double(start_time, 0, "Clock at the first sample, s; default 0.");
@@ -52,6 +58,8 @@ std::string Usage() {
          "\n"
          "  simulate_pendulum --model coulomb --rig rig.json --out run.csv --truth truth.json \\\n"
          "    --set inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,release_time=1.9\n"
+         "  simulate_pendulum --rig rig.json --out runs/run.csv --count 1000 --manifest runs.csv \\\n"
+         "    --set inertia=0.079,release_angle=0.423,release_time=1.9 --spread inertia=0.002,viscous=0.001\n"
          "  simulate_pendulum --plan --rig rig.json --set inertia=0.079,release_angle=0.423,release_time=0 --noise "
          "0.05\n"
          "\n"
@@ -68,6 +76,7 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.model = FLAGS_model;
   flags.gravity = FLAGS_gravity;
   flags.set = FLAGS_set;
+  flags.spread = FLAGS_spread;
   flags.unit = FLAGS_unit;
   flags.duration = FLAGS_duration;
   flags.rate = FLAGS_rate;
@@ -81,8 +90,11 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.seed = FLAGS_seed;
   flags.plan = FLAGS_plan;
   flags.count = FLAGS_count;
+  flags.threads = FLAGS_threads;
+  flags.rig = FLAGS_rig;
   flags.out = FLAGS_out;
   flags.truth = FLAGS_truth;
+  flags.manifest = FLAGS_manifest;
   flags.positional = positional;
   return flags;
 }
@@ -90,26 +102,6 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
 Result<std::optional<Rig>> RigOfFlag() {
   if (FLAGS_rig.empty()) return std::nullopt;
   return ReadRig(FLAGS_rig);
-}
-
-Result<void> CheckAllOutputs(const SimulateOptions& options) {
-  std::vector<NamedFile> inputs;
-  if (!FLAGS_rig.empty()) inputs.push_back({"--rig", FLAGS_rig});
-  for (int index = 0; index < options.count; ++index) {
-    if (Result<void> checked = CheckOutputs(options.Outputs(index), inputs); !checked) return checked;
-  }
-  return {};
-}
-
-Result<void> SimulateOne(const SimulateOptions& options, int index) {
-  SyntheticOptions synthetic = options.synthetic;
-  synthetic.seed += static_cast<std::uint64_t>(index);
-  const Result<Recording> recording = SimulateRecording(synthetic);
-  if (!recording) return tl::unexpected(recording.error());
-  const std::vector<NamedFile> files = options.Outputs(index);
-  std::vector<Output> outputs = {{files.front().path, RecordingCsv(options, *recording, synthetic.seed)}};
-  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(options, synthetic.seed)});
-  return WriteOutputs(outputs);
 }
 
 Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>& rig) {
@@ -124,11 +116,7 @@ Result<void> Simulate(const SimulateFlags& flags) {
   const Result<SimulateOptions> options = MakeSimulateOptions(flags, *rig);
   if (!options) return tl::unexpected(options.error());
   if (options->plan) return WritePlan(*options, *rig);
-  if (Result<void> checked = CheckAllOutputs(*options); !checked) return checked;
-  for (int index = 0; index < options->count; ++index) {
-    if (Result<void> simulated = SimulateOne(*options, index); !simulated) return simulated;
-  }
-  return {};
+  return WriteRecordings(*options);
 }
 
 Result<int> Work(const std::vector<std::string>& positional) {

@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/model/nesting.h"
 #include "tools/command_line.h"
 
 namespace pendulum {
@@ -87,6 +88,7 @@ double ValueOr0(const ParameterValues& values, const ParameterInfo& info) {
 }
 
 void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOptions& synthetic) {
+  synthetic.parameters.clear();
   for (const ParameterInfo& info : PhysicalParameters(synthetic.model)) {
     const double unit = info.scales_with_gravity() ? gravity_torque : 1.0;
     synthetic.parameters.push_back(ValueOr0(values, info) / unit);
@@ -98,21 +100,41 @@ void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOp
   synthetic.zero = ValueOr0(values, synthetic.quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
 }
 
+/// What --spread asks for; `infos` are those that --set may name, `values` are complete.
+Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> infos, const ParameterValues& values,
+                          SimulateOptions& options) {
+  if (spread.empty()) return {};
+  const std::vector<ParameterInfo> bounded = infos;
+  for (ParameterInfo& info : infos) info.lower = 0, info.upper = kUnbounded;  // a standard deviation's own
+  const Result<ParameterValues> std_devs = ParseSettings("--spread", spread, options.synthetic.model.name, infos);
+  if (!std_devs) return tl::unexpected(std_devs.error());
+  for (const auto& [name, std_dev] : *std_devs) {
+    if (values.contains(name)) continue;
+    return BadFlag("--spread: " + name + " belongs to a start other than that of --set; leave it out");
+  }
+  for (const ParameterInfo& info : bounded) {
+    if (!values.contains(info.name)) continue;
+    options.scattered.push_back({info, ValueOr0(values, info), ValueOr0(*std_devs, info)});
+  }
+  return {};
+}
+
 /// The motion that --set asks of the model already chosen: start and parameters, in `options` and in its truth.
-Result<void> ChooseMotion(const std::string& set, const std::optional<Rig>& rig, SimulateOptions& options) {
+Result<void> ChooseMotion(const SimulateFlags& flags, const std::optional<Rig>& rig, SimulateOptions& options) {
   SyntheticOptions& synthetic = options.synthetic;
   const std::vector<ParameterInfo> infos = SettableParameters(synthetic.model, synthetic.quantity);
-  Result<ParameterValues> values = ParseSettings("--set", set, synthetic.model.name, infos);
+  Result<ParameterValues> values = ParseSettings("--set", flags.set, synthetic.model.name, infos);
   if (!values) return tl::unexpected(values.error());
   const Result<StartKind> start = ChooseStart(*values);
   if (!start) return tl::unexpected(start.error());
   synthetic.start = *start;
   if (Result<void> complete = Complete(infos, rig, *start, *values); !complete) return complete;
-  SetMotion(*values, rig ? rig->gravity_torque.value : 1.0, synthetic);
+  options.gravity_torque = rig ? rig->gravity_torque.value : 1.0;
+  SetMotion(*values, options.gravity_torque, synthetic);
   for (const ParameterInfo& info : infos) {
     if (const auto found = values->find(info.name); found != values->end()) options.truth.emplace_back(*found);
   }
-  return {};
+  return ChooseSpread(flags.spread, infos, *values, options);
 }
 
 Result<std::optional<SensorRange>> ParseRange(const std::string& text) {
@@ -164,6 +186,8 @@ Result<void> CheckPlan(const SimulateFlags& flags) {
   if (!flags.out.empty()) return BadFlag("--out" + makes_none);
   if (!flags.truth.empty()) return BadFlag("--truth" + makes_none);
   if (flags.count != 1) return BadFlag("--count" + makes_none);
+  if (!flags.spread.empty()) return BadFlag("--spread" + makes_none);
+  if (!flags.manifest.empty()) return BadFlag("--manifest" + makes_none);
   if (flags.noise != 0 || flags.resolution != 0) return {};
   return BadFlag("--plan needs --noise or --resolution: without either nothing limits what a recording tells");
 }
@@ -176,7 +200,26 @@ Result<void> CheckFiles(const SimulateFlags& flags) {
   if (flags.count > 1 && (IsStandardOutput(flags.out) || IsStandardOutput(flags.truth))) {
     return BadFlag("--count " + std::to_string(flags.count) + " needs files; standard output takes one recording");
   }
+  if (!flags.manifest.empty() && IsStandardOutput(flags.out)) {
+    return BadFlag("--manifest lists files; give --out a file instead of " + flags.out);
+  }
   return {};
+}
+
+Result<void> CheckThreads(const SimulateFlags& flags) {
+  constexpr int kMost = 1024;
+  if (flags.threads >= 0 && flags.threads <= kMost) return {};
+  return BadFlag("--threads is " + std::to_string(flags.threads) + "; it must be 0 to " + std::to_string(kMost));
+}
+
+void CopyFiles(const SimulateFlags& flags, SimulateOptions& options) {
+  options.plan = flags.plan;
+  options.count = flags.count;
+  options.threads = flags.threads;
+  options.rig_path = flags.rig;
+  options.out = flags.out;
+  options.truth_out = flags.truth;
+  options.manifest_out = flags.manifest;
 }
 
 /// Sensor and sampling; noise, resolution and range become SI.
@@ -206,7 +249,7 @@ Result<void> ChooseSensor(const SimulateFlags& flags, SimulateOptions& options) 
 }  // namespace
 
 Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const std::optional<Rig>& rig) {
-  for (const auto check : {CheckFiles, CheckNumbers}) {
+  for (const auto check : {CheckFiles, CheckThreads, CheckNumbers}) {
     if (Result<void> checked = check(flags); !checked) return tl::unexpected(checked.error());
   }
   const Result<OutputUnit> unit = FindUnit(flags.unit);
@@ -217,12 +260,22 @@ Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const st
   options.unit = *unit;
   options.synthetic.quantity = unit->quantity;
   options.synthetic.model = *model;
-  options.plan = flags.plan;
-  options.count = flags.count;
-  options.out = flags.out;
-  options.truth_out = flags.truth;
+  CopyFiles(flags, options);
   if (Result<void> chosen = ChooseSensor(flags, options); !chosen) return tl::unexpected(chosen.error());
-  if (Result<void> chosen = ChooseMotion(flags.set, rig, options); !chosen) return tl::unexpected(chosen.error());
+  if (Result<void> chosen = ChooseMotion(flags, rig, options); !chosen) return tl::unexpected(chosen.error());
+  if (const auto first = OptionsOfRecording(options, 0); !first) return tl::unexpected(first.error());
+  return options;
+}
+
+Result<SimulateOptions> OptionsOfRecording(SimulateOptions options, int index) {
+  SyntheticOptions& synthetic = options.synthetic;
+  synthetic.seed += static_cast<std::uint64_t>(index);
+  if (options.scattered.empty()) return options;
+  // The truth begins with the model's parameters, in their order.
+  const auto values = ScatterParameters(options.scattered, OrderOf(synthetic.model), synthetic.seed);
+  if (!values) return BadFlag("--spread: " + values.error().message);
+  for (std::size_t i = 0; i < values->size(); ++i) options.truth[i].second = (*values)[i];
+  SetMotion({options.truth.begin(), options.truth.end()}, options.gravity_torque, synthetic);
   return options;
 }
 

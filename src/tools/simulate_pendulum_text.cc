@@ -23,14 +23,13 @@ int Decimals(double value) {
   return point == end ? 0 : static_cast<int>(end - point) - 1;
 }
 
-/// The double nearest to `value` rounded to `decimals`, so that its shortest text has no more of them.
+/// The double nearest to `value` rounded to `decimals`, at most 22, so that its shortest text has no more of them.
 double RoundedTo(int decimals, double value) {
-  std::array<char, 512> text{};
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
-  double rounded = value;
-  std::from_chars(text.data(), end, rounded);
-  return rounded + 0.0;  // no -0
+  constexpr double kMostExact = 9007199254740992;  // 2^53: above, doubles are farther apart than these decimals
+  double power = 1;                                // exact, as is the numerator: their quotient is the nearest double
+  for (int i = 0; i < decimals; ++i) power *= 10;
+  const double numerator = std::round(value * power);
+  return std::abs(numerator) < kMostExact ? numerator / power + 0.0 : value;  // no -0
 }
 
 /// Turns readings in SI into the file's unit.

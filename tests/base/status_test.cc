@@ -18,6 +18,7 @@ TEST(ExitCode, IsThatOfTheDocumentedTable) {
   EXPECT_EQ(ExitCode(StatusCode::kFailedPrecondition), 5);
   EXPECT_EQ(ExitCode(StatusCode::kInternal), 70);     // EX_SOFTWARE of sysexits.h
   EXPECT_EQ(ExitCode(StatusCode::kCannotWrite), 73);  // EX_CANTCREAT
+  EXPECT_EQ(ExitCode(StatusCode::kTryAgain), 75);     // EX_TEMPFAIL
 }
 
 TEST(ExitCode, OfACodeThatDoesNotExistIsThatOfABug) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }

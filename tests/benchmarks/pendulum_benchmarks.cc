@@ -20,6 +20,7 @@ void RegisterAll() {
   RegisterFitBenchmarks();
   RegisterErrorBenchmarks();
   RegisterJointBenchmarks();
+  RegisterBatchBenchmarks();
   RegisterCeresBenchmarks();
   RegisterTinySolverBenchmarks();
 #ifdef PENDULUM_HAS_SUNDIALS

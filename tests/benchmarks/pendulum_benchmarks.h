@@ -16,6 +16,9 @@ void RegisterErrorBenchmarks();
 /// fit_jointly/SCENARIO/recordings:K: K fits alone and the joint one, and how many times one fit that takes.
 void RegisterJointBenchmarks();
 
+/// batch/refit: a batch of files on all cores, and what share of them it has.
+void RegisterBatchBenchmarks();
+
 /// smoothed_rk4/..., located_rk4/..., the same _flattened, located_odeint/...: the same by hand with Ceres, to compare
 /// with; see users_costs.h.
 void RegisterCeresBenchmarks();

@@ -8,6 +8,7 @@
 
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
+#include "tests/report/embedded_json.h"
 #include "tests/report/example_joint_report.h"
 
 namespace pendulum::page_test {
@@ -17,13 +18,6 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-/// What stands in the script element of that id.
-Json Embedded(const std::string& html, const std::string& id) {
-  const std::size_t element = html.find("id=\"" + id + "\"");
-  const std::size_t begin = html.find('>', element) + 1;
-  return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
-}
 
 Recording ExampleSamples() {
   Recording used;

@@ -135,7 +135,7 @@ TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
   flags.model = "drag,viscous";
   EXPECT_THAT(MakeFitPendulumOptions(flags).value().models, ElementsAre("drag", "viscous"));
   flags.model = "drag,viscous,drag";
-  EXPECT_EQ(Refusal(flags), "--model 'drag,viscous,drag' names drag twice");
+  EXPECT_EQ(Refusal(flags), "--model: 'drag,viscous,drag' names drag twice");
   flags.model = "drag,";
   EXPECT_THAT(Refusal(flags), HasSubstr("there is no model ''"));
 }

@@ -204,6 +204,45 @@ TEST_F(OutputTest, WritesIntoDevicesAndTellsWhenTheyAreFull) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+Result<std::string> Letter(int i) { return std::string(1, static_cast<char>('a' + i)); }
+
+TEST_F(OutputTest, WritesPiecesOneAfterTheOther) {
+  Create("old", "a longer text");
+  EXPECT_TRUE(WritePieces(Path("old"), 3, Letter));
+  EXPECT_EQ(Text("old"), "abc");
+  EXPECT_THAT(Names(), UnorderedElementsAre("old"));
+  ASSERT_EQ(::mkfifo(Path("pipe").c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = Text("pipe"); });
+  EXPECT_TRUE(WritePieces(Path("pipe"), 3, Letter));
+  reader.join();
+  EXPECT_EQ(read, "abc");
+}
+
+TEST_F(OutputTest, KeepsTheOldFileWhereAPieceFails) {
+  Create("old", "kept");
+  const auto written = WritePieces(Path("old"), 3, [](int i) -> Result<std::string> {
+    if (i == 2) return Error(StatusCode::kInternal, "no third piece");
+    return Letter(i);
+  });
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message, "no third piece");
+  EXPECT_EQ(Text("old"), "kept");
+  EXPECT_THAT(Names(), UnorderedElementsAre("old"));
+  EXPECT_EQ(WritePieces(Path("no/x"), 1, Letter).error().message,
+            "cannot write " + Path("no/x") + ": No such file or directory");
+}
+
+TEST_F(OutputTest, WritesTheSameWhereSynchronisationIsDeferred) {
+  Create("old", "a longer text");
+  const std::vector<Output> outputs = {{Path("old"), "new"}, {Path("b"), "b"}};
+  EXPECT_TRUE(WriteOutputs(outputs, Durability::kDeferred));
+  EXPECT_TRUE(SynchroniseFileSystem(Path("old")));
+  EXPECT_EQ(Text("old"), "new");
+  EXPECT_EQ(Text("b"), "b");
+  EXPECT_THAT(Names(), UnorderedElementsAre("old", "b"));
+}
+
 TEST(IsStandardOutput, HasThreeNames) {
   EXPECT_TRUE(IsStandardOutput("-"));
   EXPECT_TRUE(IsStandardOutput("/dev/stdout"));

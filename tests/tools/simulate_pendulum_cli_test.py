@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """simulate_pendulum as a process: files, exit codes and messages. simulate_pendulum_cli_test.py PATH_OF_simulate_pendulum."""
 
+import csv
 import json
+import math
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -12,6 +15,7 @@ import unittest
 BINARY = pathlib.Path()
 START = "release_angle=0.4,release_time=0.5"
 MOTION = f"inertia=0.04,viscous=0.001,{START}"
+SHORT = ["--duration", "1"]
 NOISY = ["--set", MOTION, "--noise", "0.2", "--resolution", "0.1985"]
 
 
@@ -78,6 +82,90 @@ class SimulatePendulumTest(unittest.TestCase):
         alone = self.check_made(*NOISY, "--out", "-", "--seed", "7")
         self.assertEqual((self.folder / "run_003.csv").read_text(), alone)
         self.assertEqual(json.loads((self.folder / "truth_003.json").read_text())["seed"], 7)
+
+    def truths(self, pattern="truth_*.json"):
+        return [json.loads(path.read_text()) for path in sorted(self.folder.glob(pattern))]
+
+    def test_spread_scatters_the_truth_about_what_was_set(self):
+        count = 400
+        self.check_made("--set", MOTION, *SHORT, "--spread", "inertia=0.001,release_angle=0.02", "--count", str(count),
+                        "--out", "run.csv", "--truth", "truth.json")
+        truths = self.truths()
+        for name, mean, std_dev in (("inertia", 0.04, 0.001), ("release_angle", 0.4, 0.02)):
+            values = [truth[name] for truth in truths]
+            # Four standard errors of the mean and of the standard deviation of so many normal values.
+            self.assertLess(abs(statistics.mean(values) - mean), 4 * std_dev / math.sqrt(count))
+            self.assertLess(abs(statistics.stdev(values) - std_dev), 4 * std_dev / math.sqrt(2 * count))
+        self.assertEqual({truth["viscous"] for truth in truths}, {0.001})
+        self.assertEqual([truth["seed"] for truth in truths], list(range(1, count + 1)))
+
+    def test_spread_moves_the_recording_and_leaves_its_noise_alone(self):
+        def values(text):
+            return [math.radians(float(line.split(",")[1])) for line in text.splitlines()[2:]]
+
+        arguments = ["--set", MOTION, *SHORT, "--noise", "0.2", "--out", "-", "--seed", "5"]
+        plain = values(self.check_made(*arguments))
+        self.check_made(*arguments[:-4], "--seed", "5", "--out", "x", "--truth", "truth.json", "--spread", "zero_angle=0.1")
+        moved = values((self.folder / "x").read_text())
+        zero = self.truths("truth.json")[0]["zero_angle"]
+        self.assertNotEqual(zero, 0)
+        for before, after in zip(plain, moved, strict=True):
+            self.assertAlmostEqual(after - before, zero, places=12)
+
+    def test_threads_make_no_difference(self):
+        for threads in ("1", "2"):
+            (self.folder / threads).mkdir()
+            self.check_made(*NOISY, *SHORT, "--spread", "inertia=0.001", "--count", "50", "--threads", threads,
+                            "--out", f"{threads}/run.csv", "--truth", f"{threads}/truth.json", "--manifest",
+                            f"{threads}/runs.csv")
+        files = [{path.name: path.read_bytes() for path in (self.folder / threads).iterdir()} for threads in "12"]
+        self.assertEqual(len(files[0]), 101)
+        self.assertEqual(files[0], files[1])
+
+    def test_manifest_lists_the_recordings_with_their_truth(self):
+        self.write_rig('{"gravity_torque": 2}')
+        for name in ('runs, "all"', "lists"):
+            (self.folder / name).mkdir()
+        self.check_made(*NOISY, *SHORT, "--spread", "inertia=0.001,viscous=0.01,zero_angle=1e-7", "--rig", "rig.json",
+                        "--count", "1005", "--seed", "7", "--out", 'runs, "all"/run.csv', "--truth", "truth.json",
+                        "--manifest", "lists/runs.csv")
+        with open(self.folder / "lists/runs.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file, strict=True))
+        truths = self.truths()
+        self.assertEqual(len(rows), 1005)
+        parameters = ["inertia", "viscous", "coulomb", "release_angle", "release_time", "zero_angle"]
+        self.assertEqual(list(rows[0]), ["path", "id", "rig", "seed", *(f"true_{name}" for name in parameters)])
+        for row, truth in zip(rows, truths, strict=True):
+            self.assertEqual({name: float(row[f"true_{name}"]) for name in parameters},
+                             {name: truth[name] for name in parameters})
+            self.assertEqual(int(row["seed"]), truth["seed"])
+            self.assertTrue((self.folder / "lists" / row["path"]).samefile(
+                self.folder / 'runs, "all"' / f"{row['id']}.csv"))
+            self.assertEqual(row["rig"], "../rig.json")
+        self.assertGreater(min(truth["viscous"] for truth in truths), 0)  # its spread is ten times its value
+
+    def test_manifest_may_go_to_standard_output(self):
+        text = self.check_made(*NOISY, *SHORT, "--out", "run.csv", "--manifest", "-")
+        self.assertEqual([line.split(",")[:4] for line in text.splitlines()],
+                         [["path", "id", "seed", "true_inertia"], ["run.csv", "run", "1", "0.04"]])
+
+    def test_manifest_is_checked_as_an_output(self):
+        made = [*NOISY, *SHORT, "--count", "3", "--out", "run.csv"]
+        self.check_refused(2, "--out run_002.csv is the output of --manifest too", *made, "--manifest", "run_002.csv")
+        self.check_refused(2, "--manifest lists files", "--set", MOTION, "--out", "-", "--manifest", "runs.csv")
+        self.check_refused(2, "--truth - is the output of --manifest too", *NOISY, "--out", "run.csv", "--truth", "-",
+                           "--manifest", "-")
+        self.check_refused(73, "cannot write none/runs.csv", *made, "--manifest", "none/runs.csv")
+        (self.folder / "truth_002.json").mkdir()
+        self.check_refused(73, "cannot write truth_002.json: it is a directory", *made, "--truth", "truth.json")
+
+    def test_spread_and_threads_are_checked(self):
+        made = ["--set", MOTION, "--out", "run.csv"]
+        self.check_refused(2, "--spread: model coulomb has no parameter 'drag'", *made, "--spread", "drag=1")
+        self.check_refused(2, "--spread: inertia is -1; it must be at least 0", *made, "--spread", "inertia=-1")
+        self.check_refused(2, "initial_angle belongs to a start other than that of --set", *made, "--spread", "initial_angle=1")
+        self.check_refused(2, "--spread contradicts --plan", *NOISY, "--plan", "--spread", "inertia=0.001")
+        self.check_refused(2, "--threads is 1025; it must be 0 to 1024", *made, "--threads", "1025")
 
     def test_clock_starts_where_asked_and_stamps_increase(self):
         text = self.check_made("--set", MOTION, "--out", "-", "--start_time", "100", "--jitter", "0.02")

@@ -175,6 +175,59 @@ TEST(MakeSimulateOptions, PlansWithAResolutionAlone) {
   EXPECT_TRUE(MakeSimulateOptions(flags, {}));
 }
 
+TEST(OptionsOfRecording, ScattersTheTruthOfEachSeedAboutTheSetValues) {
+  SimulateFlags flags = Flags("inertia=0.06,viscous=0.003," + std::string(kRelease));
+  flags.spread = "release_angle=0.01,inertia=0.001";
+  flags.count = 3;
+  flags.seed = 5;
+  const Result<SimulateOptions> options = MakeSimulateOptions(flags, RoundRig());
+  ASSERT_TRUE(options) << options.error().message;
+  const Result<SimulateOptions> second = OptionsOfRecording(*options, 1);
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_EQ(second->synthetic.seed, 6);
+  const auto truth = [&](std::size_t i) { return second->truth[i].second; };
+  EXPECT_THAT(second->truth,
+              ElementsAre(Pair("inertia", testing::Ne(0.06)), Pair("viscous", 0.003), Pair("coulomb", 0.0),
+                          Pair("release_angle", testing::Ne(0.4)), Pair("release_time", 1.5), Pair("zero_angle", 0.0)));
+  EXPECT_THAT(truth(0), testing::DoubleNear(0.06, 0.006));  // six standard deviations
+  EXPECT_THAT(truth(3), testing::DoubleNear(0.4, 0.06));
+  // The rig's gravity torque is 2 N m.
+  EXPECT_THAT(second->synthetic.parameters, ElementsAre(DoubleEq(truth(0) / 2), DoubleEq(0.0015), 0));
+  EXPECT_EQ(second->synthetic.release_angle, truth(3));
+}
+
+TEST(OptionsOfRecording, GivesASeedTheSameTruthWhateverTheFirstSeed) {
+  SimulateFlags flags = Flags("inertia=0.06," + std::string(kRelease));
+  flags.spread = "inertia=0.001";
+  flags.count = 3;
+  const Result<SimulateOptions> from_1 = MakeSimulateOptions(flags, {});
+  flags.seed = 3;
+  const Result<SimulateOptions> from_3 = MakeSimulateOptions(flags, {});
+  ASSERT_TRUE(from_1 && from_3);
+  EXPECT_EQ(OptionsOfRecording(*from_1, 2)->truth, OptionsOfRecording(*from_3, 0)->truth);
+}
+
+TEST(OptionsOfRecording, KeepsTheSetValuesWithoutASpread) {
+  const Result<SimulateOptions> options = MakeSimulateOptions(Flags("inertia=0.06," + std::string(kRelease)), {});
+  ASSERT_TRUE(options) << options.error().message;
+  const Result<SimulateOptions> third = OptionsOfRecording(*options, 2);
+  ASSERT_TRUE(third);
+  EXPECT_EQ(third->truth, options->truth);
+  EXPECT_EQ(third->synthetic.seed, 3);
+}
+
+TEST(OptionsOfRecording, KeepsTheOrderOfAModelsParameters) {
+  SimulateFlags flags = Flags("inertia=0.06,coulomb=0.01,stiction=0.01,stribeck_rate=0.1," + std::string(kRelease));
+  flags.model = "stribeck";
+  flags.spread = "coulomb=0.001,stiction=0.001";
+  const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
+  ASSERT_TRUE(options) << options.error().message;
+  for (int index = 0; index < 100; ++index) {
+    const std::vector<double> parameters = OptionsOfRecording(*options, index)->synthetic.parameters;
+    EXPECT_GE(parameters[3], parameters[2]) << index;
+  }
+}
+
 struct Refusal {
   std::string message;
   void (*spoil)(SimulateFlags&);
@@ -215,6 +268,16 @@ TEST(MakeSimulateOptions, RefusesWrongFlagsAndNamesThem) {
       {"--set: 'inertia=0.04,' ends with a comma", [](SimulateFlags& f) { f.set = "inertia=0.04,"; }},
       {"--count is 0; it must be at least 1", [](SimulateFlags& f) { f.count = 0; }},
       {"--count 2 needs files", [](SimulateFlags& f) { (f.count = 2, f.out = "-"); }},
+      {"--manifest lists files; give --out a file instead of -",
+       [](SimulateFlags& f) { (f.manifest = "runs.csv", f.out = "-"); }},
+      {"--threads is -1; it must be 0 to 1024", [](SimulateFlags& f) { f.threads = -1; }},
+      {"--threads is 1025; it must be 0 to 1024", [](SimulateFlags& f) { f.threads = 1025; }},
+      {"--spread: 'inertia' must be name=value", [](SimulateFlags& f) { f.spread = "inertia"; }},
+      {"--spread: model coulomb has no parameter 'drag'", [](SimulateFlags& f) { f.spread = "drag=1"; }},
+      {"--spread: viscous is -1; it must be at least 0", [](SimulateFlags& f) { f.spread = "viscous=-1"; }},
+      {"--spread inertia is 'inf'; it must be a number", [](SimulateFlags& f) { f.spread = "inertia=inf"; }},
+      {"--spread: initial_rate belongs to a start other than that of --set",
+       [](SimulateFlags& f) { f.spread = "initial_rate=1"; }},
   };
   for (const Refusal& refusal : refusals) {
     SimulateFlags flags = Flags("inertia=0.04," + std::string(kRelease));
@@ -231,6 +294,8 @@ TEST(MakeSimulateOptions, RefusesWhatAPlanHasNoUseFor) {
       {"--out contradicts --plan, which makes no recording", [](SimulateFlags& f) { f.out = "-"; }},
       {"--truth contradicts --plan", [](SimulateFlags& f) { f.truth = "truth.json"; }},
       {"--count contradicts --plan", [](SimulateFlags& f) { f.count = 2; }},
+      {"--spread contradicts --plan", [](SimulateFlags& f) { f.spread = "inertia=0.001"; }},
+      {"--manifest contradicts --plan", [](SimulateFlags& f) { f.manifest = "runs.csv"; }},
       {"--plan needs --noise or --resolution", [](SimulateFlags& f) { f.noise = 0; }},
       {"'stray' belongs to no flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
   };

@@ -15,6 +15,7 @@ enum class StatusCode {
   kDataLoss,            ///< A file is there and cannot be read as what it should be.
   kFailedPrecondition,  ///< The data are readable and hold no swing, or too little of one.
   kCannotWrite,         ///< An output cannot be written.
+  kTryAgain,            ///< Something else has it now, such as another process: the same later may succeed.
   kInternal,            ///< Our bug.
 };
 
@@ -34,7 +35,7 @@ inline tl::unexpected<Status> Error(StatusCode code, std::string message) {
 }
 
 /// The process exit code of an error; 0 and 1 belong to fits that ran (see ExitCode(Termination) in fit.h).
-/// kInvalidArgument 2, kNotFound 3, kDataLoss 4, kFailedPrecondition 5, kCannotWrite 73, kInternal 70.
+/// kInvalidArgument 2, kNotFound 3, kDataLoss 4, kFailedPrecondition 5, kCannotWrite 73, kTryAgain 75, kInternal 70.
 int ExitCode(StatusCode code);
 
 /// Something a user should know of a result that nevertheless stands: a stable code and a sentence.

@@ -27,6 +27,10 @@ std::vector<MotionModel> MotionModels();
 /// The model of that name. kInvalidArgument: there is none; the message lists those there are.
 Result<MotionModel> FindMotionModel(std::string_view name);
 
+/// The models of a list, "viscous,coulomb", in its order; "all" is one of each friction law.
+/// kInvalidArgument: a name that is no model's, is empty, or stands twice.
+Result<std::vector<MotionModel>> FindMotionModels(std::string_view names);
+
 /// Inertia and the parameters of the model's friction law, in the order the trajectory takes them.
 std::vector<ParameterInfo> PhysicalParameters(const MotionModel& model);
 

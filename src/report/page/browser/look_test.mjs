@@ -2,14 +2,10 @@
 // Light, dark, wide, narrow, on paper, and for those who do not see.
 
 import assert from 'node:assert/strict';
-import fs from 'node:fs';
-import { createRequire } from 'node:module';
 import { test } from 'node:test';
 
 import { makeResult, makeSeries } from './fixture.mjs';
-import { ink, kPlot, open } from './page.mjs';
-
-const axeSource = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+import { assertAccessible, ink, kPlot, open } from './page.mjs';
 
 for (const colorScheme of ['light', 'dark']) {
   for (const [name, width] of [
@@ -21,19 +17,7 @@ for (const colorScheme of ['light', 'dark']) {
         context: { colorScheme, viewport: { width, height: 800 } },
       });
       assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
-      await page.evaluate(axeSource);
-      const { violations } = await page.evaluate(() =>
-        window.axe.run({ runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice'] }),
-      );
-      const found = violations.map(
-        (violation) =>
-          `${violation.id}: ${violation.nodes
-            .map((node) => `${node.target} ${node.failureSummary}`)
-            .slice(0, 3)
-            .join(' | ')}`,
-      );
-      assert.deepEqual(found, []);
+      await assertAccessible(page);
     });
   }
 }

@@ -3,6 +3,7 @@
 
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
+import { createRequire } from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before } from 'node:test';
@@ -10,7 +11,9 @@ import { pathToFileURL } from 'node:url';
 
 import { chromium } from 'playwright-core';
 
-export const template = fs.readFileSync(new URL('../dist/report.html', import.meta.url), 'utf8');
+const built = (name) => fs.readFileSync(new URL(`../dist/${name}`, import.meta.url), 'utf8');
+export const template = built('report.html');
+export const summaryTemplate = built('summary.html');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'pendulum-page-'));
 
 const kPatience = 180_000; // ms: a busy machine may need a minute for an empty page
@@ -34,21 +37,23 @@ const embedded = (value) => JSON.stringify(value).replace(/</g, '\\u003c');
 
 let written = 0;
 
-/** Writes the page with this content, as the C++ program does. */
-function write(result, series, command = { command: 'fit_pendulum --data run.csv' }) {
-  const html = template
-    .replace('@RESULT@', () => embedded(result))
-    .replace('@SERIES@', () => embedded(series))
-    .replace('@COMMAND@', () => embedded(command));
-  const file = path.join(folder, `report_${++written}.html`);
+/** Writes a page with what belongs at its tokens, as the C++ program does. */
+function write(page, parts) {
+  const html = Object.entries(parts).reduce((text, [token, value]) => text.replace(token, () => embedded(value)), page);
+  const file = path.join(folder, `page_${++written}.html`);
   fs.writeFileSync(file, html);
   return pathToFileURL(file).href;
 }
 
 /** Opens the page with this content. */
 export function open(t, result, series, options = {}) {
-  return openFile(t, write(result, series, options.command), options);
+  const { command = { command: 'fit_pendulum --data run.csv' } } = options;
+  return openFile(t, write(template, { '@RESULT@': result, '@SERIES@': series, '@COMMAND@': command }), options);
 }
+
+/** Opens the summary of a batch. */
+export const openSummary = (t, summary, options = {}) =>
+  openFile(t, write(summaryTemplate, { '@SUMMARY@': summary }), options);
 
 /** Opens a report and fails on whatever it complains of or asks the network for. */
 export async function openFile(t, url, options = {}) {
@@ -73,12 +78,31 @@ export async function openFile(t, url, options = {}) {
   return page;
 }
 
+const axeSource = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+/** The page is not wider than the window, and axe has nothing against it. */
+export async function assertAccessible(page) {
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
+  await page.evaluate(axeSource);
+  const { violations } = await page.evaluate(() =>
+    window.axe.run({ runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice'] }),
+  );
+  const found = violations.map(
+    (violation) =>
+      `${violation.id}: ${violation.nodes
+        .map((node) => `${node.target} ${node.failureSummary}`)
+        .slice(0, 3)
+        .join(' | ')}`,
+  );
+  assert.deepEqual(found, []);
+}
+
 export const kPlot = '#fit .plot >> nth=0';
 
-/** [from, to] of the main plot, from the sentence that tells it, s. */
+/** [from, to] of a plot, from the sentence that tells it; of the main one in s. */
 export async function shownRange(page, plot = kPlot) {
   const label = await page.locator(plot).getAttribute('aria-label');
-  return /from (\S+) to (\S+) s/.exec(label.replace(/−/g, '-')).slice(1).map(Number);
+  return /from (\S+) to (\S+?)( s|\.$)/.exec(label.replace(/−/g, '-')).slice(1, 3).map(Number);
 }
 
 export function assertRange(actual, expected) {

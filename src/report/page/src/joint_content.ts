@@ -47,6 +47,7 @@ export function jointContent(result: JointResult, series: Series[] | null, comma
   const samples = result.data.reduce((sum, data) => sum + data.used_samples, 0);
   const count = `${result.data.length} recordings`;
   return {
+    kind: 'Pendulum report',
     title: count,
     heading: `${count}, fitted together`,
     facts: `${names(result)} · ${samples} samples`,

@@ -26,19 +26,34 @@ function onKey(event: KeyboardEvent, view: TimeView): void {
   act(view);
 }
 
+/** What the buttons of a view are called. */
+export interface NavigationWords {
+  group: string;
+  back: string;
+  on: string;
+  all: string;
+}
+
+const kTimeWords: NavigationWords = {
+  group: 'Time shown',
+  back: 'Earlier',
+  on: 'Later',
+  all: 'Show the whole recording (0)',
+};
+
 /** Buttons for a view; the one that shows all is off while all is shown. */
-export function navigationButtons(view: TimeView): HTMLElement {
-  const all = button('Show all', () => view.reset(), { title: 'Show the whole recording (0)' });
+export function navigationButtons(view: TimeView, words = kTimeWords): HTMLElement {
+  const all = button('Show all', () => view.reset(), { title: words.all });
   const shows = (): void => void all.toggleAttribute('disabled', view.whole);
   view.onChange(shows);
   shows();
   return el(
     'div',
-    { class: 'buttons', role: 'group', 'aria-label': 'Time shown' },
+    { class: 'buttons', role: 'group', 'aria-label': words.group },
     button('−', () => view.zoom(1 / kZoom), { 'aria-label': 'Zoom out', title: 'Zoom out (−)' }),
     button('+', () => view.zoom(kZoom), { 'aria-label': 'Zoom in', title: 'Zoom in (+)' }),
-    button('◂', () => view.pan(-kStep), { 'aria-label': 'Earlier', title: 'Earlier (←)' }),
-    button('▸', () => view.pan(kStep), { 'aria-label': 'Later', title: 'Later (→)' }),
+    button('◂', () => view.pan(-kStep), { 'aria-label': words.back, title: `${words.back} (←)` }),
+    button('▸', () => view.pan(kStep), { 'aria-label': words.on, title: `${words.on} (→)` }),
     all,
   );
 }

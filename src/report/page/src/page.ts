@@ -7,10 +7,12 @@ import type { Fit } from './types';
 
 /** What a report puts into the frame. */
 export interface Content {
+  /** What the page is, "Pendulum report". */
+  kind: string;
   title: string;
   heading: string;
   facts: string;
-  models: Pick<Fit, 'model' | 'status'>[];
+  models: readonly Pick<Fit, 'model' | 'status'>[];
   recommended: string | null | undefined;
   shown: number;
   /** Another model shall be shown. */
@@ -19,11 +21,11 @@ export interface Content {
   sections: (changed: () => void) => HTMLElement[];
 }
 
-function header({ heading, facts }: Content): HTMLElement {
+function header({ kind, heading, facts }: Content): HTMLElement {
   const words = el(
     'div',
     {},
-    el('p', { class: 'kind' }, 'Pendulum report'),
+    el('p', { class: 'kind' }, kind),
     el('h1', {}, heading),
     el('p', { class: 'quiet' }, facts),
   );
@@ -66,7 +68,7 @@ export function refill(element: HTMLElement, children: HTMLElement[]): void {
 /** Fills `root` with the report. */
 export function fillPage(root: HTMLElement, content: Content): void {
   startTheme();
-  document.title = `${content.title} – pendulum report`;
+  document.title = `${content.title} – ${content.kind.toLowerCase()}`;
   const parts = el('div');
   const navigation = el('div', { class: 'side' });
   const changed = (): void => navigation.replaceChildren(contents(parts));

@@ -70,9 +70,9 @@ export class Painter {
     this.ctx.fill();
   }
 
-  /** Vertical lines from low to high with caps. */
-  errorBars(xs: Numbers, low: Numbers, high: Numbers, name: string): void {
-    const cap = 3 * this.ratio;
+  /** Vertical lines from low to high with caps of so many px to each side. */
+  errorBars(xs: Numbers, low: Numbers, high: Numbers, name: string, reach = 3): void {
+    const cap = reach * this.ratio;
     this.ctx.beginPath();
     for (let i = 0; i < xs.length; ++i) {
       if (!(Number.isFinite(low[i]) && Number.isFinite(high[i]))) continue;

@@ -3,6 +3,7 @@
 
 import { el, symbolElement, text, type Child } from './dom';
 import { typeset } from './prose';
+import { keyFigure } from './key_figure';
 import { errorText, intervalText, plusMinus } from './rounding';
 import { table, type Cell, type Column } from './table';
 import type { Fit, Parameter } from './types';
@@ -156,21 +157,14 @@ export function keyFigures(fit: Fit, remark: (name: string) => string | null = (
     const symbol = symbolOf(name, parameter.unit);
     const note =
       noteOf(parameter) === '' ? null : parameter.fixed ? 'held fixed' : parameter.at_bound ? 'at its bound' : null;
-    box.append(
-      el(
-        'div',
-        { class: 'key', 'data-parameter': name },
-        el('span', { class: 'name' }, wordsOf(name), symbol !== null && ' ', symbol !== null && symbolElement(symbol)),
-        el('span', { class: 'value' }, plusMinus(parameter.estimate, parameter.std_error)),
-        el(
-          'span',
-          { class: 'unit' },
-          spacedUnit(parameter.unit).trim() || 'a pure number',
-          note !== null && ` · ${note}`,
-        ),
-        smallText(remark(name)),
-      ),
+    const figure = keyFigure(
+      [wordsOf(name), symbol !== null && ' ', symbol !== null && symbolElement(symbol)],
+      plusMinus(parameter.estimate, parameter.std_error),
+      [spacedUnit(parameter.unit).trim() || 'a pure number', note !== null && ` · ${note}`],
+      smallText(remark(name)),
     );
+    figure.dataset.parameter = name;
+    box.append(figure);
   }
   return box;
 }

@@ -42,6 +42,7 @@ function content(result: Result, series: Series | null, command: Command | null)
   const report = makeReport(result, series, command);
   const { data, fits, comparison } = result;
   return {
+    kind: 'Pendulum report',
     title: fileName(data.path),
     heading: fileName(data.path),
     facts: `${data.used_samples} of ${data.samples} samples · ${significant(data.duration_s, 4)} s · ${significant(data.sample_rate_hz, 4)} Hz`,

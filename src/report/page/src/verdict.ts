@@ -31,7 +31,7 @@ export function recommendation({ result }: Report): HTMLElement | null {
   return el('p', { class: 'recommendation' }, el('strong', {}, label), ` ${sentence(comparison.reason ?? '')}`);
 }
 
-export function warnings({ warnings: list }: Result): HTMLElement | null {
+export function warnings({ warnings: list }: Pick<Result, 'warnings'>): HTMLElement | null {
   if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
   const items = el('ul', { class: 'warnings' });
   for (const { code, message } of list) {

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "pendulum/base/status.h"
+#include "pendulum/batch/run_options.h"
 #include "pendulum/fitting/fit_swing.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/report/run_report.h"
-#include "tools/fit_pendulum_options.h"
 
 namespace pendulum {
 
@@ -22,8 +22,12 @@ struct ReadSwings {
   RunReport common;          ///< What the reports of all its swings say.
 };
 
-/// `rig` wins over what the recording says of its rig.
-Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig);
+/// Repairs a recording that was read and finds its swings; `rig` wins over what the recording says of its rig. Errors
+/// as ParseRig and ChooseSwings.
+Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig);
+
+/// The same from a file. Errors as ReadRecording too.
+Result<ReadSwings> ReadOne(const RunOptions& options, const std::string& path, std::optional<Rig> rig);
 
 /// The error of one among several runs, which names its recording and, unless 0, its release.
 tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release);

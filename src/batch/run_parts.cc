@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/run_parts.h"
+#include "pendulum/batch/run_parts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -14,25 +14,29 @@
 
 namespace pendulum {
 
-Result<ReadSwings> ReadOne(const FitPendulumOptions& options, const std::string& path, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, options.read);
-  if (!read) return tl::unexpected(read.error());
-  if (!rig && !read->rig_json.empty()) {
-    auto own = ParseRig(read->rig_json, read->path + ": # rig");
+Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig) {
+  if (!rig && !read.rig_json.empty()) {
+    auto own = ParseRig(read.rig_json, read.path + ": # rig");
     if (!own) return tl::unexpected(own.error());
     rig = *std::move(own);
   }
   ReadSwings one;
-  one.samples = read->size();
+  one.samples = read.size();
   // Readings far apart in time do not resemble their neighbours, which repairs rest on.
-  one.recording = IsUndersampled(*read, rig) ? *std::move(read) : RepairValues(*std::move(read));
-  auto swings = ChooseSwings(one.recording, options.swing, rig);
+  one.recording = IsUndersampled(read, rig) ? std::move(read) : RepairValues(std::move(read));
+  auto swings = ChooseSwings(one.recording, choice, rig);
   if (!swings) return tl::unexpected(swings.error());
   one.swings = *std::move(swings);
   one.common.rig = std::move(rig);
   one.common.warnings = std::exchange(one.recording.warnings, {});
   if (one.recording.calibration) one.common.calibration = one.recording.calibration->source;
   return one;
+}
+
+Result<ReadSwings> ReadOne(const RunOptions& options, const std::string& path, std::optional<Rig> rig) {
+  auto read = ReadRecording(path, options.read);
+  if (!read) return tl::unexpected(read.error());
+  return FindSwings(*std::move(read), options.swing, std::move(rig));
 }
 
 tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {

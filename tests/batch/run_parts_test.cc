@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/run_parts.h"
+#include "pendulum/batch/run_parts.h"
 
 #include <filesystem>
 #include <fstream>
@@ -47,9 +47,7 @@ class ReadOneTest : public testing::Test {
 
   Result<ReadSwings> Read(const std::string& line, const std::optional<Rig>& rig = std::nullopt) const {
     std::ofstream(path_) << line << '\n' << std::ifstream("datasets/runs_1.csv").rdbuf();
-    FitPendulumFlags flags;
-    flags.data = path_;
-    return ReadOne(*MakeFitPendulumOptions(flags), path_, rig);
+    return ReadOne({}, path_, rig);
   }
 
   const std::string path_ = testing::TempDir() + "run_parts_test_" + std::to_string(getpid()) + ".csv";

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash
+#
+# What refit_slurm, refit_parallel and refit_task have in common; they source it.
+
+# What the user chooses, and the defaults; refit_slurm and refit_parallel add what is theirs.
+declare -A option=(["manifest"]='' ["models"]='' ["store"]='' ["shards"]='' ["dir"]='' ["all"]=false)
+
+# refuse CODE SENTENCE
+refuse() {
+  echo "${0##*/}: $2." >&2
+  exit "$1"
+}
+
+# Reads --name value, --name=value and --all into option[name], which has the default of every name there is, and what
+# stands behind -- into tool_flags: parse_options "$@"
+parse_options() {
+  local name
+  tool_flags=()
+  while (($# > 0)); do
+    case $1 in
+      --help | -h)
+        sed -n '4,/^set /{/^set /d; s/^# \?//; p}' "$0"
+        exit 0
+        ;;
+      --)
+        tool_flags=("${@:2}")
+        return
+        ;;
+      --*) name=${1#--} name=${name%%=*} ;;
+      *) refuse 2 "'$1' belongs to no option" ;;
+    esac
+    [[ " ${!option[*]} " == *" $name "* ]] || refuse 2 "there is no option '--$name'; --help names those there are"
+    if [[ $1 == --all ]]; then
+      option["all"]=true
+      shift
+    elif [[ $1 == *=* ]]; then
+      option["$name"]=${1#*=}
+      shift
+    else
+      (($# > 1)) || refuse 2 "$1 is without its value"
+      option["$name"]=$2
+      shift 2
+    fi
+  done
+}
+
+# require_counts NAME...: these options are whole numbers from 1.
+require_counts() {
+  local name
+  for name in "$@"; do
+    [[ ${option[$name]} =~ ^[1-9][0-9]{0,5}$ ]] || refuse 2 "--$name is '${option[$name]}'; it is a whole number from 1"
+  done
+}
+
+# What can be wrong with the request itself; the paths in it become absolute ones.
+check_request() {
+  local name flag
+  for name in manifest models store shards; do
+    [[ -n ${option[$name]} ]] || refuse 2 "--$name is missing"
+  done
+  [[ ${option[all]} == true || ${option[all]} == false ]] || refuse 2 "--all takes no value"
+  require_counts shards cpus
+  for flag in "${tool_flags[@]}"; do
+    case $flag in
+      --data | --data=* | --force* | --manifest* | --model* | --scratch* | --shard* | --store* | --threads*)
+        refuse 2 "$flag stands behind --, but is not for you to give there"
+        ;;
+    esac
+  done
+  option["dir"]=${option[dir]:-${option[store]}.shards}
+  for name in manifest store dir; do
+    # Not realpath: another node may have the same folder behind another link.
+    [[ ${option[$name]} == /* ]] || option["$name"]=$PWD/${option[$name]}
+  done
+  [[ -f ${option[manifest]} && -r ${option[manifest]} ]] || refuse 3 "${option[manifest]} cannot be read; check the path"
+  [[ -d ${option[store]%/*}/ ]] || refuse 73 "${option[store]} cannot be written; there is no such folder"
+  mkdir -p -- "${option[dir]}/logs" 2> /dev/null || refuse 73 "${option[dir]} cannot be made; check the path and its permissions"
+}
+
+# Sets tool to refit_pendulums: what REFIT_PENDULUMS says, what these scripts came with or stand beside the build of, or
+# that of PATH.
+find_tool() {
+  local here candidate
+  here=$(dirname -- "${BASH_SOURCE[0]}")
+  for candidate in "${REFIT_PENDULUMS:-$here/../bin/refit_pendulums}" "$here"/../../{bin,build/release/bin}/refit_pendulums \
+    "$(command -v refit_pendulums || true)"; do
+    if [[ -f $candidate && -x $candidate ]]; then
+      tool=$(cd -- "$(dirname -- "$candidate")" && pwd)/${candidate##*/}
+      return
+    fi
+    [[ -z ${REFIT_PENDULUMS:-} ]] || refuse 69 "REFIT_PENDULUMS is '$REFIT_PENDULUMS', which is no program"
+  done
+  refuse 69 "there is no refit_pendulums beside this script nor on PATH; let REFIT_PENDULUMS name it"
+}
+
+# What was fitted for another request, or is to be looked at again (--all), is no result any more, but a task begins with
+# it and keeps what is as it should be. Not for shards of another number: missing refuses these before.
+set_aside_other_shards() {
+  local file=${option[dir]}/request request shard
+  request=$("$tool" --version && sha256sum < "${option[manifest]}" && printf '%q ' "${option[models]}" "${tool_flags[@]}")
+  if [[ ${option[all]} == true || ! -f $file || $(< "$file") != "$request" ]]; then
+    for shard in "${option[dir]}"/shard-*.sqlite; do
+      if [[ -f $shard ]]; then mv -- "$shard" "$shard.part"; fi
+    done
+  fi
+  printf '%s\n' "$request" > "$file"
+}
+
+# Sets missing to the shards that are not there yet, as in 3,17-20; nothing when all are.
+find_missing() {
+  local list
+  list=$("$tool" missing --shard_dir "${option[dir]}" --shard_count "${option[shards]}")
+  # shellcheck disable=SC2034  # the scripts that source this read it
+  missing=$(awk -v RS='[,\n]' '
+    function flush() {
+      if (first == "") return
+      printf "%s%s", separator, first == last ? first : first "-" last
+      separator = ","
+    }
+    first != "" && $1 == last + 1 { last = $1; next }
+    { flush(); first = last = $1 }
+    END { flush() }' <<< "$list")
+}
+
+# Sets missing to the shards that this request has to be given a task for.
+find_work() {
+  find_missing
+  set_aside_other_shards
+  find_missing
+}
+
+# run_to_end COMMAND...: runs it, hands SIGTERM and Ctrl-C on to it and waits for it all the same. The exit code is the
+# command's, or 75, try again, when the signal found it before it could heed it.
+run_to_end() {
+  local process='' stopped=false code=0
+  trap 'stopped=true; if [[ -n $process ]]; then kill -TERM "$process" 2> /dev/null || true; fi' TERM INT
+  "$@" &
+  process=$!
+  if $stopped; then kill -TERM "$process"; fi
+  wait "$process" || code=$?
+  # A signal ends the wait, not the command.
+  while kill -0 "$process" 2> /dev/null; do
+    code=0
+    wait "$process" || code=$?
+  done
+  trap - TERM INT
+  if $stopped && ((code > 128)); then code=75; fi
+  return "$code"
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/compare_stores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "batch/sqlite.h"
+
+namespace pendulum {
+namespace {
+
+constexpr const char* kFits = R"sql(
+SELECT id, mine.model, mine.status, theirs.status
+  FROM main.runs JOIN other.runs AS their_runs USING(id)
+  JOIN main.fits AS mine ON mine.run = main.runs.run
+  JOIN other.fits AS theirs ON theirs.run = their_runs.run AND theirs.model = mine.model
+  ORDER BY main.runs.position, id, mine.model)sql";
+
+constexpr const char* kParameters = R"sql(
+SELECT id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, mine.std_error, theirs.std_error, theirs.unit
+  FROM main.runs JOIN other.runs AS their_runs USING(id)
+  JOIN main.quantities AS mine ON mine.run = main.runs.run
+  JOIN other.quantities AS theirs
+    ON theirs.run = their_runs.run AND theirs.model = mine.model AND theirs.name = mine.name
+  WHERE mine.derived = 0)sql";
+
+std::int64_t CountOf(SQLite::Database& database, const std::string& schema) {
+  return database.execAndGet("SELECT count(*) FROM " + schema + ".fits").getInt64();
+}
+
+std::vector<std::string> CpusOf(SQLite::Database& database, const std::string& schema) {
+  SQLite::Statement cpus(database, "SELECT DISTINCT cpu FROM " + schema + ".runs WHERE cpu IS NOT NULL ORDER BY cpu");
+  std::vector<std::string> list;
+  while (cpus.executeStep()) list.push_back(sqlite::Text(cpus, 0));
+  return list;
+}
+
+void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
+  SQLite::Statement fits(database, kFits);
+  while (fits.executeStep()) {
+    ++comparison.fits;
+    ChangedStatus status{sqlite::Text(fits, 0), sqlite::Text(fits, 1), sqlite::Text(fits, 2), sqlite::Text(fits, 3)};
+    if (status.before == status.after) continue;
+    if (comparison.changed_status++ < StoreComparison::kMostListed) comparison.status_changes.push_back(status);
+  }
+  comparison.only_before = CountOf(database, "main") - comparison.fits;
+  comparison.only_after = CountOf(database, "other") - comparison.fits;
+  comparison.other_data = database
+                              .execAndGet(
+                                  "SELECT count(*) FROM main.runs AS a JOIN other.runs AS b USING(id) "
+                                  "WHERE a.data_sha256 <> b.data_sha256")
+                              .getInt64();
+}
+
+/// Keeps the largest at the front of a heap whose top is the smallest.
+void Keep(MovedParameter moved, std::vector<MovedParameter>& most) {
+  const auto more = [](const MovedParameter& a, const MovedParameter& b) { return a.errors > b.errors; };
+  most.push_back(std::move(moved));
+  std::ranges::push_heap(most, more);
+  if (most.size() <= static_cast<std::size_t>(StoreComparison::kMostListed)) return;
+  std::ranges::pop_heap(most, more);
+  most.pop_back();
+}
+
+void CompareParameter(const SQLite::Statement& row, StoreComparison& comparison) {
+  const SQLite::Column before = row.getColumn(4), after = row.getColumn(5);
+  const SQLite::Column error_before = row.getColumn(6), error_after = row.getColumn(7);
+  const auto same = [](const SQLite::Column& a, const SQLite::Column& b) {
+    return a.isNull() == b.isNull() && a.getDouble() == b.getDouble();
+  };
+  if (same(before, after) && same(error_before, error_after)) {
+    ++comparison.identical;
+    return;
+  }
+  if (sqlite::Text(row, 3) != sqlite::Text(row, 8)) {  // with a rig, and without
+    ++comparison.without_error;
+    return;
+  }
+  const double error = std::min(error_before.getDouble(), error_after.getDouble());
+  if (before.isNull() || after.isNull() || error_before.isNull() || error_after.isNull() || !(error > 0)) {
+    ++comparison.without_error;
+    return;
+  }
+  const double moved = std::max(std::abs(after.getDouble() - before.getDouble()),
+                                std::abs(error_after.getDouble() - error_before.getDouble())) /
+                       error;
+  if (moved <= 1) {
+    ++(moved <= StoreComparison::kRounding ? comparison.rounding : comparison.within_errors);
+    return;
+  }
+  ++comparison.moved;
+  Keep({sqlite::Text(row, 0), sqlite::Text(row, 1), sqlite::Text(row, 2), sqlite::Text(row, 3), before.getDouble(),
+        after.getDouble(), moved},
+       comparison.most_moved);
+}
+
+}  // namespace
+
+Result<StoreComparison> CompareStores(Store& before, Store& after) {
+  return sqlite::Guard(before.name(), [&]() -> Result<StoreComparison> {
+    SQLite::Database& database = before.database();
+    SQLite::Statement attach(database, "ATTACH ? AS other");
+    sqlite::Bind(attach, sqlite::FileName(after.name())).exec();
+    StoreComparison comparison;
+    CompareFits(database, comparison);
+    {
+      SQLite::Statement parameters(database, kParameters);
+      while (parameters.executeStep()) CompareParameter(parameters, comparison);
+    }
+    std::ranges::sort(comparison.most_moved, std::greater(), &MovedParameter::errors);
+    comparison.cpus_before = CpusOf(database, "main");
+    comparison.cpus_after = CpusOf(database, "other");
+    database.exec("DETACH other");
+    return comparison;
+  });
+}
+
+}  // namespace pendulum

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/export.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <csv.h>
+#include <nlohmann/json.hpp>
+
+#include "batch/sqlite.h"
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// Columns of this query: 0 id, 1 path, 2 rig, 3 calibration, 4 from_s, 5 to_s, 6 models, 7 columns, 8 exit_code, 9
+/// reason, 10 result.
+constexpr const char* kRuns = R"sql(
+SELECT id, path, rig, calibration, from_s, to_s, models, columns, exit_code, reason, result
+  FROM runs WHERE exit_code IS NOT NULL ORDER BY position, id)sql";
+
+/// What the manifest says of a run, columns that were left out apart.
+Json ManifestJson(const SQLite::Statement& row) {
+  Json json = {{"path", sqlite::Text(row, 1)}};
+  constexpr std::array<std::pair<int, const char*>, 3> kTexts = {{{2, "rig"}, {3, "calibration"}, {6, "models"}}};
+  for (const auto& [column, name] : kTexts) {
+    if (const std::string text = sqlite::Text(row, column); !text.empty()) json[name] = text;
+  }
+  if (!row.getColumn(4).isNull()) json["from_s"] = row.getColumn(4).getDouble();
+  if (!row.getColumn(5).isNull()) json["to_s"] = row.getColumn(5).getDouble();
+  json.update(Json::parse(sqlite::Text(row, 7)));
+  return json;
+}
+
+std::string JsonLine(const SQLite::Statement& row) {
+  std::string line =
+      "{\"id\":" + Dump(sqlite::Text(row, 0)) + ",\"manifest\":" + Dump(ManifestJson(row)) + ",\"result\":";
+  if (!row.getColumn(10).isNull()) return line + sqlite::Text(row, 10) + "}\n";
+  const Json error = {{"exit_code", row.getColumn(8).getInt()}, {"message", sqlite::Text(row, 9)}};
+  return line + "null,\"error\":" + Dump(error) + "}\n";
+}
+
+/// Statistics of table fits, which need no word of explanation beside their names.
+constexpr std::array<const char*, 18> kStatistics = {
+    "status",       "reason",     "used_samples", "effective_samples", "residual_unit",
+    "rms_residual", "sigma",      "noise_model",  "lag1_correlation",  "log_likelihood",
+    "aic",          "aicc",       "bic",          "durbin_watson",     "ljung_box_p",
+    "runs_p",       "iterations", "evaluations"};
+
+/// Members of table quantities; the first stands under the quantity's own name.
+constexpr std::array<const char*, 6> kMembers = {"estimate", "std_error", "lower95", "upper95", "systematic_std_error",
+                                                 "unit"};
+
+/// A value of a row as a field: text as it is, numbers as the shortest text that reads back.
+std::string FieldOf(const SQLite::Column& value) {
+  if (value.isNull()) return "";
+  if (value.isFloat()) return NumberText(value.getDouble());
+  return CsvField(value.getString());
+}
+
+/// The CSV table of a store.
+class CsvTable {
+ public:
+  explicit CsvTable(SQLite::Database& database) : database_(database), members_(database, MembersQuery()) {
+    SQLite::Statement names(database, "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key");
+    while (names.executeStep()) columns_.push_back(sqlite::Text(names, 0));
+    SQLite::Statement quantities(database, "SELECT name FROM quantities GROUP BY name ORDER BY min(derived), name");
+    while (quantities.executeStep()) quantities_.push_back(sqlite::Text(quantities, 0));
+  }
+
+  std::string Header() const {
+    std::vector<std::string> ours = {"id", "path", "model", "recommended"};
+    ours.insert(ours.end(), kStatistics.begin(), kStatistics.end());
+    for (const std::string& name : quantities_) {
+      for (const char* member : kMembers) ours.push_back(NameOf(name, member));
+    }
+    std::string line = "id,path";
+    for (const std::string& name : columns_) {
+      const bool taken = std::ranges::find(ours, name) != ours.end();
+      line += "," + CsvField(taken ? "manifest_" + name : name);
+    }
+    for (std::size_t i = 2; i < ours.size(); ++i) line += "," + CsvField(ours[i]);
+    return line + "\n";
+  }
+
+  /// Rows of all fits.
+  Result<void> Rows(const TakeText& take) {
+    std::string query = "SELECT fits.run, id, path, columns, fits.model, recommended = fits.model";
+    for (const char* name : kStatistics) query += std::string(", fits.") + name;
+    SQLite::Statement fits(database_, query + " FROM runs JOIN fits USING(run) ORDER BY position, id, fits.model");
+    while (fits.executeStep()) {
+      if (auto taken = take(Row(fits)); !taken) return taken;
+    }
+    return {};
+  }
+
+ private:
+  static std::string NameOf(const std::string& quantity, const std::string& member) {
+    return member == kMembers.front() ? quantity : quantity + "_" + member;
+  }
+
+  static std::string MembersQuery() {
+    std::string query = "SELECT name";
+    for (const char* member : kMembers) query += std::string(", ") + member;
+    return query + " FROM quantities WHERE run = ? AND model = ?";
+  }
+
+  std::string Row(const SQLite::Statement& fit) {
+    std::string line = FieldOf(fit.getColumn(1)) + "," + FieldOf(fit.getColumn(2));
+    const Json columns = Json::parse(sqlite::Text(fit, 3));
+    for (const std::string& name : columns_) {
+      const auto found = columns.find(name);
+      line += "," + (found == columns.end() ? "" : CsvField(found->get<std::string>()));
+    }
+    constexpr int kFirst = 4;
+    for (int i = kFirst; i < fit.getColumnCount(); ++i) line += "," + FieldOf(fit.getColumn(i));
+    return line + Quantities(fit.getColumn(0).getInt64(), sqlite::Text(fit, kFirst)) + "\n";
+  }
+
+  std::string Quantities(std::int64_t run, const std::string& model) {
+    std::map<std::string, std::string> fields;
+    sqlite::Bind(members_, run, model);
+    while (members_.executeStep()) {
+      std::string& list = fields[sqlite::Text(members_, 0)];
+      for (int i = 1; i < members_.getColumnCount(); ++i) list += "," + FieldOf(members_.getColumn(i));
+    }
+    std::string line;
+    for (const std::string& name : quantities_) {
+      const auto found = fields.find(name);
+      line += found == fields.end() ? std::string(kMembers.size(), ',') : found->second;
+    }
+    return line;
+  }
+
+  SQLite::Database& database_;
+  SQLite::Statement members_;
+  std::vector<std::string> columns_, quantities_;
+};
+
+}  // namespace
+
+std::string CsvField(std::string_view text) {
+  if (text.find_first_of("\",;\t\r\n") == std::string_view::npos && !text.starts_with(' ') && !text.ends_with(' ')) {
+    return std::string(text);
+  }
+  std::string field(2 * text.size() + 2, '\0');  // as csv_write asks for
+  field.resize(csv_write(field.data(), field.size(), text.data(), text.size()));
+  return field;
+}
+
+Result<void> ExportJsonLines(Store& store, const TakeText& take) {
+  return sqlite::Guard(store.name(), [&]() -> Result<void> {
+    SQLite::Statement runs(store.database(), kRuns);
+    while (runs.executeStep()) {
+      if (auto taken = take(JsonLine(runs)); !taken) return taken;
+    }
+    return {};
+  });
+}
+
+Result<void> ExportCsv(Store& store, const TakeText& take) {
+  return sqlite::Guard(store.name(), [&]() -> Result<void> {
+    CsvTable table(store.database());
+    if (auto taken = take(table.Header()); !taken) return taken;
+    return table.Rows(take);
+  });
+}
+
+}  // namespace pendulum

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/find_recordings.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include <fnmatch.h>
+
+namespace pendulum {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAnyFolders = "**";
+
+bool IsPattern(const std::string& part) { return part.find_first_of("*?[") != std::string::npos; }
+
+bool IsLike(const std::string& name, const std::string& part) {
+  return ::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0;
+}
+
+/// Puts what `parts` stand for in `folder` behind `found`, in the order of names. What cannot be looked into is empty.
+void Find(const fs::path& folder, std::span<const std::string> parts, std::vector<std::string>& found) {
+  std::error_code error;
+  if (parts.front() == kAnyFolders) Find(folder, parts.subspan(1), found);  // no folder at all
+  std::vector<fs::directory_entry> entries;
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
+    entries.push_back(*at);
+  }
+  std::ranges::sort(entries, {}, [](const fs::directory_entry& entry) { return entry.path().filename(); });
+  for (const fs::directory_entry& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    const bool any = parts.front() == kAnyFolders;
+    if (any ? name.starts_with('.') : !IsLike(name, parts.front())) continue;
+    const bool last = parts.size() == 1;
+    if (last && !any) {
+      if (!entry.is_directory(error)) found.push_back((folder / name).string());
+    } else if (entry.is_directory(error) && !entry.is_symlink(error)) {
+      Find(folder / name, any ? parts : parts.subspan(1), found);
+    }
+  }
+}
+
+/// Cuts a path into the folder before its first pattern, followed as it is, and the parts from there on.
+std::pair<fs::path, std::vector<std::string>> Cut(const fs::path& path) {
+  fs::path folder;
+  std::vector<std::string> parts;
+  for (const fs::path& part : path) {
+    if (parts.empty() && !IsPattern(part.string())) {
+      folder /= part;
+    } else if (!part.empty()) {
+      parts.push_back(part.string());
+    }
+  }
+  return {folder, parts};
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
+  std::error_code error;
+  std::vector<std::string> found;
+  std::string what = "there is no such file or folder";
+  if (fs::is_directory(pattern, error)) {
+    Find(pattern, std::vector<std::string>{kAnyFolders, "*.csv"}, found);
+    what = "there is no *.csv file in this folder or below it";
+  } else if (fs::exists(pattern, error)) {
+    found.push_back(pattern);
+  } else if (IsPattern(pattern)) {
+    auto [folder, parts] = Cut(pattern);
+    if (parts.back() == kAnyFolders) parts.emplace_back("*");
+    Find(folder, parts, found);
+    what = "no file is like this pattern";
+  }
+  std::ranges::sort(found);
+  found.erase(std::unique(found.begin(), found.end()), found.end());  // two ** may meet in one file
+  if (!found.empty()) return found;
+  return Error(StatusCode::kNotFound, pattern + ": " + what + "; check the path");
+}
+
+}  // namespace pendulum

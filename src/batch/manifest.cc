@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/manifest.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <csv.h>
+#include <nlohmann/json.hpp>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/line_reader.h"
+
+namespace pendulum {
+namespace {
+
+/// A row of fields, and the line it began on.
+struct Row {
+  std::vector<std::string> fields;
+  std::size_t line = 0;
+};
+
+/// Rows of CSV text, by libcsv, which is given one line at a time so that a row knows its line.
+class CsvRows {
+ public:
+  explicit CsvRows(InputFile file) : lines_(std::move(file)) {
+    csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
+  }
+  CsvRows(CsvRows&&) = delete;
+  CsvRows(const CsvRows&) = delete;
+  CsvRows& operator=(CsvRows&&) = delete;
+  CsvRows& operator=(const CsvRows&) = delete;
+  ~CsvRows() { csv_free(&parser_); }
+
+  const std::string& name() const { return lines_.name(); }
+
+  /// The next row that is not blank; false at the end.
+  Result<bool> Next(Row& row) {
+    row_.fields.clear();
+    complete_ = false;
+    row_bytes_ = 0;
+    row_.line = lines_.number() + 1;
+    while (!complete_) {
+      const Result<bool> next = lines_.Next();
+      if (!next) return tl::unexpected(next.error());
+      if (!*next) return AtEnd();
+      if (lines_.number() == 1) ChooseDelimiter(lines_.line());
+      if (!Parse(lines_.line()) || !Parse("\n")) return Unreadable();
+      if (row_bytes_ > kLongestRow) return TooLong();
+      if (!complete_ && row_.fields.empty() && !in_quotes()) {
+        row_.line = lines_.number() + 1;
+        row_bytes_ = 0;
+      }
+    }
+    std::swap(row, row_);
+    return true;
+  }
+
+ private:
+  /// The first separator outside of quotes.
+  void ChooseDelimiter(std::string_view header) {
+    bool quoted = false;
+    for (const char c : header) {
+      if (c == '"') quoted = !quoted;
+      if (quoted || (c != ',' && c != ';' && c != '\t')) continue;
+      csv_set_delim(&parser_, static_cast<unsigned char>(c));
+      return;
+    }
+  }
+
+  bool Parse(std::string_view text) {
+    row_bytes_ += text.size();
+    for (const char c : text) {
+      if (c == '"') quotes_ += 1;
+    }
+    const auto take_field = [](void* field, std::size_t size, void* self) {
+      static_cast<CsvRows*>(self)->row_.fields.emplace_back(static_cast<const char*>(field), size);
+    };
+    const auto end_row = [](int, void* self) { static_cast<CsvRows*>(self)->complete_ = true; };
+    return csv_parse(&parser_, text.data(), text.size(), take_field, end_row, this) == text.size();
+  }
+
+  bool in_quotes() const { return quotes_ % 2 == 1; }
+
+  Result<bool> AtEnd() {
+    if (!in_quotes()) return false;
+    return Fault(name() + ":" + std::to_string(row_.line),
+                 "a field begins with a double quote that is never closed; close it, or write a quote that belongs to "
+                 "the text twice");
+  }
+
+  Result<bool> TooLong() const {
+    return Fault(name() + ":" + std::to_string(row_.line),
+                 "the row that begins here is longer than 16 MiB; is a double quote not closed?");
+  }
+
+  Result<bool> Unreadable() {
+    return Fault(name() + ":" + std::to_string(lines_.number()),
+                 "a double quote stands inside a field; put the whole field in quotes and write its own quotes twice");
+  }
+
+  static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
+
+  LineReader lines_;
+  csv_parser parser_{};
+  Row row_;
+  std::size_t quotes_ = 0, row_bytes_ = 0;
+  bool complete_ = false;
+};
+
+/// What an entry takes from a column of this name; other columns are carried through.
+constexpr std::array<std::string_view, 7> kColumns = {"path", "id", "rig", "calibration", "from_s", "to_s", "models"};
+
+/// The header, and the entries of the rows below it.
+class Header {
+ public:
+  static Result<Header> Make(const std::string& file, Row row) {
+    Header header(file, std::move(row.fields));
+    const std::string where = file + ":" + std::to_string(row.line);
+    for (std::size_t i = 0; i < header.names_.size(); ++i) {
+      const std::string& name = header.names_[i];
+      if (std::ranges::count(header.names_, name) > 1) {
+        return Fault(where, "the header has the column " + Quoted(name) + " twice; rename one of them");
+      }
+    }
+    if (std::ranges::find(header.names_, "path") == header.names_.end()) {
+      return Fault(where, "the header has no column path, only " + Quoted(NameList(header.names_)) +
+                              "; the column path names the recordings");
+    }
+    return header;
+  }
+
+  Result<ManifestEntry> Entry(const Row& row, std::int64_t position) const {
+    const std::string where = file_ + ":" + std::to_string(row.line);
+    if (row.fields.size() != names_.size()) {
+      return Fault(where, "the row has " + std::to_string(row.fields.size()) + " fields, the header " +
+                              std::to_string(names_.size()) + "; a field with a separator in it stands in quotes");
+    }
+    ManifestEntry entry;
+    entry.position = position;
+    entry.place = where;
+    nlohmann::ordered_json columns = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const auto* const known = std::ranges::find(kColumns, names_[i]);
+      if (known == kColumns.end()) {
+        columns[names_[i]] = row.fields[i];
+      } else if (const auto taken = Take(*known, row.fields[i], entry); !taken) {
+        return Fault(where + ": column " + names_[i], taken.error().message);
+      }
+    }
+    if (entry.id.empty()) entry.id = entry.path;
+    entry.columns = columns.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    if (entry.from && entry.to && *entry.from >= *entry.to) {
+      return Fault(where, "from_s " + NumberText(*entry.from) + " does not lie before to_s " + NumberText(*entry.to));
+    }
+    return entry;
+  }
+
+ private:
+  Header(std::string file, std::vector<std::string> names) : file_(std::move(file)), names_(std::move(names)) {}
+
+  static Result<void> TakeTime(const std::string& field, std::optional<double>& time) {
+    if (field.empty()) return {};
+    double number = 0;
+    const char* end = field.data() + field.size();
+    const auto [rest, error] = std::from_chars(field.data(), end, number);
+    if (error != std::errc() || rest != end || !std::isfinite(number)) {
+      return Error(StatusCode::kDataLoss, Quoted(field) + " is not a time in seconds on the file's clock");
+    }
+    time = number;
+    return {};
+  }
+
+  static Result<void> Take(std::string_view column, const std::string& field, ManifestEntry& entry) {
+    if (column == "path" && field.empty()) {
+      return Error(StatusCode::kDataLoss, "it is empty; name a recording or delete the row");
+    }
+    if (column == "path") entry.path = field;
+    if (column == "id") entry.id = field;
+    if (column == "rig") entry.rig = field;
+    if (column == "calibration") entry.calibration = field;
+    if (column == "models") {
+      entry.models = field;
+      if (const auto models = FindMotionModels(field); !field.empty() && !models) {
+        return tl::unexpected(models.error());
+      }
+    }
+    if (column == "from_s") return TakeTime(field, entry.from);
+    if (column == "to_s") return TakeTime(field, entry.to);
+    return {};
+  }
+
+  std::string file_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+Result<void> ReadManifest(const std::filesystem::path& path, const TakeEntry& take) {
+  Result<InputFile> file = path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "manifest");
+  if (!file) return tl::unexpected(file.error());
+  CsvRows rows(*std::move(file));
+  Row row;
+  auto next = rows.Next(row);
+  if (!next) return tl::unexpected(next.error());
+  if (!*next) return Fault(rows.name(), "the manifest is empty; its first line names the columns, such as path,id");
+  const auto header = Header::Make(rows.name(), std::move(row));
+  if (!header) return tl::unexpected(header.error());
+  for (std::int64_t position = 0;; ++position) {
+    next = rows.Next(row);
+    if (!next) return tl::unexpected(next.error());
+    if (!*next) return {};
+    const auto entry = header->Entry(row, position);
+    if (!entry) return tl::unexpected(entry.error());
+    if (auto taken = take(*entry); !taken) return taken;
+  }
+}
+
+}  // namespace pendulum

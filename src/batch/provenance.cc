@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/provenance.h"
+
+#include <array>
+#include <fstream>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/base/instruction_set.h"
+#include "pendulum/report/json_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json RangesJson(const ParameterRanges& ranges) {
+  Json json = Json::object();
+  for (const auto& [name, range] : ranges) json[name] = {NumberOrNull(range.lower), NumberOrNull(range.upper)};
+  return json;
+}
+
+Json PriorsJson(const ParameterPriors& priors) {
+  Json json = Json::object();
+  for (const auto& [name, prior] : priors) json[name] = {prior.mean, prior.std_dev};
+  return json;
+}
+
+Json ReadJson(const ReadOptions& read) {
+  Json json = {{"time_column", read.time_column},
+               {"value_column", read.value_column},
+               {"unit", read.unit},
+               {"sample_rate_hz", read.sample_rate_hz}};
+  json["resolution"] = read.resolution ? Json(*read.resolution) : Json(nullptr);
+  json["range"] = read.range ? Json{read.range->low, read.range->high} : Json(nullptr);
+  return json;
+}
+
+/// Enumerations by their number: a new one is appended, or the result changes anyway.
+Json FitJson(const FitOptions& fit) {
+  return {{"gravity", fit.gravity ? Json(static_cast<int>(*fit.gravity)) : Json(nullptr)},
+          {"start", static_cast<int>(fit.start)},
+          {"fix", fit.fixed},
+          {"init", fit.initial},
+          {"bounds", RangesJson(fit.bounds)},
+          {"prior", PriorsJson(fit.priors)},
+          {"noise", static_cast<int>(fit.noise)},
+          {"loss", static_cast<int>(fit.loss)},
+          {"interval", static_cast<int>(fit.interval)},
+          {"seed", fit.seed},
+          {"max_trace_error", fit.max_trace_error},
+          {"max_iterations", fit.max_iterations},
+          {"max_traces", fit.max_traces}};
+}
+
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+}  // namespace
+
+bool Provenance::Agrees(const Provenance& other) const {
+  return data_sha256 == other.data_sha256 && rig_sha256 == other.rig_sha256 &&
+         calibration_sha256 == other.calibration_sha256 && options_sha256 == other.options_sha256 &&
+         version == other.version;
+}
+
+std::string OptionsJson(const RunOptions& options) {
+  const SwingChoice& swing = options.swing;
+  const Json json = {
+      {"models", options.models},   {"from_s", NumberOrNull(swing.from)},           {"to_s", NumberOrNull(swing.to)},
+      {"release", swing.release},   {"closed_form_only", options.closed_form_only}, {"read", ReadJson(options.read)},
+      {"fit", FitJson(options.fit)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+const std::string& CpuType() {
+  constexpr std::array<std::string_view, 3> kForms = {"baseline", "avx2", "avx512"};
+  static const std::string type =
+      ProcessorName() + " (" + std::string(kForms.at(static_cast<std::size_t>(kInstructionSet))) + ")";
+  return type;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/refit.h"
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/parallel.h"
+#include "pendulum/base/sha256.h"
+#include "pendulum/base/version.h"
+#include "pendulum/batch/fit_run.h"
+#include "pendulum/batch/provenance.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/read_recording.h"
+#include "pendulum/report/json.h"
+
+namespace pendulum {
+namespace {
+
+/// The files of a run, as far as they could be read, and what it is to be fitted with.
+struct RunInputs {
+  Result<std::string> data;
+  Result<std::optional<std::string>> rig, calibration;  ///< None where there is none.
+  std::string rig_name, calibration_name;
+  RunOptions options;
+};
+
+Result<std::optional<std::string>> ReadNamed(const Source& source, const std::string& path,
+                                             const std::optional<std::string>& otherwise) {
+  if (path.empty()) return otherwise;
+  auto bytes = source.read(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return *std::move(bytes);
+}
+
+/// What the run is asked: the batch's options, and what its entry says. Threads are for runs, not within them.
+RunOptions OptionsOf(const ManifestEntry& entry, const RunOptions& batch) {
+  RunOptions options = batch;
+  options.fit.threads = 1;
+  if (entry.from) options.swing.from = *entry.from;
+  if (entry.to) options.swing.to = *entry.to;
+  if (entry.models.empty()) return options;
+  options.models.clear();
+  const auto models = FindMotionModels(entry.models);
+  if (!models) return options;  // the manifest was checked
+  for (const MotionModel& model : *models) options.models.emplace_back(model.name);
+  options.fit.model = options.models.front();
+  return options;
+}
+
+RunInputs ReadInputs(const Source& source, const ManifestEntry& entry, const RefitOptions& options) {
+  return {source.read(entry.path),
+          ReadNamed(source, entry.rig, options.rig),
+          ReadNamed(source, entry.calibration, options.calibration),
+          entry.rig.empty() ? "--rig" : entry.rig,
+          entry.calibration.empty() ? "--calibration" : entry.calibration,
+          OptionsOf(entry, options.run)};
+}
+
+/// What stands for a file that cannot be read: while that fails alike, the run need not be tried again.
+std::string Unreadable(const Status& status) { return "unreadable: " + status.message; }
+
+Result<std::string> HashOf(const Result<std::string>& bytes) {
+  if (!bytes) return Unreadable(bytes.error());
+  return Sha256(*bytes);
+}
+
+Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
+  if (!bytes) return Unreadable(bytes.error());
+  return *bytes ? Sha256(**bytes) : std::string();
+}
+
+/// The names that result and reasons have of a run's files.
+std::string PathsOf(const ManifestEntry& entry) {
+  return nlohmann::ordered_json{entry.path, entry.rig, entry.calibration, 0}.dump(
+      -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inputs) {
+  Provenance provenance;
+  provenance.version = std::string(kVersion);
+  provenance.cpu = CpuType();
+  const auto set = [](Result<std::string> hash, std::string& text) -> Result<void> {
+    if (!hash) return tl::unexpected(hash.error());
+    text = *std::move(hash);
+    return {};
+  };
+  auto done = set(HashOf(inputs.data), provenance.data_sha256);
+  if (done) done = set(HashOf(inputs.rig), provenance.rig_sha256);
+  if (done) done = set(HashOf(inputs.calibration), provenance.calibration_sha256);
+  if (done) done = set(Sha256(OptionsJson(inputs.options) + PathsOf(entry)), provenance.options_sha256);
+  if (!done) return tl::unexpected(done.error());
+  return provenance;
+}
+
+/// Reads and fits as fit_pendulum does, from bytes that were read.
+Result<FitRun> FitInputs(const ManifestEntry& entry, RunInputs& inputs) {
+  if (!inputs.data) return tl::unexpected(inputs.data.error());
+  if (!inputs.rig) return tl::unexpected(inputs.rig.error());
+  if (!inputs.calibration) return tl::unexpected(inputs.calibration.error());
+  std::optional<Rig> rig;
+  if (*inputs.rig) {
+    auto parsed = ParseRig(**inputs.rig, inputs.rig_name);
+    if (!parsed) return tl::unexpected(parsed.error());
+    rig = *std::move(parsed);
+  }
+  if (*inputs.calibration) {
+    auto parsed = ParseCalibration(**inputs.calibration, inputs.calibration_name);
+    if (!parsed) return tl::unexpected(parsed.error());
+    inputs.options.read.calibration = *std::move(parsed);
+  }
+  auto recording = ParseRecording(*inputs.data, entry.path, inputs.options.read);
+  if (!recording) return tl::unexpected(recording.error());
+  inputs.data->clear();
+  inputs.data->shrink_to_fit();
+  auto swings = FindSwings(*std::move(recording), inputs.options.swing, std::move(rig));
+  if (!swings) return tl::unexpected(swings.error());
+  return std::move(FitRuns(inputs.options, *std::move(swings)).front());
+}
+
+RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance) {
+  RunOutcome outcome;
+  outcome.provenance = std::move(provenance);
+  outcome.models = inputs.options.models;
+  const Result<FitRun> run = FitInputs(entry, inputs);
+  if (run) {
+    outcome.exit_code = ExitCodeOf(*run);
+    outcome.result = ToJson(run->report);
+  } else {
+    outcome.exit_code = ExitCode(run.error().code);
+    outcome.reason = run.error().message;
+  }
+  return outcome;
+}
+
+RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, const Status& status) {
+  RunOutcome outcome;
+  outcome.models = OptionsOf(entry, options.run).models;
+  outcome.exit_code = ExitCode(status.code);
+  outcome.reason = status.message;
+  return outcome;
+}
+
+/// The refit of a batch by several threads, which take runs from the store and put their outcomes into it.
+class Refitter {
+ public:
+  Refitter(const Source& source, Store& store, const RefitOptions& options, RefitCounts& counts)
+      : source_(source), store_(store), options_(options), counts_(counts) {}
+
+  /// What each thread does.
+  void Work() {
+    while (std::optional<StoredRun> run = Take()) {
+      const std::optional<RunOutcome> outcome = TryOne(*run);
+      Done(*run, outcome ? &*outcome : nullptr);
+    }
+  }
+
+  /// What ended it, if anything did.
+  const std::optional<Status>& error() const { return error_; }
+
+ private:
+  static constexpr int kPage = 256;
+  static constexpr std::chrono::seconds kCommitInterval{1};
+
+  /// What comes of a run; nothing of one that is current.
+  std::optional<RunOutcome> One(const StoredRun& run) const {
+    RunInputs inputs = ReadInputs(source_, run.entry, options_);
+    auto provenance = ProvenanceOf(run.entry, inputs);
+    if (!provenance) return Failure(run.entry, options_, provenance.error());
+    if (IsCurrent(run, *provenance)) return std::nullopt;
+    return OutcomeOf(run.entry, inputs, *std::move(provenance));
+  }
+
+  /// The same; an exception, which is our bug or the memory's end, costs this run only, and this time only.
+  std::optional<RunOutcome> TryOne(const StoredRun& run) const {
+    try {
+      return One(run);
+    } catch (const std::exception& error) {
+      return Failure(run.entry, options_, {StatusCode::kInternal, std::string("internal error: ") + error.what()});
+    }
+  }
+
+  bool IsStopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  bool IsCurrent(const StoredRun& run, const Provenance& provenance) const {
+    if (!run.exit_code || options_.force || *run.exit_code == ExitCode(StatusCode::kInternal) ||
+        (options_.retry_failed && *run.exit_code > 1))
+      return false;
+    return run.provenance.Agrees(provenance);
+  }
+
+  std::optional<StoredRun> Take() {
+    const std::scoped_lock lock(mutex_);
+    if (error_ || IsStopped()) return std::nullopt;
+    if (page_.empty() && !at_end_) {
+      auto next = store_.Next(position_, kPage);
+      if (!next) {
+        error_ = next.error();
+        return std::nullopt;
+      }
+      page_.assign(std::make_move_iterator(next->begin()), std::make_move_iterator(next->end()));
+      at_end_ = page_.empty();
+    }
+    if (page_.empty()) return std::nullopt;
+    StoredRun run = std::move(page_.front());
+    page_.pop_front();
+    position_ = run.entry.position + 1;
+    return run;
+  }
+
+  /// Counts a run, and stores its outcome unless its rows are current.
+  void Done(const StoredRun& run, const RunOutcome* outcome) {
+    const std::scoped_lock lock(mutex_);
+    if (error_) return;
+    Result<void> stored;
+    if (outcome != nullptr) stored = store_.Put(run.entry.id, *outcome);
+    const auto now = std::chrono::steady_clock::now();
+    if (stored && now - last_commit_ >= kCommitInterval) {
+      stored = Commit();
+      last_commit_ = std::chrono::steady_clock::now();
+    }
+    if (!stored) {
+      error_ = stored.error();
+      return;
+    }
+    (outcome == nullptr ? counts_.current : counts_.refitted) += 1;
+    const int exit_code = outcome == nullptr ? run.exit_code.value_or(0) : outcome->exit_code;
+    if (exit_code > 1) counts_.unfitted += 1;
+    if (options_.progress) options_.progress(counts_);
+  }
+
+  Result<void> Commit() {
+    auto committed = store_.Commit();
+    if (committed && options_.committed) committed = options_.committed();
+    return committed;
+  }
+
+  const Source& source_;
+  Store& store_;
+  const RefitOptions& options_;
+  RefitCounts& counts_;
+  std::mutex mutex_;  // of all below, the store and the counts
+  std::deque<StoredRun> page_;
+  std::int64_t position_ = 0;
+  bool at_end_ = false;
+  std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
+  std::optional<Status> error_;
+};
+
+}  // namespace
+
+RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const RefitOptions& options) {
+  RunInputs inputs = ReadInputs(source, entry, options);
+  auto provenance = ProvenanceOf(entry, inputs);
+  if (!provenance) return Failure(entry, options, provenance.error());
+  return OutcomeOf(entry, inputs, *std::move(provenance));
+}
+
+Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
+  const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
+  if (!meta) return tl::unexpected(meta.error());
+  RefitCounts counts;
+  counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
+  Refitter refitter(source, store, options, counts);
+  const int threads = ThreadsOrCores(options.threads);
+  ParallelFor(threads, threads, [&](int) { refitter.Work(); });
+  if (refitter.error()) return tl::unexpected(*refitter.error());
+  counts.stopped = counts.done() < counts.runs;
+  const auto stored = counts.stopped ? store.Commit() : store.Complete();
+  if (!stored) return tl::unexpected(stored.error());
+  return counts;
+}
+
+}  // namespace pendulum

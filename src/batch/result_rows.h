@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/batch/store.h"
+
+/// The rows of a store's tables, taken from the result JSON, so that the two cannot differ.
+namespace pendulum {
+
+/// A row of table quantities.
+struct QuantityRow {
+  std::string name;
+  bool derived = false;
+  std::optional<double> estimate, std_error, lower95, upper95, systematic_std_error;
+  std::string unit;
+  bool fixed = false, at_bound = false;
+};
+
+/// A row of table fits, and its quantities.
+struct FitRow {
+  std::string model, status, reason;
+  std::optional<std::int64_t> used_samples;
+  std::optional<double> effective_samples;
+  std::optional<std::string> residual_unit;
+  std::optional<double> rms_residual, sigma;
+  std::optional<std::string> noise_model;
+  std::optional<double> lag1_correlation, log_likelihood, aic, aicc, bic, durbin_watson, ljung_box_p, runs_p;
+  std::optional<std::int64_t> iterations, evaluations;
+  std::vector<QuantityRow> quantities;
+};
+
+namespace result_rows {
+
+using Json = nlohmann::ordered_json;
+
+/// A value of that type, if the object has it.
+template <typename Value>
+std::optional<Value> Get(const Json& object, std::string_view key) {
+  if (!object.is_object()) return std::nullopt;
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return std::nullopt;
+  return found->get<Value>();
+}
+
+/// The number whose key begins so and ends with its unit, and that unit.
+inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(const Json& object,
+                                                                                std::string_view prefix) {
+  if (!object.is_object()) return {};
+  for (const auto& [key, value] : object.items()) {
+    if (!key.starts_with(prefix) || !value.is_number()) continue;
+    return {value.get<double>(), key.substr(prefix.size())};
+  }
+  return {};
+}
+
+inline QuantityRow Quantity(const std::string& name, const Json& json, bool derived) {
+  QuantityRow row;
+  row.name = name;
+  row.derived = derived;
+  row.estimate = Get<double>(json, "estimate");
+  row.std_error = Get<double>(json, "std_error");
+  row.systematic_std_error = Get<double>(json, "systematic_std_error");
+  row.unit = Get<std::string>(json, "unit").value_or("");
+  row.fixed = Get<bool>(json, "fixed").value_or(false);
+  row.at_bound = Get<bool>(json, "at_bound").value_or(false);
+  const auto interval = json.find("interval95");
+  if (interval == json.end() || !interval->is_array()) return row;
+  if ((*interval)[0].is_number()) row.lower95 = (*interval)[0].get<double>();
+  if ((*interval)[1].is_number()) row.upper95 = (*interval)[1].get<double>();
+  return row;
+}
+
+inline void SetStatistics(const Json& fit, FitRow& row) {
+  const Json& statistics = fit["statistics"];
+  const Json& noise = fit["noise"];
+  std::tie(row.rms_residual, row.residual_unit) = GetWithUnit(statistics, "rms_residual_");
+  row.sigma = GetWithUnit(noise, "sigma_").first;
+  row.noise_model = Get<std::string>(noise, "model");
+  row.lag1_correlation = Get<double>(noise, "lag1_correlation");
+  row.effective_samples = Get<double>(statistics, "effective_samples");
+  row.log_likelihood = Get<double>(statistics, "log_likelihood");
+  row.aic = Get<double>(statistics, "aic");
+  row.aicc = Get<double>(statistics, "aicc");
+  row.bic = Get<double>(statistics, "bic");
+  row.durbin_watson = Get<double>(statistics, "durbin_watson");
+  row.ljung_box_p = Get<double>(statistics, "ljung_box_p");
+  row.runs_p = Get<double>(statistics, "runs_p");
+  row.iterations = Get<std::int64_t>(fit["solver"], "iterations");
+  row.evaluations = Get<std::int64_t>(fit["solver"], "evaluations");
+}
+
+inline FitRow Fit(const Json& result, const Json& fit) {
+  FitRow row;
+  row.model = fit["model"].get<std::string>();
+  row.status = fit["status"].get<std::string>();
+  row.reason = fit["reason"].get<std::string>();
+  row.used_samples = Get<std::int64_t>(result["data"], "used_samples");
+  SetStatistics(fit, row);
+  for (const auto& [name, json] : fit["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
+  for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));
+  return row;
+}
+
+}  // namespace result_rows
+
+/// A row for each model that was asked for.
+inline std::vector<FitRow> FitRows(const RunOutcome& outcome) {
+  std::vector<FitRow> rows;
+  if (outcome.result.is_null()) {
+    for (const std::string& model : outcome.models) {
+      rows.emplace_back();
+      rows.back().model = model;
+      rows.back().status = "failed";
+      rows.back().reason = outcome.reason;
+    }
+    return rows;
+  }
+  for (const auto& fit : outcome.result["fits"]) rows.push_back(result_rows::Fit(outcome.result, fit));
+  return rows;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/shards.h"
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "batch/sqlite.h"
+#include "pendulum/base/file.h"
+#include "pendulum/base/staged_file.h"
+#include "pendulum/batch/store_lock.h"
+
+namespace pendulum {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path WithSuffix(const fs::path& path, const std::string& suffix) { return path.string() + suffix; }
+
+/// Copies a store that nobody writes to, whole or not at all.
+Result<void> Publish(const fs::path& from, const fs::path& to) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  auto input = InputFile::Open(from, "store");
+  if (!input) return tl::unexpected(input.error());
+  StagedFile output(to.string());
+  if (auto opened = output.Open(); !opened) return opened;
+  std::string block(kBlock, '\0');
+  for (std::size_t got = kBlock; got == kBlock;) {
+    const auto read = input->Read(block);
+    if (!read) return tl::unexpected(read.error());
+    got = *read;
+    if (auto written = output.Write({block.data(), got}); !written) return written;
+  }
+  if (auto finished = output.Finish(); !finished) return finished;
+  return output.Commit();
+}
+
+/// A file that goes when this does, and its journal: also before, for what a killed process left under the name would
+/// be played back into another file.
+class TemporaryStore {
+ public:
+  explicit TemporaryStore(fs::path path) : path_(std::move(path)) { Remove(); }
+  TemporaryStore(TemporaryStore&&) = delete;
+  TemporaryStore(const TemporaryStore&) = delete;
+  TemporaryStore& operator=(TemporaryStore&&) = delete;
+  TemporaryStore& operator=(const TemporaryStore&) = delete;
+  ~TemporaryStore() { Remove(); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  void Remove() const {
+    std::error_code unknown;
+    fs::remove(path_, unknown);
+    fs::remove(WithSuffix(path_, "-journal"), unknown);
+  }
+
+  fs::path path_;
+};
+
+/// What the store of that path is about, if it is one.
+std::optional<StoreMeta> MetaOf(const fs::path& path) {
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return std::nullopt;
+  const auto meta = store->Meta();
+  return meta ? std::optional(*meta) : std::nullopt;
+}
+
+bool IsSameBatch(const StoreMeta& one, const StoreMeta& other) {
+  return one.version == other.version && one.manifest_sha256 == other.manifest_sha256 &&
+         one.options_sha256 == other.options_sha256 && one.shard.has_value() == other.shard.has_value() &&
+         (!one.shard || one.shard->count == other.shard->count);
+}
+
+/// Copies what an attempt begins with, if anything: the checkpoint, which began as the store of before, else that. One
+/// that is damaged is none, nor is one that another attempt takes away meanwhile.
+Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
+  for (const fs::path& path : {WithSuffix(shard.store, ".part"), shard.store}) {
+    if (!MetaOf(path)) continue;
+    auto copied = Publish(path, attempt);
+    if (copied || copied.error().code != StatusCode::kNotFound) return copied;
+  }
+  return {};
+}
+
+/// Refits into the file of the attempt, which is published as the checkpoint now and then, and when it is stopped.
+Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, RefitOptions options,
+                            const fs::path& attempt) {
+  using Clock = std::chrono::steady_clock;
+  auto store = Store::Open(attempt, Store::Mode::kWrite);
+  if (!store) return tl::unexpected(store.error());
+  const fs::path checkpoint = WithSuffix(shard.store, ".part");
+  auto last = Clock::now();
+  options.committed = [&]() -> Result<void> {
+    if (std::chrono::duration<double>(Clock::now() - last).count() < shard.checkpoint) return {};
+    auto published = Publish(attempt, checkpoint);
+    last = Clock::now();
+    return published;
+  };
+  auto counts = Refit(source, *store, options);
+  if (!counts || !counts->stopped) return counts;
+  if (auto published = Publish(attempt, checkpoint); !published) return tl::unexpected(published.error());
+  return counts;
+}
+
+}  // namespace
+
+Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, const RefitOptions& options) {
+  const fs::path folder = shard.scratch.empty() ? shard.store.parent_path() : shard.scratch;
+  const TemporaryStore attempt(folder / (shard.store.filename().string() + ".attempt-" + shard.attempt));
+  std::error_code unknown;
+  if (!shard.store.parent_path().empty() && !fs::is_directory(shard.store.parent_path(), unknown)) {
+    return CannotWrite(shard.store.string(),
+                       "there is no folder " + shard.store.parent_path().string() + "; make it first");
+  }
+  const auto before = MetaOf(shard.store);
+  if (before && !before->shard) {
+    return Error(StatusCode::kInvalidArgument, shard.store.string() +
+                                                   ": this is the store of a whole batch, which a shard would replace; "
+                                                   "name a file such as out/shard-" +
+                                                   std::to_string(options.shard ? options.shard->index : 0) +
+                                                   ".sqlite");
+  }
+  if (auto copied = CopyBeginning(shard, attempt.path()); !copied) return tl::unexpected(copied.error());
+  auto counts = Attempt(source, shard, options, attempt.path());
+  if (!counts || counts->stopped) return counts;
+  const auto after = MetaOf(attempt.path());
+  const bool is_new = counts->refitted > 0 || !before || !before->complete || !after || !IsSameBatch(*before, *after) ||
+                      before->shard->index != after->shard->index;
+  if (is_new) {
+    if (auto published = Publish(attempt.path(), shard.store); !published) return tl::unexpected(published.error());
+  }
+  fs::remove(WithSuffix(shard.store, ".part"), unknown);
+  return counts;
+}
+
+fs::path ShardPath(const fs::path& folder, std::int64_t index) {
+  return folder / ("shard-" + std::to_string(index) + ".sqlite");
+}
+
+std::string ShardList(const std::vector<std::int64_t>& shards) {
+  std::string list;
+  for (const std::int64_t k : shards) list += (list.empty() ? "" : ",") + std::to_string(k);
+  return list;
+}
+
+Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int64_t count) {
+  std::error_code unknown;
+  if (!fs::is_directory(folder, unknown)) {
+    return Error(StatusCode::kNotFound, folder.string() + ": there is no such folder; check the path");
+  }
+  std::vector<std::int64_t> missing;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const fs::path path = ShardPath(folder, k);
+    if (!fs::exists(path, unknown)) {
+      missing.push_back(k);
+      continue;
+    }
+    auto store = Store::Open(path, Store::Mode::kRead);
+    if (!store) return tl::unexpected(store.error());
+    const auto meta = store->Meta();
+    if (!meta) return tl::unexpected(meta.error());
+    if (!meta->shard || meta->shard->index != k || meta->shard->count != count) {
+      const std::string is =
+          meta->shard ? "shard " + std::to_string(meta->shard->index) + "/" + std::to_string(meta->shard->count)
+                      : "a whole batch";
+      return Fault(path.string(), "this is the store of " + is + ", not of shard " + std::to_string(k) + "/" +
+                                      std::to_string(count) + "; give the number it was made with, or another folder");
+    }
+    if (!meta->complete) missing.push_back(k);
+  }
+  return missing;
+}
+
+namespace {
+
+/// A table's columns but `run`, with a prefix, between commas.
+std::string ColumnsOf(SQLite::Database& database, const std::string& table, const char* prefix = "") {
+  SQLite::Statement columns(database,
+                            "SELECT group_concat(? || name, ', ') FROM pragma_table_info(?) WHERE name <> 'run'");
+  sqlite::Bind(columns, prefix, table).executeStep();
+  return sqlite::Text(columns, 0);
+}
+
+/// "id = excluded.id, ..." for all columns but `run`.
+std::string AssignmentsOf(SQLite::Database& database, const std::string& table) {
+  SQLite::Statement columns(database,
+                            "SELECT group_concat(name || ' = excluded.' || name, ', ') "
+                            "FROM pragma_table_info(?) WHERE name <> 'run'");
+  sqlite::Bind(columns, table).executeStep();
+  return sqlite::Text(columns, 0);
+}
+
+/// Puts the rows that the attached store `shard` has in a table of runs' rows in place of those of the same runs.
+void ReplaceRows(SQLite::Database& database, const std::string& table) {
+  database.exec("DELETE FROM main." + table +
+                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id))");
+  database.exec("INSERT INTO main." + table + "(run, " + ColumnsOf(database, table) + ") SELECT mine.run, " +
+                ColumnsOf(database, table, "theirs.") + " FROM shard." + table +
+                " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id");
+}
+
+/// Puts what the attached store `shard` has into the tables, in place of what they have of the same runs.
+void TakeStore(SQLite::Database& database) {
+  const std::string runs = ColumnsOf(database, "runs");
+  database.exec("INSERT INTO main.runs(" + runs + ") SELECT " + runs +
+                " FROM shard.runs WHERE true ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
+                AssignmentsOf(database, "runs"));
+  ReplaceRows(database, "quantities");
+  ReplaceRows(database, "fits");
+  database.exec("INSERT OR IGNORE INTO main.options SELECT * FROM shard.options");
+  database.exec(
+      "INSERT INTO main.meta SELECT * FROM shard.meta WHERE true "
+      "ON CONFLICT(key) DO UPDATE SET value = excluded.value");
+  database.exec("UPDATE main.meta SET value = '' WHERE key IN ('shard', 'shard_count')");
+}
+
+/// Attaches the stores one by one, for SQLite attaches ten at most.
+Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Store& store) {
+  return sqlite::Guard(store.name(), [&]() -> Result<std::int64_t> {
+    SQLite::Database& database = store.database();
+    database.exec("PRAGMA synchronous = OFF");  // the file is synchronised as a whole
+    std::int64_t runs = 0;
+    for (std::int64_t k = 0; k < count; ++k) {
+      SQLite::Statement attach(database, "ATTACH ? AS shard");
+      sqlite::Bind(attach, sqlite::FileName(ShardPath(folder, k).string())).exec();
+      SQLite::Transaction all(database);
+      TakeStore(database);
+      runs += database.execAndGet("SELECT count(*) FROM shard.runs").getInt64();
+      all.commit();
+      database.exec("DETACH shard");
+    }
+    return runs;
+  });
+}
+
+/// All shards are of one batch.
+Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
+  const auto first = MetaOf(ShardPath(folder, 0));
+  for (std::int64_t k = 1; k < count; ++k) {
+    const fs::path path = ShardPath(folder, k);
+    const auto meta = MetaOf(path);
+    if (first && meta && IsSameBatch(*first, *meta)) continue;
+    return Fault(path.string(), "this is a shard of another batch than " + ShardPath(folder, 0).string() +
+                                    " (manifest, options or version differ); run the shards of one batch anew");
+  }
+  return {};
+}
+
+/// What attempts that are dead, or were overtaken, left.
+void RemoveLeftovers(const fs::path& folder, std::int64_t count) {
+  std::error_code error;
+  std::vector<fs::path> leftovers;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with("shard-")) continue;
+    if (name.find(".sqlite.attempt-") != std::string::npos) leftovers.push_back(at->path());
+  }
+  for (std::int64_t k = 0; k < count; ++k) leftovers.push_back(WithSuffix(ShardPath(folder, k), ".part"));
+  for (const fs::path& path : leftovers) fs::remove(path, error);
+}
+
+}  // namespace
+
+Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, const fs::path& store) {
+  const auto missing = MissingShards(folder, count);
+  if (!missing) return tl::unexpected(missing.error());
+  if (!missing->empty()) {
+    return Error(StatusCode::kNotFound, folder.string() + ": of " + std::to_string(count) +
+                                            " shards these are missing: " + ShardList(*missing) +
+                                            "; run them and merge again");
+  }
+  if (auto checked = CheckOneBatch(folder, count); !checked) return tl::unexpected(checked.error());
+  const auto lock = StoreLock::Take(store);
+  if (!lock) return tl::unexpected(lock.error());
+  const TemporaryStore merged(WithSuffix(store, ".merging"));
+  std::error_code unknown;
+  if (fs::exists(store, unknown)) {
+    if (const auto old = Store::Open(store, Store::Mode::kRead); !old) return tl::unexpected(old.error());
+    if (auto copied = Publish(store, merged.path()); !copied) return tl::unexpected(copied.error());
+  }
+  Result<std::int64_t> runs = 0;
+  {
+    auto target = Store::Open(merged.path(), Store::Mode::kWrite);
+    if (!target) return tl::unexpected(target.error());
+    runs = TakeShards(folder, count, *target);
+  }
+  if (!runs) return runs;
+  if (auto published = Publish(merged.path(), store); !published) return tl::unexpected(published.error());
+  RemoveLeftovers(folder, count);
+  return runs;
+}
+
+}  // namespace pendulum

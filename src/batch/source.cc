@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/source.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "batch/sqlite.h"
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/batch/find_recordings.h"
+#include "pendulum/model/motion_model.h"
+
+namespace pendulum {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The bytes of a regular file below a folder, under the name that its entry has for it.
+Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
+  const fs::path file = folder / path;
+  std::error_code unknown;
+  const fs::file_type type = fs::status(file, unknown).type();
+  if (type == fs::file_type::not_found) {
+    return Error(StatusCode::kNotFound, path + ": there is no such file; check the path");
+  }
+  if (type != fs::file_type::regular && type != fs::file_type::directory && type != fs::file_type::none) {
+    return Fault(path, "this is a pipe or a device; a batch reads files");
+  }
+  auto bytes = ReadFile(file, "CSV", kMostRecordingBytes);
+  if (bytes) return bytes;
+  const std::string prefix = file.string() + ":";
+  std::string message = bytes.error().message;
+  if (message.starts_with(prefix)) message.replace(0, prefix.size(), path + ":");
+  return Error(bytes.error().code, message);
+}
+
+/// "SQLite format 3", with which such a file begins.
+bool IsSqlite(const fs::path& path) {
+  constexpr std::string_view kMagic{"SQLite format 3\0", 16};
+  std::array<char, kMagic.size()> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == kMagic;
+}
+
+constexpr int kPackId = 0x50656e70;  // "Penp"
+constexpr int kPackVersion = 1;
+
+constexpr const char* kPackSchema = R"(
+CREATE TABLE entries(  -- one row a run, as ManifestEntry
+  position INTEGER PRIMARY KEY, id TEXT NOT NULL, path TEXT NOT NULL, rig TEXT NOT NULL, calibration TEXT NOT NULL,
+  from_s REAL, to_s REAL, models TEXT NOT NULL, columns TEXT NOT NULL);
+CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the exit code and message of why there is none
+  path TEXT PRIMARY KEY, code INTEGER, message TEXT, bytes BLOB);
+)";
+
+/// A packed file that is open for reading. SQLite itself lets one thread in at a time.
+class PackedFile {
+ public:
+  explicit PackedFile(const fs::path& path)
+      : name_(path.string()), database_(sqlite::FileName(name_), SQLite::OPEN_READONLY), read_(database_, kRead) {}
+
+  static constexpr const char* kRead = "SELECT code, message, bytes FROM files WHERE path = ?";
+
+  Result<void> Check() {
+    const int id = database_.execAndGet("PRAGMA application_id").getInt();
+    if (id != kPackId) return Fault(name_, "this SQLite file was not made by refit_pendulums pack; name one that was");
+    const int version = database_.execAndGet("PRAGMA user_version").getInt();
+    if (version == kPackVersion) return {};
+    return Fault(name_, "it was packed in form " + std::to_string(version) + ", and this program knows form " +
+                            std::to_string(kPackVersion) + "; pack it anew");
+  }
+
+  Result<void> ForEach(const TakeEntry& take) {
+    SQLite::Statement rows(database_,
+                           "SELECT position, id, path, rig, calibration, from_s, to_s, models, columns FROM entries "
+                           "ORDER BY position");
+    for (std::int64_t position = 0; rows.executeStep(); ++position) {
+      ManifestEntry entry = EntryOf(rows);
+      entry.position = position;
+      if (auto checked = CheckEntry(entry); !checked) return checked;
+      if (auto taken = take(entry); !taken) return taken;
+    }
+    return {};
+  }
+
+  Result<std::string> Read(const std::string& path) {
+    const std::scoped_lock lock(mutex_);
+    sqlite::Bind(read_, path);
+    if (!read_.executeStep()) return Error(StatusCode::kNotFound, path + ": there is no such file in " + name_);
+    if (!read_.getColumn(0).isNull()) {
+      const bool missing = read_.getColumn(0).getInt() == ExitCode(StatusCode::kNotFound);
+      return Error(missing ? StatusCode::kNotFound : StatusCode::kDataLoss, sqlite::Text(read_, 1));
+    }
+    return sqlite::Text(read_, 2);
+  }
+
+ private:
+  /// A pack may come from another program.
+  Result<void> CheckEntry(const ManifestEntry& entry) const {
+    const auto models = FindMotionModels(entry.models);
+    if (!entry.models.empty() && !models) return Fault(name_, entry.id + ": " + models.error().message);
+    const auto columns = nlohmann::ordered_json::parse(entry.columns, nullptr, false);
+    const bool texts =
+        columns.is_object() && std::ranges::all_of(columns, [](const auto& value) { return value.is_string(); });
+    if (texts && !entry.id.empty() && !entry.path.empty()) return {};
+    return Fault(name_, "the entry " + Quoted(entry.id) + " is none of a manifest; pack it anew");
+  }
+
+  static ManifestEntry EntryOf(const SQLite::Statement& row) {
+    ManifestEntry entry;
+    entry.position = row.getColumn(0).getInt64();
+    entry.id = sqlite::Text(row, 1);
+    entry.path = sqlite::Text(row, 2);
+    entry.rig = sqlite::Text(row, 3);
+    entry.calibration = sqlite::Text(row, 4);
+    if (!row.getColumn(5).isNull()) entry.from = row.getColumn(5).getDouble();
+    if (!row.getColumn(6).isNull()) entry.to = row.getColumn(6).getDouble();
+    entry.models = sqlite::Text(row, 7);
+    entry.columns = sqlite::Text(row, 8);
+    return entry;
+  }
+
+  std::string name_;
+  SQLite::Database database_;
+  SQLite::Statement read_;
+  std::mutex mutex_;
+};
+
+Result<Source> OpenPack(const fs::path& path) {
+  const std::string name = path.string();
+  return sqlite::Guard(name, [&]() -> Result<Source> {
+    SQLite::Database probe(sqlite::FileName(name), SQLite::OPEN_READONLY);
+    if (probe.execAndGet("PRAGMA application_id").getInt() != kPackId || !probe.tableExists("files")) {
+      return Fault(name, "this SQLite file was not made by refit_pendulums pack; name one that was");
+    }
+    const auto pack = std::make_shared<PackedFile>(path);
+    if (const auto checked = pack->Check(); !checked) return tl::unexpected(checked.error());
+    return Source{
+        name, [pack, name](const TakeEntry& take) { return sqlite::Guard(name, [&] { return pack->ForEach(take); }); },
+        [pack, name](const std::string& file) { return sqlite::Guard(name, [&] { return pack->Read(file); }); }};
+  });
+}
+
+/// A packed file that is being written.
+class Packer {
+ public:
+  Packer(const std::string& path, const Source& source)
+      : source_(source),
+        database_(sqlite::FileName(path), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
+        begun_(Begin(database_)),
+        add_entry_(database_, "INSERT INTO entries VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        add_file_(database_, "INSERT INTO files VALUES(?, ?, ?, ?)"),
+        has_file_(database_, "SELECT 1 FROM files WHERE path = ?") {}
+
+  Result<void> Take(const ManifestEntry& entry) {
+    sqlite::Bind(add_entry_, entry.position, entry.id, entry.path, entry.rig, entry.calibration, entry.from, entry.to,
+                 entry.models, entry.columns)
+        .exec();
+    for (const std::string& path : {entry.path, entry.rig, entry.calibration}) AddFile(path);
+    return {};
+  }
+
+  void Commit() { begun_->commit(); }
+
+ private:
+  static std::unique_ptr<SQLite::Transaction> Begin(SQLite::Database& database) {
+    database.exec("PRAGMA application_id = " + std::to_string(kPackId));
+    database.exec("PRAGMA user_version = " + std::to_string(kPackVersion));
+    auto transaction = std::make_unique<SQLite::Transaction>(database);
+    database.exec(kPackSchema);
+    return transaction;
+  }
+
+  void AddFile(const std::string& path) {
+    if (path.empty() || sqlite::Bind(has_file_, path).executeStep()) return;
+    const auto bytes = source_.read(path);
+    sqlite::Bind(add_file_, path);
+    if (bytes) {
+      add_file_.bind(4, bytes->data(), static_cast<int>(bytes->size()));
+    } else {
+      add_file_.bind(2, ExitCode(bytes.error().code));
+      add_file_.bind(3, bytes.error().message);
+    }
+    add_file_.exec();
+  }
+
+  const Source& source_;
+  SQLite::Database database_;
+  std::unique_ptr<SQLite::Transaction> begun_;
+  SQLite::Statement add_entry_;
+  SQLite::Statement add_file_;
+  SQLite::Statement has_file_;
+};
+
+}  // namespace
+
+Result<Source> OpenSource(const fs::path& path) {
+  std::error_code unknown;
+  if (fs::is_regular_file(path, unknown) && IsSqlite(path)) return OpenPack(path);
+  if (path != "-") {
+    if (const auto opened = InputFile::Open(path, "manifest"); !opened) return tl::unexpected(opened.error());
+  }
+  const fs::path folder = path == "-" ? fs::path() : path.parent_path();
+  return Source{path.string(), [path](const TakeEntry& take) { return ReadManifest(path, take); },
+                [folder](const std::string& file) { return ReadBelow(folder, file); }};
+}
+
+Result<Source> FindSource(const std::vector<std::string>& patterns) {
+  std::vector<std::string> paths;
+  std::set<std::string> known;
+  for (const std::string& pattern : patterns) {
+    const auto found = FindRecordings(pattern);
+    if (!found) return tl::unexpected(found.error());
+    for (const std::string& path : *found) {
+      if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
+    }
+  }
+  const auto for_each = [paths = std::move(paths)](const TakeEntry& take) -> Result<void> {
+    ManifestEntry entry;
+    for (const std::string& path : paths) {
+      entry.id = entry.path = path;
+      if (auto taken = take(entry); !taken) return taken;
+      ++entry.position;
+    }
+    return {};
+  };
+  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadBelow({}, file); }};
+}
+
+Result<void> Pack(const Source& source, const fs::path& path) {
+  const std::string unfinished = path.string() + ".unfinished";
+  std::error_code unknown;
+  if (fs::is_regular_file(path, unknown) && !IsSqlite(path)) {
+    return Error(StatusCode::kInvalidArgument,
+                 path.string() + ": this file is there and is no packed file, which pack would replace; name another");
+  }
+  fs::remove(unfinished, unknown);
+  auto packed = sqlite::Guard(path.string(), [&]() -> Result<void> {
+    Packer packer(unfinished, source);
+    auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
+    if (taken) packer.Commit();
+    return taken;
+  });
+  if (packed && std::rename(unfinished.c_str(), path.c_str()) != 0) {
+    packed = Error(StatusCode::kCannotWrite, "cannot write " + path.string() + ": it cannot be renamed");
+  }
+  if (!packed) fs::remove(unfinished, unknown);
+  return packed;
+}
+
+}  // namespace pendulum

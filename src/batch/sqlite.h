@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <nlohmann/json.hpp>
+#include <sqlite3.h>
+
+#include "pendulum/base/status.h"
+
+/// SQLite as the stores use it: no exception of it leaves a function of ours.
+namespace pendulum::sqlite {
+
+/// What SQLite's error means for whoever asked for the file of that name.
+inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exception& error) {
+  const std::string words = error.what();
+  switch (error.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Error(StatusCode::kTryAgain, name + ": another process has it; try again when that is done");
+    case SQLITE_NOTADB: return Error(StatusCode::kDataLoss, name + ": this is not an SQLite file; name another");
+    case SQLITE_CORRUPT:
+      return Error(StatusCode::kDataLoss, name + ": the file is damaged (" + words + "); restore it, or begin anew");
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM: return Error(StatusCode::kCannotWrite, "cannot write " + name + ": " + words);
+    default: return Error(StatusCode::kInternal, name + ": " + words);
+  }
+}
+
+/// A path as SQLite takes it for one, also where it looks like a URI or ":memory:".
+inline std::string FileName(const std::string& path) { return path.starts_with('/') ? path : "./" + path; }
+
+/// What `work` gives, or SQLite's refusal of the file of that name; what is not as the tables say is damage.
+template <typename Work>
+auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    return Refusal(name, error);
+  } catch (const nlohmann::json::exception& error) {
+    return Error(StatusCode::kDataLoss,
+                 name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
+  } catch (const std::logic_error& error) {  // std::stoll
+    return Error(StatusCode::kDataLoss,
+                 name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
+  }
+}
+
+/// Binds values to the first places of a statement, in their order; an empty optional, and what is left, is NULL.
+template <typename... Values>
+SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
+  statement.reset();
+  statement.clearBindings();
+  int place = 0;
+  const auto bind = [&](const auto& value) {
+    ++place;
+    if constexpr (requires { value.has_value(); }) {
+      value ? statement.bind(place, *value) : statement.bind(place);
+    } else {
+      statement.bind(place, value);
+    }
+  };
+  (bind(values), ...);
+  return statement;
+}
+
+inline std::string Text(const SQLite::Statement& statement, int column) {
+  return statement.getColumn(column).getString();
+}
+
+}  // namespace pendulum::sqlite

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/store.h"
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "batch/result_rows.h"
+#include "batch/sqlite.h"
+#include "batch/store_schema.h"
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/sha256.h"
+#include "pendulum/base/staged_file.h"
+#include "pendulum/base/version.h"
+
+namespace pendulum {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kBatchTable = R"sql(
+CREATE TEMP TABLE batch(position INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, path TEXT, rig TEXT, calibration TEXT,
+  from_s REAL, to_s REAL, models TEXT, columns TEXT, place TEXT))sql";
+
+constexpr const char* kTakeRuns = R"sql(
+INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
+  SELECT id, position, path, rig, calibration, from_s, to_s, models, columns FROM batch WHERE true ORDER BY position
+  ON CONFLICT(id) DO UPDATE SET position = excluded.position, path = excluded.path, rig = excluded.rig,
+    calibration = excluded.calibration, from_s = excluded.from_s, to_s = excluded.to_s, models = excluded.models,
+    columns = excluded.columns)sql";
+
+constexpr const char* kNextRuns = R"sql(
+SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_s, batch.to_s, batch.models,
+    batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
+  FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
+
+constexpr const char* kPutRun = R"sql(
+UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
+  options_sha256 = ?, version = ?, cpu = ?, result = ? WHERE run = ?)sql";
+
+/// The JSON line of an entry that the manifest's hash is made of: the same whether it came from CSV or from a pack.
+std::string EntryLine(const ManifestEntry& entry) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  const Json line = {entry.id,           entry.path,       entry.rig,    entry.calibration,
+                     number(entry.from), number(entry.to), entry.models, entry.columns};
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<std::string> NullIfEmpty(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+std::string TextOf(const SQLite::Statement& row, int column) {
+  return row.getColumn(column).isNull() ? "" : sqlite::Text(row, column);
+}
+
+std::optional<double> NumberOf(const SQLite::Statement& row, int column) {
+  return row.getColumn(column).isNull() ? std::nullopt : std::optional(row.getColumn(column).getDouble());
+}
+
+StoredRun RunOf(const SQLite::Statement& row) {
+  StoredRun run;
+  ManifestEntry& entry = run.entry;
+  entry.position = row.getColumn(0).getInt64();
+  entry.id = TextOf(row, 1);
+  entry.path = TextOf(row, 2);
+  entry.rig = TextOf(row, 3);
+  entry.calibration = TextOf(row, 4);
+  entry.from = NumberOf(row, 5);
+  entry.to = NumberOf(row, 6);
+  entry.models = TextOf(row, 7);
+  entry.columns = TextOf(row, 8);
+  if (!row.getColumn(9).isNull()) run.exit_code = row.getColumn(9).getInt();
+  run.provenance = {TextOf(row, 10), TextOf(row, 11), TextOf(row, 12), TextOf(row, 13), TextOf(row, 14), ""};
+  return run;
+}
+
+/// Brings the tables up to date in one transaction; makes those of a new file.
+void Migrate(SQLite::Database& database, int version) {
+  SQLite::Transaction transaction(database);
+  for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
+    database.exec(std::string(kStoreMigrations.at(step)));
+  }
+  database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
+  database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
+  transaction.commit();
+}
+
+/// Whether it is a store whose version is known; a file without tables may become one.
+Result<void> CheckKind(const std::string& name, SQLite::Database& database, Store::Mode mode) {
+  const int id = database.execAndGet("PRAGMA application_id").getInt();
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  const bool empty = database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
+  if (empty && mode == Store::Mode::kWrite) return {};
+  if (id != kStoreId) {
+    return Fault(name, "this is no result store of refit_pendulums; name one, or a file that is not there yet");
+  }
+  if (version < 1) return Fault(name, "the store is damaged (version " + std::to_string(version) + "); restore it");
+  if (version <= static_cast<int>(kStoreMigrations.size())) return {};
+  return Fault(name, "the store has version " + std::to_string(version) + ", made by a newer program; this one knows " +
+                         std::to_string(kStoreMigrations.size()) + " at most; use the newer one");
+}
+
+}  // namespace
+
+std::int64_t Shard::Cut(std::int64_t runs, std::int64_t k) const {
+  return runs / count * k + runs % count * k / count;  // R k / N where R k is too large
+}
+
+struct Store::State {
+  State(const std::string& path, Mode mode)
+      : name(path),
+        database(sqlite::FileName(path),
+                 mode == Mode::kRead ? SQLite::OPEN_READWRITE : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                 kBusyTimeoutMs) {}
+
+  /// A statement that is prepared once.
+  SQLite::Statement& Prepared(std::unique_ptr<SQLite::Statement>& statement, const char* sql) {
+    if (!statement) statement = std::make_unique<SQLite::Statement>(database, sql);
+    return *statement;
+  }
+
+  void BeginIfNone() {
+    if (!transaction)
+      transaction = std::make_unique<SQLite::Transaction>(database, SQLite::TransactionBehavior::IMMEDIATE);
+  }
+
+  void Commit() {
+    if (transaction) transaction->commit();
+    transaction.reset();
+  }
+
+  void SetMeta(const std::string& key, const std::string& value) const {
+    SQLite::Statement set(database,
+                          "INSERT INTO meta VALUES(?, ?) ON CONFLICT(key) DO UPDATE SET value = excluded.value");
+    sqlite::Bind(set, key, value).exec();
+  }
+
+  std::string GetMeta(const std::string& key) const {
+    SQLite::Statement get(database, "SELECT value FROM meta WHERE key = ?");
+    return sqlite::Bind(get, key).executeStep() ? sqlite::Text(get, 0) : "";
+  }
+
+  Result<std::string> TakeBatch(const Source& source);
+  void TakeShard(const std::optional<Shard>& shard, StoreMeta& meta);
+  void PutRun(const RunOutcome& outcome, std::int64_t run);
+  void PutFits(const RunOutcome& outcome, std::int64_t run);
+
+  static constexpr int kBusyTimeoutMs = 10000;
+
+  std::string name;
+  SQLite::Database database;
+  std::unique_ptr<SQLite::Transaction> transaction;
+  std::unique_ptr<SQLite::Statement> run_of, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
+};
+
+/// Fills the table of this batch with all entries; gives their hash.
+Result<std::string> Store::State::TakeBatch(const Source& source) {
+  database.exec("DROP TABLE IF EXISTS temp.batch");
+  database.exec(kBatchTable);
+  SQLite::Statement add(database, "INSERT OR IGNORE INTO batch VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  std::string hash;  // a chain: that of an entry is over the one before it
+  auto taken = source.for_each([&](const ManifestEntry& entry) -> Result<void> {
+    const int added = sqlite::Bind(add, entry.position, entry.id, entry.path, entry.rig, entry.calibration, entry.from,
+                                   entry.to, entry.models, entry.columns, entry.place)
+                          .exec();
+    if (added == 0) {
+      SQLite::Statement other(database, "SELECT place FROM batch WHERE id = ?");
+      sqlite::Bind(other, entry.id).executeStep();
+      return Fault(entry.place, "the id " + Quoted(entry.id) + " stands at " + sqlite::Text(other, 0) +
+                                    " too; give each run an id of its own");
+    }
+    auto next = Sha256(hash + EntryLine(entry));
+    if (!next) return tl::unexpected(next.error());
+    hash = *std::move(next);
+    return {};
+  });
+  if (!taken) return tl::unexpected(taken.error());
+  if (!hash.empty()) return hash;
+  return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one a row");
+}
+
+/// Leaves what is not of the shard out of the batch, and out of the store.
+void Store::State::TakeShard(const std::optional<Shard>& shard, StoreMeta& meta) {
+  meta.runs = database.execAndGet("SELECT count(*) FROM batch").getInt64();
+  if (!shard) {  // of what the manifest names no more, results stay
+    database.exec("DELETE FROM runs WHERE exit_code IS NULL AND id NOT IN (SELECT id FROM batch)");
+    return;
+  }
+  SQLite::Statement leave_out(database, "DELETE FROM batch WHERE position < ? OR position >= ?");
+  sqlite::Bind(leave_out, shard->Begin(meta.runs), shard->End(meta.runs)).exec();
+  // The store of a shard may have begun as that of another.
+  for (const char* table : {"quantities", "fits", "runs"}) {
+    database.exec(std::string("DELETE FROM ") + table +
+                  " WHERE run IN (SELECT run FROM runs WHERE id NOT IN (SELECT id FROM batch))");
+  }
+}
+
+void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
+  const Provenance& provenance = outcome.provenance;
+  const bool fitted = !outcome.result.is_null();
+  std::optional<std::string> recommended, result;
+  if (fitted) {
+    const Json& comparison = outcome.result["comparison"];
+    if (comparison.is_object() && comparison["recommended"].is_string()) {
+      recommended = comparison["recommended"].get<std::string>();
+    }
+    result = outcome.result.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason), recommended,
+               provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256, provenance.options_sha256,
+               provenance.version, provenance.cpu, result, run)
+      .exec();
+}
+
+void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
+  sqlite::Bind(Prepared(drop_quantities, "DELETE FROM quantities WHERE run = ?"), run).exec();
+  sqlite::Bind(Prepared(drop_fits, "DELETE FROM fits WHERE run = ?"), run).exec();
+  SQLite::Statement& fit =
+      Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement& quantity =
+      Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  for (const FitRow& row : FitRows(outcome)) {
+    sqlite::Bind(fit, run, row.model, row.status, row.reason, row.used_samples, row.effective_samples,
+                 row.residual_unit, row.rms_residual, row.sigma, row.noise_model, row.lag1_correlation,
+                 row.log_likelihood, row.aic, row.aicc, row.bic, row.durbin_watson, row.ljung_box_p, row.runs_p,
+                 row.iterations, row.evaluations)
+        .exec();
+    for (const QuantityRow& value : row.quantities) {
+      sqlite::Bind(quantity, run, row.model, value.name, static_cast<int>(value.derived), value.estimate,
+                   value.std_error, value.lower95, value.upper95, value.systematic_std_error, value.unit,
+                   static_cast<int>(value.fixed), static_cast<int>(value.at_bound))
+          .exec();
+    }
+  }
+}
+
+Store::Store(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Store::Store(Store&& other) noexcept = default;
+Store& Store::operator=(Store&& other) noexcept = default;
+Store::~Store() = default;
+
+Result<Store> Store::Open(const fs::path& path, Mode mode) {
+  const std::string name = path.string();
+  std::error_code unknown;
+  if (mode == Mode::kRead && !fs::exists(path, unknown)) {
+    return Error(StatusCode::kNotFound, name + ": there is no such store; check the path");
+  }
+  if (mode == Mode::kWrite && path.has_parent_path() && !fs::is_directory(path.parent_path(), unknown)) {
+    return CannotWrite(name, "there is no folder " + path.parent_path().string() + "; make it first");
+  }
+  if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
+  return sqlite::Guard(name, [&]() -> Result<Store> {
+    auto state = std::make_unique<State>(name, mode);
+    if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
+    if (mode == Mode::kRead) return Store(std::move(state));
+    // A rollback journal, for it does without shared memory, on any file system; the folder is synchronised too.
+    state->database.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
+    const int version = state->database.execAndGet("PRAGMA user_version").getInt();
+    if (version < static_cast<int>(kStoreMigrations.size())) Migrate(state->database, version);
+    return Store(std::move(state));
+  });
+}
+
+Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>& shard,
+                               const std::string& options_json) {
+  return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
+    SQLite::Transaction all(state_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    StoreMeta meta{std::string(kVersion), "", "", shard, 0, false};
+    auto manifest = state_->TakeBatch(source);
+    if (!manifest) return tl::unexpected(manifest.error());
+    auto options = Sha256(options_json);
+    if (!options) return tl::unexpected(options.error());
+    meta.manifest_sha256 = *std::move(manifest);
+    meta.options_sha256 = *std::move(options);
+    state_->TakeShard(shard, meta);
+    state_->database.exec(kTakeRuns);
+    SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
+    sqlite::Bind(add, meta.options_sha256, options_json).exec();
+    state_->SetMeta("version", meta.version);
+    state_->SetMeta("manifest_sha256", meta.manifest_sha256);
+    state_->SetMeta("options_sha256", meta.options_sha256);
+    state_->SetMeta("runs", std::to_string(meta.runs));
+    state_->SetMeta("shard", shard ? std::to_string(shard->index) : "");
+    state_->SetMeta("shard_count", shard ? std::to_string(shard->count) : "");
+    state_->SetMeta("complete", "0");
+    all.commit();
+    return meta;
+  });
+}
+
+Result<std::vector<StoredRun>> Store::Next(std::int64_t position, int most) {
+  return sqlite::Guard(name(), [&]() -> Result<std::vector<StoredRun>> {
+    SQLite::Statement next(state_->database, kNextRuns);
+    sqlite::Bind(next, position, most);
+    std::vector<StoredRun> runs;
+    while (next.executeStep()) runs.push_back(RunOf(next));
+    return runs;
+  });
+}
+
+Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->BeginIfNone();
+    SQLite::Statement& find = state_->Prepared(state_->run_of, "SELECT run FROM runs WHERE id = ?");
+    if (!sqlite::Bind(find, id).executeStep()) return Error(StatusCode::kInternal, "no run " + id);
+    const std::int64_t run = find.getColumn(0).getInt64();
+    find.reset();
+    state_->PutRun(outcome, run);
+    state_->PutFits(outcome, run);
+    return {};
+  });
+}
+
+Result<void> Store::Commit() {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->Commit();
+    return {};
+  });
+}
+
+Result<void> Store::Complete() {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->BeginIfNone();
+    state_->SetMeta("complete", "1");
+    state_->Commit();
+    return {};
+  });
+}
+
+Result<StoreMeta> Store::Meta() {
+  return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
+    const auto number = [&](const std::string& key) {
+      const std::string text = state_->GetMeta(key);
+      return text.empty() ? std::int64_t{0} : std::stoll(text);
+    };
+    StoreMeta meta{state_->GetMeta("version"),
+                   state_->GetMeta("manifest_sha256"),
+                   state_->GetMeta("options_sha256"),
+                   std::nullopt,
+                   number("runs"),
+                   number("complete") == 1};
+    if (!state_->GetMeta("shard").empty()) meta.shard = Shard{number("shard"), number("shard_count")};
+    return meta;
+  });
+}
+
+Result<StoreCounts> Store::Count() {
+  return sqlite::Guard(name(), [&]() -> Result<StoreCounts> {
+    StoreCounts counts;
+    SQLite::Statement runs(state_->database, "SELECT count(*), count(*) - count(exit_code), count(reason) FROM runs");
+    runs.executeStep();
+    counts.runs = runs.getColumn(0).getInt64();
+    counts.pending = runs.getColumn(1).getInt64();
+    counts.unfitted = runs.getColumn(2).getInt64();
+    SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
+    fits.executeStep();
+    counts.fits = fits.getColumn(0).getInt64();
+    counts.failed = fits.getColumn(1).getInt64();
+    return counts;
+  });
+}
+
+const std::string& Store::name() const { return state_->name; }
+
+SQLite::Database& Store::database() { return state_->database; }
+
+}  // namespace pendulum

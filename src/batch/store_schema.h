@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace pendulum {
+
+/// PRAGMA application_id of a result store: "Pend" in ASCII.
+inline constexpr int kStoreId = 0x50656e64;
+
+/// What makes version n of a store's tables from version n - 1 (PRAGMA user_version), n from 1 on. A version that was
+/// shipped is never changed: another one is appended. SQLite keeps the comments, so that .schema explains the tables.
+inline constexpr std::array<std::string_view, 1> kStoreMigrations = {R"sql(
+CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
+                    -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
+  key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+
+CREATE TABLE options(  -- what was asked of all fits of a batch: meta's options_sha256, and those of earlier ones
+  sha256 TEXT PRIMARY KEY, json TEXT NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE runs(  -- one row a run: what the manifest says of it, and what came of it
+  run INTEGER PRIMARY KEY,        -- of this store only; id is the run's name elsewhere
+  id TEXT NOT NULL UNIQUE,
+  position INTEGER NOT NULL,      -- in the manifest, from 0
+  path TEXT NOT NULL,             -- as in the manifest, as rig and calibration; '' for none
+  rig TEXT NOT NULL,
+  calibration TEXT NOT NULL,
+  from_s REAL,                    -- window, s on the file's clock; NULL as of the whole batch
+  to_s REAL,
+  models TEXT NOT NULL,           -- '' for those of the whole batch
+  columns TEXT NOT NULL,          -- the manifest's other columns, a JSON object of texts
+  exit_code INTEGER,              -- that of fit_pendulum for this recording; NULL: not refitted yet
+  reason TEXT,                    -- why it could not be fitted; NULL where it could
+  recommended TEXT,               -- of several models, if one is
+  data_sha256 TEXT,               -- of the recording's bytes, as rig and calibration; '' for none, or 'unreadable: why'
+  rig_sha256 TEXT,
+  calibration_sha256 TEXT,
+  options_sha256 TEXT,            -- of what was asked of it: the batch's options with its own window, models and paths
+  version TEXT,                   -- of the program
+  cpu TEXT,                       -- the type of CPU, on which the last bits of the values depend
+  result TEXT);                   -- result JSON (result.schema.json); NULL where it could not be fitted
+
+CREATE TABLE fits(  -- one row for each run and model
+  run INTEGER NOT NULL REFERENCES runs, model TEXT NOT NULL,
+  status TEXT NOT NULL,           -- converged, not_converged, not_identifiable or failed
+  reason TEXT NOT NULL,
+  used_samples INTEGER, effective_samples REAL,
+  residual_unit TEXT,             -- of rms_residual and sigma, as in the result JSON: rad, rad_s, counts or volts
+  rms_residual REAL, sigma REAL, noise_model TEXT, lag1_correlation REAL,
+  log_likelihood REAL, aic REAL, aicc REAL, bic REAL, durbin_watson REAL, ljung_box_p REAL, runs_p REAL,
+  iterations INTEGER, evaluations INTEGER,
+  PRIMARY KEY(run, model)) WITHOUT ROWID;
+
+CREATE TABLE quantities(  -- one row for each parameter of a fit, and each quantity derived from them
+  run INTEGER NOT NULL, model TEXT NOT NULL, name TEXT NOT NULL,
+  derived INTEGER NOT NULL,       -- 0: a parameter
+  estimate REAL, std_error REAL, lower95 REAL, upper95 REAL, systematic_std_error REAL,
+  unit TEXT NOT NULL, fixed INTEGER NOT NULL, at_bound INTEGER NOT NULL,
+  PRIMARY KEY(run, model, name), FOREIGN KEY(run, model) REFERENCES fits) WITHOUT ROWID;
+
+CREATE VIEW results AS  -- the fits with the id of their run
+  SELECT id, position, path, runs.recommended = model AS recommended, fits.* FROM runs JOIN fits USING(run);
+)sql"};
+
+}  // namespace pendulum

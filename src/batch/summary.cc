@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "batch/sqlite.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/version.h"
+#include "pendulum/batch/run_statistics.h"
+#include "pendulum/report/json_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSchemaVersion = 1;
+constexpr int kMostOutliers = 50;
+constexpr int kMostExamples = 10;
+constexpr std::size_t kMostPoints = 2000;
+
+Json Texts(SQLite::Database& database, const std::string& query) {
+  Json list = Json::array();
+  SQLite::Statement rows(database, query);
+  while (rows.executeStep()) list.push_back(sqlite::Text(rows, 0));
+  return list;
+}
+
+Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
+  SQLite::Database& database = store.database();
+  return {{"path", store.name()},
+          {"runs", counts.runs},
+          {"refitted", counts.runs - counts.pending},
+          {"pending", counts.pending},
+          {"fits", counts.fits},
+          {"versions", Texts(database, "SELECT DISTINCT version FROM runs WHERE version IS NOT NULL ORDER BY version")},
+          {"cpus", Texts(database, "SELECT DISTINCT cpu FROM runs WHERE cpu IS NOT NULL ORDER BY cpu")},
+          {"manifest_sha256", TextOrNull(meta.manifest_sha256)}};
+}
+
+Json ModelsJson(SQLite::Database& database) {
+  SQLite::Statement rows(database, R"sql(
+SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) FILTER (WHERE status = 'not_converged'),
+    count(*) FILTER (WHERE status = 'not_identifiable'), count(*) FILTER (WHERE status = 'failed')
+  FROM fits GROUP BY model ORDER BY model)sql");
+  Json models = Json::array();
+  while (rows.executeStep()) {
+    models.push_back({{"model", sqlite::Text(rows, 0)},
+                      {"fits", rows.getColumn(1).getInt64()},
+                      {"converged", rows.getColumn(2).getInt64()},
+                      {"not_converged", rows.getColumn(3).getInt64()},
+                      {"not_identifiable", rows.getColumn(4).getInt64()},
+                      {"failed", rows.getColumn(5).getInt64()}});
+  }
+  return models;
+}
+
+/// Of the runs with several models, how often each is recommended.
+Json RecommendationsJson(SQLite::Database& database) {
+  SQLite::Statement rows(database, R"sql(
+SELECT recommended, count(*) FROM runs
+  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits GROUP BY run HAVING count(*) > 1)
+  GROUP BY recommended ORDER BY count(*) DESC, recommended)sql");
+  Json list = Json::array();
+  while (rows.executeStep()) {
+    const bool none = rows.getColumn(0).isNull();
+    list.push_back(
+        {{"model", none ? Json(nullptr) : Json(sqlite::Text(rows, 0))}, {"runs", rows.getColumn(1).getInt64()}});
+  }
+  return list;
+}
+
+/// A reason without what differs from run to run: the file it is about, and numbers.
+std::string ReasonKind(std::string reason, const std::string& path) {
+  if (reason.starts_with(path)) reason.erase(0, path.size());
+  const std::size_t begin = reason.find_first_not_of(":0123456789 ");
+  reason.erase(0, std::min(begin, reason.size()));
+  std::string kind;
+  for (const char c : reason) {
+    const bool digit = c >= '0' && c <= '9';
+    if (digit && kind.ends_with('#')) continue;
+    kind += digit ? '#' : c;
+  }
+  for (std::size_t at = kind.find("#.#"); at != std::string::npos; at = kind.find("#.#")) kind.erase(at, 2);
+  return kind;
+}
+
+struct Failures {
+  std::int64_t fits = 0;
+  std::vector<std::string> models, examples;
+};
+
+Json FailuresJson(SQLite::Database& database) {
+  SQLite::Statement rows(database, R"sql(
+SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
+  WHERE fits.status <> 'converged' ORDER BY position, id)sql");
+  std::map<std::tuple<std::string, int, std::string>, Failures> kinds;
+  while (rows.executeStep()) {
+    const std::string kind = ReasonKind(sqlite::Text(rows, 2), sqlite::Text(rows, 3));
+    Failures& failures = kinds[{sqlite::Text(rows, 0), rows.getColumn(1).getInt(), kind}];
+    ++failures.fits;
+    const std::string model = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
+    if (std::ranges::find(failures.models, model) == failures.models.end()) failures.models.push_back(model);
+    const bool known = std::ranges::find(failures.examples, id) != failures.examples.end();
+    if (!known && failures.examples.size() < kMostExamples) failures.examples.push_back(id);
+  }
+  std::vector<Json> list;
+  for (const auto& [kind, failures] : kinds) {
+    const auto& [status, exit_code, reason] = kind;
+    list.push_back({{"status", status},
+                    {"exit_code", exit_code},
+                    {"reason", reason},
+                    {"fits", failures.fits},
+                    {"models", failures.models},
+                    {"examples", failures.examples}});
+  }
+  std::ranges::stable_sort(list, [](const Json& a, const Json& b) { return a["fits"] > b["fits"]; });
+  return list;
+}
+
+/// One parameter or derived quantity of one model, in one unit.
+struct Quantity {
+  std::string model, name, unit;
+};
+
+/// Its values, and what its runs are called.
+struct QuantityRuns {
+  RunValues values;
+  std::vector<std::string> ids, groups;  ///< Of each run; of each group.
+  bool dates = false;
+};
+
+/// Columns of a manifest that are columns of table runs.
+constexpr std::array<std::string_view, 5> kOwnColumns = {"id", "path", "rig", "calibration", "models"};
+
+/// The value that a manifest column, named by the next parameter, has for a run.
+std::string ValueOf(const std::string& column) {
+  const bool own = std::ranges::find(kOwnColumns, column) != kOwnColumns.end();
+  return own ? "iif(? = '', NULL, runs." + column + ")" : "(SELECT value FROM json_each(columns) WHERE key = ?)";
+}
+
+QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const SummaryOptions& options) {
+  SQLite::Statement rows(database, "SELECT id, position, estimate, std_error, " + ValueOf(options.group_by) + ", " +
+                                       ValueOf(options.trend_by) + R"sql(
+  FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
+  WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL
+  ORDER BY position, id)sql");
+  sqlite::Bind(rows, options.group_by, options.trend_by, quantity.model, quantity.name, quantity.unit);
+  QuantityRuns runs;
+  std::map<std::string, std::size_t> groups;
+  while (rows.executeStep()) {
+    runs.ids.push_back(sqlite::Text(rows, 0));
+    runs.values.estimate.push_back(rows.getColumn(2).getDouble());
+    const bool has_error = !rows.getColumn(3).isNull();
+    runs.values.std_error.push_back(has_error ? rows.getColumn(3).getDouble()
+                                              : std::numeric_limits<double>::quiet_NaN());
+    const std::string group = options.group_by.empty() ? "" : sqlite::Text(rows, 4);
+    const auto [known, is_new] = groups.emplace(group, groups.size());
+    if (is_new) runs.groups.push_back(group);
+    runs.values.group.push_back(known->second);
+    std::optional<double> order = rows.getColumn(1).getDouble();
+    bool is_date = false;
+    if (!options.trend_by.empty()) order = OrderOf(sqlite::Text(rows, 5), is_date);
+    runs.dates = runs.dates || is_date;
+    runs.values.order.push_back(order.value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return runs;
+}
+
+/// "repeat to 1.03 times their errors (p 0.2)", for people.
+std::string VerdictText(const Repeatability& all, const std::string& unit, std::size_t outliers) {
+  std::string text = std::to_string(all.runs) + " runs scatter " + NumberText(all.ScatterRatio(), 3) +
+                     " times as much as their quoted errors say (p " +
+                     ProbabilityText(std::min(all.lower_p, all.upper_p)) + "): ";
+  switch (all.verdict) {
+    case Repeatability::Verdict::kAgrees: text += "the error bars are true"; break;
+    case Repeatability::Verdict::kScatterLarger:
+      text += "the runs differ by ± " + NumberText(all.between, 2) + " " + unit +
+              " beyond their errors, or the errors are too small";
+      break;
+    case Repeatability::Verdict::kScatterSmaller: text += "the errors are too large, or the runs are not independent";
+  }
+  if (outliers > 0) text += "; " + std::to_string(outliers) + (outliers == 1 ? " outlier" : " outliers") + " left out";
+  return text;
+}
+
+Json GroupName(const QuantityRuns& runs, const SummaryOptions& options, std::size_t group) {
+  return options.group_by.empty() ? Json(nullptr) : Json(runs.groups[group]);
+}
+
+Json RepeatabilityJson(const QuantityRuns& runs, const SummaryOptions& options, const Repeatability& all,
+                       const std::string& unit, std::size_t outliers) {
+  constexpr std::array<const char*, 3> kVerdicts = {"agrees", "scatter_larger", "scatter_smaller"};
+  Json rows = Json::array();
+  for (const GroupRepeatability& group : all.groups) {
+    rows.push_back({{"group", options.group_by.empty() ? "all runs" : runs.groups[group.group]},
+                    {"runs", group.runs},
+                    {"weighted_mean", group.mean},
+                    {"std_error", group.std_error},
+                    {"scatter_ratio", group.ScatterRatio()},
+                    {"p", group.P()}});
+  }
+  return {{"groups", all.groups.size()},
+          {"runs", all.runs},
+          {"dof", all.dof},
+          {"chi2", all.chi2},
+          {"scatter_ratio", all.ScatterRatio()},
+          {"p", std::min(all.lower_p, all.upper_p)},
+          {"between_std_dev", all.between},
+          {"verdict", kVerdicts.at(static_cast<std::size_t>(all.verdict))},
+          {"text", VerdictText(all, unit, outliers)},
+          {"rows", rows}};
+}
+
+Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const std::vector<Outlier>& outliers) {
+  Json list = Json::array();
+  for (const Outlier& outlier : outliers) {
+    if (list.size() == kMostOutliers) break;
+    list.push_back({{"id", runs.ids[outlier.run]},
+                    {"group", GroupName(runs, options, runs.values.group[outlier.run])},
+                    {"estimate", runs.values.estimate[outlier.run]},
+                    {"std_error", NumberOrNull(runs.values.std_error[outlier.run])},
+                    {"z", outlier.z}});
+  }
+  return list;
+}
+
+/// Every so many-th point, so that few remain.
+Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
+  Json points = Json::array();
+  const std::size_t step = (runs.values.size() + kMostPoints - 1) / kMostPoints;
+  for (std::size_t i = 0; i < runs.values.size(); i += step) {
+    if (!std::isfinite(runs.values.order[i])) continue;
+    points.push_back({{"x", runs.values.order[i]},
+                      {"y", runs.values.estimate[i]},
+                      {"std_error", NumberOrNull(runs.values.std_error[i])},
+                      {"id", runs.ids[i]},
+                      {"group", GroupName(runs, options, runs.values.group[i])}});
+  }
+  return points;
+}
+
+std::string TrendText(const Trend& trend, const std::string& unit, const std::string& per) {
+  constexpr double kLevel = 0.01;
+  const std::string slope =
+      NumberText(trend.slope, 3) + " ± " + NumberText(trend.std_error, 2) + " " + unit + " " + per;
+  return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
+}
+
+Json TrendJson(const QuantityRuns& runs, const SummaryOptions& options, const std::string& unit,
+               const std::vector<Outlier>& outliers) {
+  const auto trend = FitTrend(runs.values, outliers);
+  if (!trend) return nullptr;
+  const std::string column = options.trend_by.empty() ? "position" : options.trend_by;
+  const std::string per = runs.dates ? "a day" : options.trend_by.empty() ? "a run" : "for 1 of " + column;
+  return {{"column", column},
+          {"unit", runs.dates ? Json("days since 1970-01-01") : Json(nullptr)},
+          {"slope", trend->slope},
+          {"std_error", trend->std_error},
+          {"p", trend->p},
+          {"text", TrendText(*trend, unit, per)},
+          {"points", PointsJson(runs, options)},
+          {"points_total", runs.values.size()}};
+}
+
+Json DistributionJson(const Quantity& quantity, const RunValues& values) {
+  const Distribution distribution = Describe(values.estimate);
+  std::vector<double> errors;
+  std::ranges::copy_if(values.std_error, std::back_inserter(errors), [](double error) { return std::isfinite(error); });
+  return {{"model", quantity.model},
+          {"name", quantity.name},
+          {"unit", quantity.unit},
+          {"runs", values.size()},
+          {"median", distribution.median},
+          {"mean", distribution.mean},
+          {"std_dev", distribution.std_dev},
+          {"minimum", distribution.minimum},
+          {"maximum", distribution.maximum},
+          {"lower_quartile", distribution.lower_quartile},
+          {"upper_quartile", distribution.upper_quartile},
+          {"median_std_error", errors.empty() ? Json(nullptr) : Json(Describe(errors).median)},
+          {"histogram",
+           {{"from", distribution.from},
+            {"to", distribution.to},
+            {"counts", distribution.counts},
+            {"below", distribution.below},
+            {"above", distribution.above}}}};
+}
+
+/// Start and zero are what each run begins with; the others are the rig's.
+bool IsOfTheRig(const Quantity& quantity) {
+  constexpr std::array<std::string_view, 8> kOfTheRun = {"release_angle", "release_time", "initial_angle",
+                                                         "initial_rate",  "zero_angle",   "rate_bias",
+                                                         "zero_drift",    "bias_drift"};
+  return std::ranges::find(kOfTheRun, quantity.name) == kOfTheRun.end();
+}
+
+Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const SummaryOptions& options) {
+  const QuantityRuns runs = RunsOf(database, quantity, options);
+  if (runs.values.size() == 0) return nullptr;
+  const bool of_the_rig = IsOfTheRig(quantity);
+  const std::vector<Outlier> outliers = of_the_rig ? FindOutliers(runs.values) : std::vector<Outlier>();
+  const auto repeatability = of_the_rig ? Repeat(runs.values, outliers) : std::nullopt;
+  Json json = DistributionJson(quantity, runs.values);
+  json["repeatability"] =
+      repeatability ? RepeatabilityJson(runs, options, *repeatability, quantity.unit, outliers.size()) : Json(nullptr);
+  const char* reason = of_the_rig ? "no group has two runs that quote an error"
+                                  : "each run begins as it does: it is no constant of the rig";
+  json["repeatability_reason"] = repeatability ? Json(nullptr) : Json(reason);
+  json["outliers"] = OutliersJson(runs, options, outliers);
+  json["outliers_total"] = outliers.size();
+  json["trend"] = TrendJson(runs, options, quantity.unit, outliers);
+  return json;
+}
+
+Json QuantitiesJson(SQLite::Database& database, const SummaryOptions& options) {
+  SQLite::Statement rows(database, R"sql(
+SELECT model, name, unit FROM quantities GROUP BY model, name, unit ORDER BY model, min(derived), name, unit)sql");
+  Json list = Json::array();
+  while (rows.executeStep()) {
+    Json json = QuantityJson(database, {sqlite::Text(rows, 0), sqlite::Text(rows, 1), sqlite::Text(rows, 2)}, options);
+    if (!json.is_null()) list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Result<void> CheckColumn(SQLite::Database& database, const char* flag, const std::string& column) {
+  if (column.empty() || std::ranges::find(kOwnColumns, column) != kOwnColumns.end()) return {};
+  std::string known;
+  SQLite::Statement names(database, "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key");
+  while (names.executeStep()) {
+    if (sqlite::Text(names, 0) == column) return {};
+    known += (known.empty() ? "" : ", ") + sqlite::Text(names, 0);
+  }
+  return Error(StatusCode::kInvalidArgument, std::string(flag) + ": the manifest has no column '" + column + "'" +
+                                                 (known.empty() ? ", nor any other" : "; it has " + known));
+}
+
+Json WarningsJson(const StoreCounts& counts, const Json& store) {
+  Json warnings = Json::array();
+  const auto add = [&](const char* code, const std::string& message) {
+    warnings.push_back({{"code", code}, {"message", message}});
+  };
+  if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
+  if (store["versions"].size() > 1) add("several_versions", "the fits are of several versions of the program");
+  if (store["cpus"].size() > 1) {
+    add("several_cpus", "the fits were made on several types of CPU, whose last bits differ");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Result<Json> Overview(Store& store) {
+  return sqlite::Guard(store.name(), [&]() -> Result<Json> {
+    SQLite::Database& database = store.database();
+    return Json{{"models", ModelsJson(database)},
+                {"recommendations", RecommendationsJson(database)},
+                {"failures", FailuresJson(database)}};
+  });
+}
+
+Result<Json> Summarize(Store& store, const SummaryOptions& options) {
+  const auto meta = store.Meta();
+  if (!meta) return tl::unexpected(meta.error());
+  const auto counts = store.Count();
+  if (!counts) return tl::unexpected(counts.error());
+  if (counts->fits == 0) {
+    return Error(StatusCode::kFailedPrecondition, store.name() + ": no run is refitted yet; refit some first");
+  }
+  return sqlite::Guard(store.name(), [&]() -> Result<Json> {
+    SQLite::Database& database = store.database();
+    for (const auto& [flag, column] :
+         {std::pair{"--group_by", options.group_by}, std::pair{"--trend_by", options.trend_by}}) {
+      if (auto checked = CheckColumn(database, flag, column); !checked) return tl::unexpected(checked.error());
+    }
+    Json json = {{"schema_version", kSchemaVersion},
+                 {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},
+                 {"store", StoreJson(store, *meta, *counts)},
+                 {"group_by", TextOrNull(options.group_by)},
+                 {"trend_by", TextOrNull(options.trend_by)}};
+    const auto overview = Overview(store);
+    if (!overview) return tl::unexpected(overview.error());
+    json.update(*overview);
+    json["parameters"] = QuantitiesJson(database, options);
+    json["warnings"] = WarningsJson(*counts, json["store"]);
+    return json;
+  });
+}
+
+}  // namespace pendulum

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+# Completes an installed folder so that it runs from anywhere: lib/ gets every shared library that the tools need, but for
+# glibc's own, share/doc/ the licences of these. pendulum_tools are the tools as they were built, pendulum_strip is strip.
+set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+set(glibc "^(ld-linux.*|libc|libm|libmvec|libpthread|libdl|librt|libresolv|libutil)\\.so")
+
+# The Debian package that a file is of, without the architecture; "" if there is none.
+function(find_debian_package file result)
+  # Where /lib is a link to /usr/lib, dpkg knows the file by the name that its package has for it.
+  string(REGEX REPLACE "^/usr/" "/" short ${file})
+  foreach(name ${file} ${short})
+    execute_process(COMMAND dpkg-query --search ${name} OUTPUT_VARIABLE found ERROR_QUIET RESULT_VARIABLE code)
+    if(code EQUAL 0 AND found MATCHES "(^|\n)([a-z0-9.+-]+)(:[a-z0-9]+)?: ")
+      set(${result} ${CMAKE_MATCH_2} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  set(${result} "" PARENT_SCOPE)
+endfunction()
+
+# The licence of a package, and the texts that it refers to.
+function(copy_licence package)
+  file(REAL_PATH /usr/share/doc/${package}/copyright licence)
+  file(MAKE_DIRECTORY ${prefix}/share/doc/${package} ${prefix}/share/doc/common-licenses)
+  file(COPY_FILE ${licence} ${prefix}/share/doc/${package}/copyright)
+  file(READ ${licence} text)
+  string(REGEX MATCHALL "/usr/share/common-licenses/[A-Za-z]+(-[0-9]+(\\.[0-9]+)*)?" common "${text}")
+  foreach(path ${common})
+    file(REAL_PATH ${path} file)
+    cmake_path(GET path FILENAME name)
+    file(COPY_FILE ${file} ${prefix}/share/doc/common-licenses/${name} ONLY_IF_DIFFERENT)
+  endforeach()
+endfunction()
+
+file(GET_RUNTIME_DEPENDENCIES
+  EXECUTABLES ${pendulum_tools}
+  RESOLVED_DEPENDENCIES_VAR libraries
+  PRE_EXCLUDE_REGEXES ${glibc})
+file(MAKE_DIRECTORY ${prefix}/lib)
+foreach(library ${libraries})
+  cmake_path(GET library FILENAME name)
+  file(REAL_PATH ${library} file)
+  find_debian_package(${file} package)
+  if(package STREQUAL "")
+    message(FATAL_ERROR "The tarball needs ${file}, whose licence is not known: it is of no Debian package.")
+  endif()
+  copy_licence(${package})
+  # By the name that it is loaded by, and without a RUNPATH, which would shut out the tools' RPATH.
+  file(COPY_FILE ${file} ${prefix}/lib/${name})
+  file(CHMOD ${prefix}/lib/${name} PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+  file(RPATH_REMOVE FILE ${prefix}/lib/${name})
+endforeach()
+foreach(tool ${pendulum_tools})
+  cmake_path(GET tool FILENAME name)
+  execute_process(COMMAND ${pendulum_strip} ${prefix}/bin/${name} COMMAND_ERROR_IS_FATAL ANY)
+  # CMake ends the RPATH of what it builds with an empty element, which means the folder that one happens to be in.
+  file(RPATH_CHANGE FILE ${prefix}/bin/${name} OLD_RPATH "$ORIGIN/../lib:" NEW_RPATH "$ORIGIN/../lib")
+endforeach()

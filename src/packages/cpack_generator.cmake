@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+# Read by cpack once for each generator: what goes into its packages.
+if(CPACK_GENERATOR STREQUAL "TGZ")
+  set(CPACK_COMPONENTS_ALL relocatable)
+  set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+  set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
+else()
+  set(CPACK_COMPONENTS_ALL tools development)
+  set(CPACK_COMPONENTS_GROUPING IGNORE)
+endif()

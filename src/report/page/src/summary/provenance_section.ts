@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Where the summary comes from. */
+
+import { el, type Child } from '../dom';
+import { section } from '../section';
+import { facts } from '../table';
+import type { Store, Summary } from './types';
+import { countText, identifier, visible } from './words';
+
+/** One below the other. */
+const lines = (items: string[]): Child[] =>
+  items.length === 0 ? ['unknown'] : items.map((item) => el('div', {}, visible(item)));
+
+function runsText({ runs, refitted, pending }: Store): string {
+  if (pending === 0 && refitted === runs) return `${countText(runs)}, all of them fitted`;
+  return `${countText(runs)}, of which ${countText(refitted)} are fitted and ${countText(pending)} pending`;
+}
+
+export function provenanceSection({ summary }: { summary: Summary }): HTMLElement {
+  const { store, tool, group_by: group, trend_by: trend } = summary;
+  return section(
+    'provenance',
+    'Where it comes from',
+    facts([
+      ['store', identifier(store.path)],
+      ['runs', runsText(store)],
+      ['fits', countText(store.fits)],
+      [
+        'manifest',
+        store.manifest_sha256 === null ? 'unknown' : ['SHA-256 ', el('code', { class: 'hash' }, store.manifest_sha256)],
+      ],
+      [
+        'one rig',
+        group === null
+          ? 'no column of the manifest tells rigs apart'
+          : ['runs of one ', el('code', {}, visible(group))],
+      ],
+      ['trends over', trend === null ? 'the position in the manifest' : el('code', {}, visible(trend))],
+      ['fitted by version', lines(store.versions)],
+      ['on', lines(store.cpus)],
+      ['made by', `${tool.name} ${tool.version}, summary schema ${summary.schema_version}`],
+    ]),
+  );
+}

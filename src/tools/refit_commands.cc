@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/refit_commands.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/json.h"
+#include "pendulum/base/staged_file.h"
+#include "pendulum/batch/compare_stores.h"
+#include "pendulum/batch/export.h"
+#include "pendulum/batch/store_lock.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/report/summary_page.h"
+#include "tools/output.h"
+#include "tools/refit_progress.h"
+#include "tools/refit_text.h"
+#include "tools/run_tool.h"
+
+namespace pendulum {
+namespace {
+
+std::atomic<bool> stop = false;
+std::atomic<int> stop_signal = 0;
+
+constexpr int kInterrupted = 130;
+
+/// The first asks for an orderly end; a second Ctrl-C does not wait for it, which a store survives.
+void Stop(int signal) {
+  if (signal == SIGINT && stop_signal == SIGINT) ::_exit(kInterrupted);
+  stop = true;
+  stop_signal = signal;
+}
+
+void StopOnSignals() {
+  struct sigaction action {};
+  action.sa_handler = Stop;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+Result<Source> SourceOf(const RefitPendulumsOptions& options) {
+  return options.manifest.empty() ? FindSource(options.patterns) : OpenSource(options.manifest);
+}
+
+/// Reads rig and calibration of the whole batch, which must be good: all runs would fail alike.
+Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refit) {
+  if (!options.rig.empty()) {
+    auto text = ReadFile(options.rig, "rig", kMostJsonBytes);
+    if (!text) return tl::unexpected(text.error());
+    if (const auto rig = ParseRig(*text, options.rig); !rig) return tl::unexpected(rig.error());
+    refit.rig = *std::move(text);
+  }
+  if (options.calibration.empty()) return {};
+  auto text = ReadFile(options.calibration, "calibration", kMostJsonBytes);
+  if (!text) return tl::unexpected(text.error());
+  if (const auto calibration = ParseCalibration(*text, options.calibration); !calibration) {
+    return tl::unexpected(calibration.error());
+  }
+  refit.calibration = *std::move(text);
+  return {};
+}
+
+/// Unlike that of any other attempt: job, restart, host, process.
+std::string AttemptName() {
+  const auto variable = [](const char* name, const char* otherwise) -> std::string {
+    const char* value = std::getenv(name);
+    return value == nullptr ? otherwise : value;
+  };
+  constexpr std::size_t kLongest = 256;
+  std::string host(kLongest, '\0');
+  if (::gethostname(host.data(), host.size() - 1) != 0) host = "host";
+  host.resize(host.find('\0') == std::string::npos ? host.size() : host.find('\0'));
+  return variable("SLURM_JOB_ID", "0") + "-" + variable("SLURM_RESTART_COUNT", "0") + "-" + host + "-" +
+         std::to_string(::getpid());
+}
+
+/// Refits into the store in its place, where this process is the only one that writes.
+Result<RefitCounts> RefitInPlace(const Source& source, const std::string& path, const RefitOptions& options) {
+  const auto lock = StoreLock::Take(path);
+  if (!lock) return tl::unexpected(lock.error());
+  auto store = Store::Open(path, Store::Mode::kWrite);
+  if (!store) return tl::unexpected(store.error());
+  return Refit(source, *store, options);
+}
+
+Result<int> WriteText(const std::string& text) {
+  if (auto written = WriteOutputs(std::vector<Output>{{"-", text}}); !written) return tl::unexpected(written.error());
+  return 0;
+}
+
+Result<int> ShowStatus(const std::string& path) {
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  const auto text = StatusText(*store);
+  if (!text) return tl::unexpected(text.error());
+  return WriteText(*text);
+}
+
+/// What is said at the end of a refit, and its exit code.
+Result<int> Conclude(const RefitCounts& counts, const std::string& store, bool force) {
+  std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
+                     " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
+  if (!counts.stopped) {
+    Say(kRefitToolName, text);
+    return ShowStatus(store);
+  }
+  Say(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
+                          " are left: the same command goes on from here" + (force ? ", without --force" : ""));
+  return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
+}
+
+Result<int> RunRefit(const RefitPendulumsOptions& options) {
+  RefitOptions refit = options.refit;
+  if (auto read = ReadCommon(options, refit); !read) return tl::unexpected(read.error());
+  const auto source = SourceOf(options);
+  if (!source) return tl::unexpected(source.error());
+  StopOnSignals();
+  RefitProgress progress(std::string(kRefitToolName), STDERR_FILENO);
+  refit.stop = &stop;
+  refit.progress = [&](const RefitCounts& counts) { progress.Show(counts); };
+  const std::string& store = options.stores.front();
+  ShardOptions shard = options.shard;
+  shard.attempt = AttemptName();
+  const auto counts = refit.shard ? RefitShard(*source, shard, refit) : RefitInPlace(*source, store, refit);
+  progress.Finish();
+  if (!counts) return tl::unexpected(counts.error());
+  return Conclude(*counts, store, refit.force);
+}
+
+/// Writes pieces as they come, to standard output or to a file that is there once it is whole.
+template <typename Export>
+Result<int> WriteStreamed(const std::string& path, const Export& run) {
+  std::optional<StagedFile> file;
+  if (!IsStandardOutput(path)) {
+    file.emplace(path);
+    if (auto opened = file->Open(); !opened) return tl::unexpected(opened.error());
+  }
+  const auto take = [&](std::string_view text) -> Result<void> {
+    if (file) return file->Write(text);
+    if (WriteAll(STDOUT_FILENO, text)) return {};
+    return CannotWrite("standard output", SystemWords(errno));
+  };
+  Result<void> done = run(take);
+  if (done && file) done = file->Finish();
+  if (done && file) done = file->Commit();
+  if (!done) return tl::unexpected(done.error());
+  return 0;
+}
+
+Result<int> RunExport(const RefitPendulumsOptions& options) {
+  const std::string& out = options.out;
+  const bool lines = out.ends_with(".jsonl") || out.ends_with(".ndjson");
+  if (!lines && !out.ends_with(".csv") && !IsStandardOutput(out)) {
+    return Error(StatusCode::kInvalidArgument, "--out " + out +
+                                                   ": its name ends with .csv for a table, with .jsonl for "
+                                                   "JSON lines; - is the table on standard output");
+  }
+  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", out}},
+                                  std::vector<NamedFile>{{"--store", options.stores.front()}});
+      !checked) {
+    return tl::unexpected(checked.error());
+  }
+  auto store = Store::Open(options.stores.front(), Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  return WriteStreamed(
+      out, [&](const TakeText& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
+}
+
+Result<int> MakeReport(const RefitPendulumsOptions& options) {
+  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}},
+                                  std::vector<NamedFile>{{"--store", options.stores.front()}});
+      !checked) {
+    return tl::unexpected(checked.error());
+  }
+  auto store = Store::Open(options.stores.front(), Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  const auto summary = Summarize(*store, options.summary);
+  if (!summary) return tl::unexpected(summary.error());
+  const std::string text = options.out.ends_with(".json")
+                               ? summary->dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
+                               : SummaryHtml(*summary);
+  if (auto written = WriteOutputs(std::vector<Output>{{options.out, text}}); !written) {
+    return tl::unexpected(written.error());
+  }
+  return 0;
+}
+
+Result<int> RunCompare(const RefitPendulumsOptions& options) {
+  auto before = Store::Open(options.stores[0], Store::Mode::kRead);
+  if (!before) return tl::unexpected(before.error());
+  auto after = Store::Open(options.stores[1], Store::Mode::kRead);
+  if (!after) return tl::unexpected(after.error());
+  const auto comparison = CompareStores(*before, *after);
+  if (!comparison) return tl::unexpected(comparison.error());
+  if (auto written = WriteText(ComparisonText(*comparison, options.stores[0], options.stores[1])); !written)
+    return written;
+  return comparison->moved + comparison->changed_status > 0 ? 1 : 0;
+}
+
+Result<int> RunPack(const RefitPendulumsOptions& options) {
+  const auto source = SourceOf(options);
+  if (!source) return tl::unexpected(source.error());
+  std::vector<NamedFile> inputs;
+  if (!options.manifest.empty()) inputs.push_back({"--manifest", options.manifest});
+  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}}, inputs); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (auto packed = Pack(*source, options.out); !packed) return tl::unexpected(packed.error());
+  return 0;
+}
+
+Result<int> RunMissing(const RefitPendulumsOptions& options) {
+  const auto missing = MissingShards(options.shard_dir, options.shard_count);
+  if (!missing) return tl::unexpected(missing.error());
+  if (missing->empty()) return 0;
+  return WriteText(ShardList(*missing) + "\n");
+}
+
+Result<int> RunMerge(const RefitPendulumsOptions& options) {
+  const auto runs = MergeShards(options.shard_dir, options.shard_count, options.stores.front());
+  if (!runs) return tl::unexpected(runs.error());
+  Say(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
+                          " shards merged into " + options.stores.front());
+  return 0;
+}
+
+}  // namespace
+
+Result<int> RunRefitCommand(const RefitPendulumsOptions& options) {
+  switch (options.command) {
+    case RefitCommand::kRefit: return RunRefit(options);
+    case RefitCommand::kStatus: return ShowStatus(options.stores.front());
+    case RefitCommand::kExport: return RunExport(options);
+    case RefitCommand::kCompare: return RunCompare(options);
+    case RefitCommand::kReport: return MakeReport(options);
+    case RefitCommand::kPack: return RunPack(options);
+    case RefitCommand::kMissing: return RunMissing(options);
+    case RefitCommand::kMerge: return RunMerge(options);
+  }
+  return ExitCode(StatusCode::kInternal);
+}
+
+}  // namespace pendulum

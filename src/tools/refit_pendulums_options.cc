@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/refit_pendulums_options.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "tools/command_line.h"
+
+namespace pendulum {
+namespace {
+
+/// A command, the flags it cannot do without, and those it takes besides. Those of a refit are all that no other has.
+struct CommandFlags {
+  std::string_view name;
+  RefitCommand command;
+  std::vector<std::string_view> needed, taken;
+};
+
+const std::vector<CommandFlags>& Commands() {
+  static const std::vector<CommandFlags> commands = {
+      {"status", RefitCommand::kStatus, {"store"}, {}},
+      {"export", RefitCommand::kExport, {"store", "out"}, {}},
+      {"compare", RefitCommand::kCompare, {}, {}},
+      {"report", RefitCommand::kReport, {"store", "out"}, {"group_by", "trend_by"}},
+      {"pack", RefitCommand::kPack, {"out"}, {"manifest", "data"}},
+      {"missing", RefitCommand::kMissing, {"shard_dir", "shard_count"}, {}},
+      {"merge", RefitCommand::kMerge, {"shard_dir", "shard_count", "store"}, {}},
+  };
+  return commands;
+}
+
+bool Contains(const auto& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
+
+/// Flags that only other commands than a refit have.
+constexpr std::array<std::string_view, 5> kNotOfARefit = {"out", "shard_dir", "shard_count", "group_by", "trend_by"};
+
+Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) {
+  for (const std::string_view name : command.needed) {
+    if (!Contains(flags.given, name)) return BadFlag(std::string(command.name) + " needs --" + std::string(name));
+  }
+  for (const std::string& name : flags.given) {
+    if (Contains(command.needed, name) || Contains(command.taken, name)) continue;
+    return BadFlag("--" + name + " is not a flag of " + std::string(command.name) + "; leave it out");
+  }
+  const std::size_t most = command.command == RefitCommand::kCompare ? 3 : 1;
+  if (flags.positional.size() <= most) return {};
+  return BadFlag("'" + flags.positional[most] + "' belongs to no flag of " + std::string(command.name));
+}
+
+Result<Shard> ParseShard(const std::string& text) {
+  constexpr std::int64_t kMostShards = 1000000000;
+  Shard shard;
+  const char* end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, shard.index);
+  if (error == std::errc() && slash != end && *slash == '/') {
+    const auto [rest, wrong] = std::from_chars(slash + 1, end, shard.count);
+    if (wrong == std::errc() && rest == end && shard.index >= 0 && shard.index < shard.count &&
+        shard.count <= kMostShards) {
+      return shard;
+    }
+  }
+  return BadFlag("--shard is '" + text + "'; it must be k/N, shard k from 0 to N - 1 of N");
+}
+
+/// Where the runs come from.
+Result<void> ParseSource(const RefitFlags& flags, RefitPendulumsOptions& options) {
+  if (flags.manifest.empty() == flags.data.empty()) {
+    return BadFlag(flags.manifest.empty() ? "no runs were given; name their manifest with --manifest, or folders, "
+                                            "patterns and files with --data"
+                                          : "--manifest and --data both name runs; give one of them");
+  }
+  options.manifest = flags.manifest;
+  options.patterns = Split(flags.data, ',');
+  if (!Contains(options.patterns, "")) return {};
+  return BadFlag("--data '" + flags.data + "' has an empty name between its commas");
+}
+
+Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& options) {
+  if (flags.shard.empty()) {
+    if (Contains(flags.given, "scratch")) return BadFlag("--scratch is where a shard is worked on; give --shard too");
+    if (Contains(flags.given, "checkpoint_s")) return BadFlag("--checkpoint_s is of a shard; give --shard too");
+    return {};
+  }
+  const auto shard = ParseShard(flags.shard);
+  if (!shard) return tl::unexpected(shard.error());
+  if (!std::isfinite(flags.checkpoint_s) || flags.checkpoint_s <= 0) {
+    return BadFlag("--checkpoint_s is " + NumberText(flags.checkpoint_s) + "; it must be a positive number of seconds");
+  }
+  options.refit.shard = *shard;
+  options.shard.store = flags.store;
+  options.shard.scratch = flags.scratch;
+  options.shard.checkpoint = flags.checkpoint_s;
+  return {};
+}
+
+Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options) {
+  if (!flags.positional.empty()) {
+    std::vector<std::string_view> names;
+    for (const CommandFlags& command : Commands()) names.push_back(command.name);
+    return BadFlag("'" + flags.positional.front() + "' is no command; the commands are " + NameList(names) +
+                   ", and none refits");
+  }
+  for (const std::string_view name : kNotOfARefit) {
+    if (Contains(flags.given, name))
+      return BadFlag("--" + std::string(name) + " is not a flag of a refit; leave it out");
+  }
+  if (flags.store.empty()) return BadFlag("no store was given; name the file for the results with --store");
+  if (auto parsed = ParseSource(flags, options); !parsed) return parsed;
+  if (flags.release == "all") return BadFlag("--release all makes several results of a run; a batch has one of each");
+  auto run = MakeRunOptions(flags);
+  if (!run) return tl::unexpected(run.error());
+  options.refit.threads = run->fit.threads;
+  options.refit.run = *std::move(run);
+  options.refit.force = flags.force;
+  options.refit.retry_failed = flags.retry_failed;
+  options.rig = flags.rig;
+  options.calibration = flags.calibration;
+  return ParseShardFlags(flags, options);
+}
+
+Result<void> ParseOther(const CommandFlags& command, const RefitFlags& flags, RefitPendulumsOptions& options) {
+  if (auto checked = CheckFlagsOf(command, flags); !checked) return checked;
+  options.command = command.command;
+  options.out = flags.out;
+  options.shard_dir = flags.shard_dir;
+  options.shard_count = flags.shard_count;
+  options.summary = {flags.group_by, flags.trend_by};
+  if (Contains(command.needed, "shard_count") && flags.shard_count < 1) {
+    return BadFlag("--shard_count is " + std::to_string(flags.shard_count) + "; it must be at least 1");
+  }
+  if (command.command == RefitCommand::kPack) return ParseSource(flags, options);
+  if (command.command != RefitCommand::kCompare) return {};
+  if (flags.positional.size() != 3)
+    return BadFlag("compare takes two stores: refit_pendulums compare a.sqlite b.sqlite");
+  options.stores = {flags.positional[1], flags.positional[2]};
+  return {};
+}
+
+}  // namespace
+
+Result<RefitPendulumsOptions> MakeRefitPendulumsOptions(const RefitFlags& flags) {
+  RefitPendulumsOptions options;
+  if (!flags.store.empty()) options.stores = {flags.store};
+  const auto& commands = Commands();
+  const auto found =
+      flags.positional.empty() ? commands.end() : std::ranges::find(commands, flags.positional[0], &CommandFlags::name);
+  const auto parsed = found == commands.end() ? ParseRefit(flags, options) : ParseOther(*found, flags, options);
+  if (!parsed) return tl::unexpected(parsed.error());
+  return options;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "pendulum/batch/refit.h"
+
+namespace pendulum {
+
+/// Seconds for people: "42 s", "3 min 05 s", "2 h 10 min".
+std::string DurationText(double seconds);
+
+/// "1200 of 2000 runs (60 %), 1850 a second, 1 s left, 3 could not be fitted".
+std::string ProgressText(const RefitCounts& counts, double seconds);
+
+/// Shows how far a refit is: on a terminal a bar that is drawn again a few times a second, elsewhere a plain line now
+/// and then.
+class RefitProgress {
+ public:
+  /// `name`: of the tool, begins plain lines. `descriptor`: where to write, such as STDERR_FILENO.
+  RefitProgress(std::string name, int descriptor);
+
+  void Show(const RefitCounts& counts);
+
+  /// Ends the bar's line.
+  void Finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string name_;
+  int descriptor_;
+  bool is_terminal_;
+  bool has_drawn_ = false;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+}  // namespace pendulum

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "pendulum/base/status.h"
+#include "pendulum/batch/run_options.h"
+
+namespace pendulum {
+
+/// The flags that say how a recording is read and fitted, as they were given; empty, or the default, where they were
+/// not. fit_pendulum and refit_pendulums have them both.
+struct RunFlags {
+  std::string rig;
+  std::string calibration;
+  std::string model = "coulomb";
+  std::string start = "auto";
+  std::string release;
+  std::string from;
+  std::string to;
+  std::string fix;
+  std::string init;
+  std::string bounds;
+  std::string prior;
+  std::string time_column;
+  std::string value_column;
+  std::string unit;
+  std::string sample_rate_hz;
+  std::string resolution;
+  std::string range;
+  std::string noise = "auto";
+  std::string loss = "none";
+  std::string interval = "auto";
+  std::string seed;
+  std::string threads;
+};
+
+/// Turns flags into options; rig and calibration are for the caller to read.
+/// kInvalidArgument: a flag is wrong or contradicts another; the message names it.
+Result<RunOptions> MakeRunOptions(const RunFlags& flags);
+
+}  // namespace pendulum

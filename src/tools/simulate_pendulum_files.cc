@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulate_pendulum_files.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/parallel.h"
+#include "tools/output.h"
+#include "tools/simulate_pendulum_manifest.h"
+#include "tools/simulate_pendulum_text.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kBlock = 1000;  // Recordings that are checked at once, rows that are written at once.
+
+int Blocks(int count) { return (count + kBlock - 1) / kBlock; }
+
+/// The outputs of a block of recordings, and the manifest, which must be none of them.
+std::vector<NamedFile> OutputsOfBlock(const SimulateOptions& options, int block) {
+  std::vector<NamedFile> outputs;
+  for (int i = block * kBlock; i < std::min((block + 1) * kBlock, options.count); ++i) {
+    for (NamedFile& output : options.Outputs(i)) outputs.push_back(std::move(output));
+  }
+  if (!options.manifest_out.empty()) outputs.push_back({"--manifest", options.manifest_out});
+  return outputs;
+}
+
+/// Recordings differ in their numbers, so that two of them have no file in common.
+Result<void> CheckAllOutputs(const SimulateOptions& options) {
+  std::vector<NamedFile> inputs;
+  if (!options.rig_path.empty()) inputs.push_back({"--rig", options.rig_path});
+  for (int block = 0; block < Blocks(options.count); ++block) {
+    if (auto checked = CheckOutputs(OutputsOfBlock(options, block), inputs); !checked) return checked;
+  }
+  return {};
+}
+
+Result<void> WriteRecording(const SimulateOptions& all, int index) {
+  const Result<SimulateOptions> options = OptionsOfRecording(all, index);
+  if (!options) return tl::unexpected(options.error());
+  const std::uint64_t seed = options->synthetic.seed;
+  const Result<Recording> recording = SimulateRecording(options->synthetic);
+  if (!recording) {
+    const std::string which = all.count == 1 ? "" : "seed " + std::to_string(seed) + ": ";
+    return Error(recording.error().code, which + recording.error().message);
+  }
+  const std::vector<NamedFile> files = options->Outputs(index);
+  std::vector<Output> outputs = {{files.front().path, RecordingCsv(*options, *recording, seed)}};
+  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(*options, seed)});
+  return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
+}
+
+/// The error of the least number among those that several threads meet.
+class FirstError {
+ public:
+  explicit FirstError(int count) : index_(count) {}
+
+  int index() const { return index_; }
+
+  void Take(int index, const Status& status) {
+    const std::scoped_lock lock(mutex_);
+    if (index >= index_) return;
+    index_ = index;
+    error_ = Error(status.code, status.message);
+  }
+
+  const Result<void>& error() const { return error_; }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<int> index_;
+  Result<void> error_;
+};
+
+/// Numbers are taken in order, so that all below a failing one are made, whatever the number of threads.
+Result<void> WriteAllRecordings(const SimulateOptions& options) {
+  FirstError first(options.count);
+  ParallelFor(options.count, options.threads, [&](int index) {
+    if (index > first.index()) return;
+    if (auto written = WriteRecording(options, index); !written) first.Take(index, written.error());
+  });
+  return first.error();
+}
+
+Result<void> SynchroniseRecordings(const SimulateOptions& options) {
+  if (options.count == 1) return {};
+  if (auto done = SynchroniseFileSystem(options.out); !done || options.truth_out.empty()) return done;
+  return SynchroniseFileSystem(options.truth_out);
+}
+
+Result<void> WriteManifest(const SimulateOptions& options) {
+  if (options.manifest_out.empty()) return {};
+  const Manifest manifest(options);
+  return WritePieces(options.manifest_out, Blocks(options.count), [&](int block) -> Result<std::string> {
+    std::string rows = block == 0 ? manifest.Header() : "";
+    for (int i = block * kBlock; i < std::min((block + 1) * kBlock, options.count); ++i) {
+      const Result<std::string> row = manifest.Row(i);
+      if (!row) return tl::unexpected(row.error());
+      rows += *row;
+    }
+    return rows;
+  });
+}
+
+}  // namespace
+
+Result<void> WriteRecordings(const SimulateOptions& options) {
+  for (const auto step : {CheckAllOutputs, WriteAllRecordings, SynchroniseRecordings, WriteManifest}) {
+    if (Result<void> done = step(options); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace pendulum

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/trajectory/scatter.h"
+
+#include <cstddef>
+#include <random>
+#include <string>
+
+#include <boost/random/normal_distribution.hpp>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+constexpr int kMostDraws = 1000;
+
+/// mt19937_64 seeded through std::seed_seq, which the standard lays down; SimulateRecording seeds it with the number.
+std::mt19937_64 GeneratorOf(std::uint64_t seed) {
+  constexpr std::uint64_t kLow = 0xFFFFFFFF;
+  constexpr unsigned int kHigh = 32;
+  std::seed_seq sequence{seed & kLow, seed >> kHigh};
+  return std::mt19937_64(sequence);
+}
+
+/// What of the bounds the values break, "viscous is -0.1, below 0"; empty when they are admissible.
+std::string Offence(std::span<const ScatteredParameter> parameters, OrderedPair order,
+                    const std::vector<double>& values) {
+  const auto name_and_value = [&](std::size_t i) {
+    return std::string(parameters[i].info.name) + " is " + NumberText(values[i]);
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [lower, upper] = ParameterRange{parameters[i].info.lower, parameters[i].info.upper};
+    if (values[i] < lower) return name_and_value(i) + ", below " + NumberText(lower);
+    if (values[i] > upper) return name_and_value(i) + ", above " + NumberText(upper);
+  }
+  if (order.larger < 0) return "";
+  const auto larger = static_cast<std::size_t>(order.larger), smaller = static_cast<std::size_t>(order.smaller);
+  if (values[larger] >= values[smaller]) return "";
+  return name_and_value(larger) + ", below " + std::string(parameters[smaller].info.name) + ", which is " +
+         NumberText(values[smaller]);
+}
+
+}  // namespace
+
+Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter> parameters, OrderedPair order,
+                                              std::uint64_t seed) {
+  std::mt19937_64 generator = GeneratorOf(seed);
+  boost::random::normal_distribution<double> draw;
+  std::vector<double> values(parameters.size());
+  std::string offence;
+  for (int i = 0; i < kMostDraws; ++i) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = parameters[k].mean + parameters[k].std_dev * draw(generator);
+    }
+    offence = Offence(parameters, order, values);
+    if (offence.empty()) return values;
+  }
+  return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMostDraws) + " draws of seed " +
+                                                 std::to_string(seed) + " none is within the bounds: in the last, " +
+                                                 offence + "; let the parameters scatter less");
+}
+
+}  // namespace pendulum

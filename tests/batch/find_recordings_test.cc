@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/find_recordings.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include <glob.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace pendulum::find_recordings_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+
+/// A folder with folders, found under names from there on.
+class FindRecordingsTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void Make(std::initializer_list<const char*> names) const {
+    for (const fs::path name : names) {
+      fs::create_directories(folder_ / name.parent_path());
+      std::ofstream(folder_ / name) << "x";
+    }
+  }
+
+  /// What a pattern in the folder finds, without the folder.
+  std::vector<std::string> Find(const std::string& pattern) const {
+    auto found = FindRecordings((folder_ / pattern).string());
+    EXPECT_TRUE(found) << found.error().message;
+    if (!found) return {};
+    for (std::string& path : *found) {
+      EXPECT_TRUE(path.starts_with(folder_.string() + "/")) << path;
+      path.erase(0, folder_.string().size() + 1);
+    }
+    return *found;
+  }
+
+  Status FaultOf(const std::string& pattern) const {
+    const auto found = FindRecordings((folder_ / pattern).string());
+    EXPECT_FALSE(found);
+    return found ? Status{StatusCode::kInternal, ""} : found.error();
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("find_recordings_test_" + std::to_string(getpid()));
+};
+
+TEST_F(FindRecordingsTest, FindsTheCsvFilesOfAFolderAndBelowInOrder) {
+  Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.txt", "d.CSV", "e.csv.bak", "csv"});
+  EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv"));
+}
+
+TEST_F(FindRecordingsTest, FindsTheSameInAFolderWithoutASlash) {
+  Make({"a.csv", "b/c.csv"});
+  EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
+}
+
+TEST_F(FindRecordingsTest, NamesFilesAsTheFolderWasNamed) {
+  EXPECT_THAT(FindRecordings("datasets/runs_?.csv").value(),
+              ElementsAre("datasets/runs_1.csv", "datasets/runs_2.csv", "datasets/runs_3.csv", "datasets/runs_4.csv"));
+  EXPECT_THAT(FindRecordings("datasets").value(), Contains("datasets/coulomb.csv"));
+}
+
+// glob(3) knows the same patterns, but for **.
+TEST_F(FindRecordingsTest, AgreesWithGlobOnPatterns) {
+  Make({"a1.csv", "a2.csv", "b1.csv", "a[1].csv", "a-.csv", ".hidden.csv", "x/a1.csv", "y/a1.csv", "y/.a1.csv",
+        ".z/a1.csv", "x/y/a1.csv", "a1.txt", "ä1.csv", "a.csv"});
+  for (const std::string pattern : {"*", "*.csv", "a?.csv", "[ab]1.csv", "a[!1].csv", "[a-]*", "a\\[1].csv", ".*.csv",
+                                    "*/a1.csv", "?/*", "*/*/*", ".z/*.csv", "*/.a*", "a1.[ct]*"}) {
+    std::vector<std::string> expected;
+    glob_t paths{};
+    ASSERT_EQ(::glob((folder_ / pattern).c_str(), 0, nullptr, &paths), 0) << pattern;
+    for (std::size_t i = 0; i < paths.gl_pathc; ++i) {
+      const std::string path = paths.gl_pathv[i];
+      if (fs::is_regular_file(path)) expected.push_back(path.substr(folder_.string().size() + 1));
+    }
+    ::globfree(&paths);
+    std::ranges::sort(expected);  // glob sorts as the locale does
+    EXPECT_THAT(Find(pattern), ElementsAreArray(expected)) << pattern;
+  }
+}
+
+TEST_F(FindRecordingsTest, TakesTwoAsterisksForAnyNumberOfFolders) {
+  Make({"p1.csv", "a/p1.csv", "a/p2.csv", "a/b/p1.csv", "a/b/c/p1.csv", "d/p1.csv", "a/b/q.txt"});
+  EXPECT_THAT(Find("**/p1.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/p1.csv", "d/p1.csv", "p1.csv"));
+  EXPECT_THAT(Find("a/**/p?.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/p1.csv", "a/p2.csv"));
+  EXPECT_THAT(Find("**/b/*.csv"), ElementsAre("a/b/p1.csv"));
+  EXPECT_THAT(Find("**/b/**/p1.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv"));
+  EXPECT_THAT(Find("**/**/p2.csv"), ElementsAre("a/p2.csv"));  // once
+  EXPECT_THAT(Find("a/b/**"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/b/q.txt"));
+}
+
+TEST_F(FindRecordingsTest, LeavesHiddenFilesAndFoldersAlone) {
+  Make({"a.csv", ".b.csv", ".c/d.csv", "e/.f.csv", "e/.g/h.csv"});
+  EXPECT_EQ(FindRecordings(folder_.string()).value().size(), 1);
+  EXPECT_THAT(Find("**/*"), ElementsAre("a.csv"));
+  EXPECT_THAT(Find(".c"), ElementsAre(".c/d.csv"));  // a folder that is named
+  EXPECT_THAT(Find("**/.g/*.csv"), ElementsAre("e/.g/h.csv"));
+}
+
+TEST_F(FindRecordingsTest, FindsNamesOfAnyBytes) {
+  Make({"a b.csv", " .csv", "new\nline.csv", "quote\".csv", "\xFF.csv", "π/振.csv"});
+  EXPECT_THAT(FindRecordings(folder_.string()).value().size(), 6);
+  EXPECT_THAT(Find("new*line.csv"), ElementsAre("new\nline.csv"));
+  EXPECT_THAT(Find("* *"), ElementsAre(" .csv", "a b.csv"));
+}
+
+TEST_F(FindRecordingsTest, TakesAFileWhosePathLooksLikeAPatternForItself) {
+  Make({"run[1].csv", "run1.csv"});
+  EXPECT_THAT(Find("run[1].csv"), ElementsAre("run[1].csv"));
+  fs::remove(folder_ / "run[1].csv");
+  EXPECT_THAT(Find("run[1].csv"), ElementsAre("run1.csv"));
+}
+
+TEST_F(FindRecordingsTest, TakesAFileForItselfWhateverItsName) {
+  Make({"serial.txt"});
+  EXPECT_THAT(Find("serial.txt"), ElementsAre("serial.txt"));
+}
+
+TEST_F(FindRecordingsTest, FollowsLinksToFilesButNotToFolders) {
+  Make({"a/x.csv", "elsewhere/y.csv"});
+  fs::create_symlink("../elsewhere/y.csv", folder_ / "a" / "file.csv");
+  fs::create_directory_symlink("../elsewhere", folder_ / "a" / "folder");
+  fs::create_directory_symlink("..", folder_ / "a" / "loop");
+  EXPECT_THAT(Find("a"), ElementsAre("a/file.csv", "a/x.csv"));
+  EXPECT_THAT(Find("a/**/*.csv"), ElementsAre("a/file.csv", "a/x.csv"));
+  EXPECT_EQ(FaultOf("a/*/y.csv").code, StatusCode::kNotFound);
+}
+
+TEST_F(FindRecordingsTest, FollowsALinkToAFolderThatIsNamed) {
+  Make({"elsewhere/y.csv", "elsewhere/deep/z.csv"});
+  fs::create_directory_symlink("elsewhere", folder_ / "link");
+  EXPECT_THAT(Find("link"), ElementsAre("link/deep/z.csv", "link/y.csv"));
+  EXPECT_THAT(Find("link/*.csv"), ElementsAre("link/y.csv"));
+}
+
+TEST_F(FindRecordingsTest, SaysWhatIsNotFound) {
+  Make({"a/b.txt"});
+  const std::string folder = folder_.string();
+  EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
+  EXPECT_EQ(FaultOf("none.csv").message, folder + "/none.csv: there is no such file or folder; check the path");
+  EXPECT_EQ(FaultOf("a").code, StatusCode::kNotFound);
+  EXPECT_EQ(FaultOf("a").message, folder + "/a: there is no *.csv file in this folder or below it; check the path");
+  EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
+  EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file is like this pattern; check the path");
+  EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file is like this pattern; check the path");
+}
+
+TEST_F(FindRecordingsTest, PassesByAFolderThatCannotBeLookedInto) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root looks into everything";
+  Make({"a/x.csv", "locked/y.csv", "z.csv"});
+  fs::permissions(folder_ / "locked", fs::perms::none);
+  EXPECT_THAT(Find("*/*.csv"), ElementsAre("a/x.csv"));
+  EXPECT_EQ(FaultOf("locked").code, StatusCode::kNotFound);
+  fs::permissions(folder_ / "locked", fs::perms::owner_all);
+}
+
+}  // namespace
+}  // namespace pendulum::find_recordings_test

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/fit_run.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::fit_run_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+RunOptions OptionsFor(const std::vector<std::string>& models) {
+  RunOptions options;
+  options.models = models;
+  options.fit.model = models.front();
+  return options;
+}
+
+/// The textbook's rig, I_O = 0.079 kg m² (datasets/README.md), held until 1.9 s.
+std::vector<Result<FitRun>> FitTextbook(const RunOptions& options) {
+  auto one = ReadOne(options, "datasets/textbook_rig.csv", Must(ReadRig("datasets/textbook_rig.json")));
+  return FitRuns(options, Must(std::move(one)));
+}
+
+/// Two recordings of 100 Hz one after the other, the second as if a hand had lifted the pendulum in 4 s.
+Recording TwoReleases() {
+  SyntheticOptions first = NoisyRun("viscous", 1), second = NoisyRun("viscous", 2);
+  first.duration = 9;
+  second.release_angle = 0.6;
+  Recording both = Must(SimulateRecording(first));
+  const Recording other = Must(SimulateRecording(second));
+  constexpr Eigen::Index kMove = 400;
+  const Eigen::ArrayXd share = Eigen::ArrayXd::LinSpaced(kMove, 1, kMove) / (kMove + 1);
+  const double from = both.value[both.size() - 1];
+  const Eigen::ArrayXd move = from + (other.value[0] - from) * share.square() * (3 - 2 * share);
+  Eigen::VectorXd value(both.size() + kMove + other.size());
+  value << both.value, move.matrix(), other.value;
+  both.value = value;
+  both.time = Eigen::ArrayXd::LinSpaced(value.size(), 0, static_cast<double>(value.size() - 1)) / 100;
+  both.path = "two.csv";
+  return both;
+}
+
+std::vector<Result<FitRun>> FitTwoReleases(const RunOptions& options) {
+  return FitRuns(options, Must(FindSwings(TwoReleases(), options.swing, std::nullopt)));
+}
+
+TEST(FitRuns, PutsAllThatIsConcludedBesideTheFit) {
+  const auto runs = FitTextbook(OptionsFor({"viscous"}));
+  ASSERT_THAT(runs, SizeIs(1));
+  ASSERT_TRUE(runs[0]) << runs[0].error().message;
+  const RunReport& report = runs[0]->report;
+  ASSERT_THAT(report.fits, SizeIs(1));
+  const ParameterEstimate& inertia = *report.fits[0].Find("inertia");
+  EXPECT_NEAR(inertia.estimate, 0.079, 4 * inertia.std_error.value());
+  EXPECT_THAT(report.checks, SizeIs(1));
+  EXPECT_THAT(report.constancy, SizeIs(1));
+  EXPECT_TRUE(report.closed_forms && report.sampling && report.rig);
+  EXPECT_FALSE(report.comparison);
+  EXPECT_EQ(report.data.path, "datasets/textbook_rig.csv");
+  EXPECT_EQ(report.data.samples, 2000);  // 20 s at 100 Hz
+  ASSERT_THAT(runs[0]->used, SizeIs(1));
+  EXPECT_EQ(runs[0]->used[0].size(), report.data.used_samples);
+  EXPECT_EQ(ExitCodeOf(*runs[0]), 0);
+}
+
+TEST(FitRuns, ComparesSeveralModelsInTheOrderAskedFor) {
+  const auto runs = FitTextbook(OptionsFor({"coulomb", "viscous"}));
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  const RunReport& report = runs[0]->report;
+  ASSERT_THAT(report.fits, SizeIs(2));
+  EXPECT_EQ(report.fits[0].model.name, "coulomb");
+  EXPECT_EQ(report.fits[1].model.name, "viscous");
+  ASSERT_TRUE(report.comparison);
+  EXPECT_EQ(report.closed_forms_model, report.fits[report.MainFit()].model.name);
+}
+
+TEST(FitRuns, MakesClosedFormsWithoutAFit) {
+  RunOptions options = OptionsFor({"viscous"});
+  options.closed_form_only = true;
+  const auto runs = FitTextbook(options);
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  EXPECT_THAT(runs[0]->report.fits, IsEmpty());
+  EXPECT_TRUE(runs[0]->report.closed_forms);
+  EXPECT_EQ(runs[0]->report.closed_forms_model, "viscous");
+  EXPECT_EQ(ExitCodeOf(*runs[0]), 0);
+}
+
+TEST(FitRuns, TakesTheClosedFormsOfSmallAnglesForReadingsInAnUnknownUnit) {
+  RunOptions options = OptionsFor({"viscous"});
+  options.closed_form_only = true;
+  Recording counts = Must(SimulateRecording(NoisyRun("viscous")));
+  counts.value = counts.value.array() * 300 + 512;
+  counts.unit = "counts";
+  const auto runs = FitRuns(options, Must(FindSwings(counts, options.swing, std::nullopt)));
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  EXPECT_EQ(runs[0]->report.closed_forms_model, "linear");
+  ASSERT_THAT(runs[0]->report.warnings, Not(IsEmpty()));
+  EXPECT_EQ(runs[0]->report.warnings.back().code, "uncalibrated");
+  EXPECT_THAT(runs[0]->report.warnings.back().message,
+              StartsWith("the readings are in counts, not in an angle's unit"));
+}
+
+TEST(FitRuns, FitsEachReleaseThatWasChosen) {
+  RunOptions options = OptionsFor({"viscous"});
+  options.swing.release = SwingChoice::kAll;
+  const auto runs = FitTwoReleases(options);
+  ASSERT_THAT(runs, SizeIs(2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(runs[i]) << runs[i].error().message;
+    EXPECT_EQ(runs[i]->report.data.release, i + 1);
+    EXPECT_EQ(runs[i]->report.data.path, "two.csv");
+    EXPECT_EQ(runs[i]->report.data.samples, 900 + 400 + 1000);
+    EXPECT_EQ(ExitCodeOf(*runs[i]), 0);
+  }
+  EXPECT_LT(runs[0]->report.data.to, runs[1]->report.data.from);
+}
+
+TEST(FitRuns, SaysOfSeveralWhichCouldNotBeFitted) {
+  RunOptions options = OptionsFor({"magic"});
+  options.swing.release = SwingChoice::kAll;
+  const auto runs = FitTwoReleases(options);
+  ASSERT_THAT(runs, SizeIs(2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_FALSE(runs[i]);
+    EXPECT_EQ(runs[i].error().code, StatusCode::kInvalidArgument);
+    EXPECT_THAT(runs[i].error().message,
+                StartsWith("two.csv: free swing " + std::to_string(i + 1) + ": there is no model 'magic'"));
+  }
+}
+
+TEST(FitRuns, SaysOfOneAlonePlainlyWhyItCouldNotBeFitted) {
+  const auto runs = FitTextbook(OptionsFor({"magic"}));
+  ASSERT_FALSE(runs.at(0));
+  EXPECT_EQ(runs[0].error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(runs[0].error().message, StartsWith("there is no model 'magic'"));
+}
+
+TEST(FitRuns, SaysWhyThereAreNeitherFitsNorClosedForms) {
+  RunOptions options = OptionsFor({"viscous"});
+  options.closed_form_only = true;
+  options.swing.from = 1.9;
+  options.swing.to = 2.9;  // one turning point
+  const auto runs = FitTextbook(options);
+  ASSERT_FALSE(runs.at(0));
+  EXPECT_EQ(runs[0].error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(runs[0].error().message, HasSubstr("turn"));
+}
+
+FitRun RunThatEnded(const std::vector<Termination>& fits) {
+  FitRun run;
+  for (const Termination termination : fits) {
+    run.report.fits.emplace_back();
+    run.report.fits.back().termination = termination;
+  }
+  return run;
+}
+
+TEST(ExitCodeOf, IsThatOfTheFitThatStandsForTheRun) {
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({})), 0);  // closed forms alone
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kConverged})), 0);
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kNotConverged})), 1);
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kNotIdentifiable})), 1);
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed})), 1);
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed, Termination::kConverged})), 0);
+  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed, Termination::kNotConverged})), 1);
+}
+
+TEST(ExitCodeOf, IsThatOfTheRecommendedFit) {
+  FitRun run = RunThatEnded({Termination::kConverged, Termination::kNotIdentifiable});
+  run.report.fits[0].model = Must(FindMotionModel("viscous"));
+  run.report.fits[1].model = Must(FindMotionModel("coulomb"));
+  run.report.comparison.emplace();
+  run.report.comparison->recommended = "coulomb";
+  EXPECT_EQ(ExitCodeOf(run), 1);
+  run.report.comparison->recommended = "viscous";
+  EXPECT_EQ(ExitCodeOf(run), 0);
+}
+
+}  // namespace
+}  // namespace pendulum::fit_run_test

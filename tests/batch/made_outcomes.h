@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/batch/store.h"
+
+/// Outcomes of runs that nobody fitted.
+namespace pendulum::made_outcomes {
+
+using Json = nlohmann::ordered_json;
+
+/// A fit as the result JSON has it, as far as the store looks: one parameter of the rig, one of the run, one that is
+/// held.
+inline Json FitOf(const std::string& model, double inertia, const std::string& status = "converged") {
+  const auto quantity = [](double estimate, const Json& std_error, const char* unit, bool fixed) {
+    return Json{{"estimate", estimate},
+                {"std_error", std_error},
+                {"interval95", {nullptr, nullptr}},
+                {"systematic_std_error", nullptr},
+                {"unit", unit},
+                {"fixed", fixed},
+                {"at_bound", false}};
+  };
+  return {{"model", model},
+          {"status", status},
+          {"reason", status == "converged" ? "done" : "after 100 iterations"},
+          {"parameters",
+           {{"inertia", quantity(inertia, 1.0, "kg m^2", false)},
+            {"release_angle", quantity(inertia / 100, 0.01, "rad", false)},
+            {"viscous", quantity(0, nullptr, "N m s/rad", true)}}},
+          {"derived", Json::object()},
+          {"statistics", {{"rms_residual_rad", 0.001}}},
+          {"noise", {{"model", "gaussian"}}},
+          {"solver", {{"iterations", 3}, {"evaluations", 4}}}};
+}
+
+/// The result of a run with these fits.
+inline RunOutcome OutcomeOf(const std::vector<Json>& fits, const char* recommended = nullptr) {
+  RunOutcome outcome;
+  outcome.provenance.version = "1.2.3";
+  outcome.provenance.cpu = "a processor";
+  outcome.result = {{"data", {{"used_samples", 100}}}, {"fits", fits}, {"comparison", nullptr}};
+  if (recommended != nullptr) outcome.result["comparison"] = {{"recommended", recommended}};
+  for (const Json& fit : fits) outcome.models.push_back(fit["model"]);
+  return outcome;
+}
+
+inline RunOutcome FailureOf(const std::string& reason, int exit_code) {
+  RunOutcome outcome = OutcomeOf({});
+  outcome.models = {"viscous"};
+  outcome.result = nullptr;
+  outcome.reason = reason;
+  outcome.exit_code = exit_code;
+  return outcome;
+}
+
+}  // namespace pendulum::made_outcomes

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Processes by /proc: who they are, and holding them still so that a test is never too late."""
+
+import contextlib
+import os
+import pathlib
+import signal
+import time
+
+
+def read(pid, name):
+    """A file of the process; nothing when it has ended or is another user's."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/{name}").read_bytes()
+    except OSError:
+        return b""
+
+
+def all_pids():
+    return [int(path.name) for path in pathlib.Path("/proc").iterdir() if path.name.isdigit()]
+
+
+def name_of(pid):
+    return read(pid, "comm").decode().strip()
+
+
+def arguments_of(pid):
+    return read(pid, "cmdline").split(b"\0")
+
+
+def environment_of(pid):
+    return read(pid, "environ").split(b"\0")
+
+
+def parent_of(pid):
+    after_name = read(pid, "stat").rpartition(b")")[2].split()
+    return int(after_name[1]) if after_name else 0
+
+
+def kill(pids, number=signal.SIGKILL):
+    for pid in pids:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, number)
+
+
+def is_told(pid, number):
+    """Whether the signal waits for the process, which is held, or the process has ended."""
+    lines = read(pid, "status").decode().splitlines()
+    waiting = [int(line.split()[1], 16) for line in lines if line.startswith(("SigPnd:", "ShdPnd:"))]
+    return not waiting or any(mask >> (number - 1) & 1 for mask in waiting)
+
+
+def wait_until(what, condition, seconds):
+    """What the condition returns as soon as it is true."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.05)
+    raise TimeoutError(f"after {seconds} s still not: {what}")
+
+
+def release_when_told(pids, number=signal.SIGTERM):
+    """Lets processes that are held go on when the signal has come to all of them."""
+    wait_until(f"{pids} are told", lambda: all(is_told(pid, number) for pid in pids), 20)
+    kill(pids, signal.SIGCONT)

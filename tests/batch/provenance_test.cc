@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/provenance.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace pendulum::provenance_test {
+namespace {
+
+using testing::AnyOf;
+using testing::EndsWith;
+
+struct Change {
+  std::string name;
+  std::function<void(RunOptions&)> make;
+};
+
+std::string JsonAfter(const Change& change) {
+  RunOptions options;
+  options.models = {"coulomb"};
+  change.make(options);
+  return OptionsJson(options);
+}
+
+/// Every option that can be set beside those of the fit, and that a result depends on.
+std::vector<Change> ChangesOfTheRun() {
+  return {
+      {"nothing", [](RunOptions&) {}},
+      {"time_column", [](RunOptions& o) { o.read.time_column = "t"; }},
+      {"value_column", [](RunOptions& o) { o.read.value_column = "t"; }},
+      {"unit", [](RunOptions& o) { o.read.unit = "deg"; }},
+      {"sample_rate_hz", [](RunOptions& o) { o.read.sample_rate_hz = 100; }},
+      {"resolution of none", [](RunOptions& o) { o.read.resolution = 0; }},
+      {"resolution", [](RunOptions& o) { o.read.resolution = 0.1; }},
+      {"range",
+       [](RunOptions& o) {
+         o.read.range = SensorRange{0, 1023};
+       }},
+      {"another range",
+       [](RunOptions& o) {
+         o.read.range = SensorRange{0, 4095};
+       }},
+      {"from", [](RunOptions& o) { o.swing.from = 0; }},
+      {"to", [](RunOptions& o) { o.swing.to = 0; }},
+      {"release 1", [](RunOptions& o) { o.swing.release = 1; }},
+      {"all releases", [](RunOptions& o) { o.swing.release = SwingChoice::kAll; }},
+      {"model", [](RunOptions& o) { o.models = {o.fit.model = "viscous"}; }},
+      {"models",
+       [](RunOptions& o) {
+         o.models = {"coulomb", "viscous"};
+       }},
+      {"order of models",
+       [](RunOptions& o) {
+         o.models = {o.fit.model = "viscous", "coulomb"};
+       }},
+      {"closed_form_only", [](RunOptions& o) { o.closed_form_only = true; }},
+  };
+}
+
+/// Those of the fit; enumerations by each of their values.
+std::vector<Change> ChangesOfTheFit() {
+  return {
+      {"gravity sine", [](RunOptions& o) { o.fit.gravity = Gravity::kSine; }},
+      {"gravity linear", [](RunOptions& o) { o.fit.gravity = Gravity::kLinear; }},
+      {"start release", [](RunOptions& o) { o.fit.start = StartChoice::kRelease; }},
+      {"start moving", [](RunOptions& o) { o.fit.start = StartChoice::kMoving; }},
+      {"fix", [](RunOptions& o) { o.fit.fixed["viscous"] = 0.1; }},
+      {"fix another", [](RunOptions& o) { o.fit.fixed["coulomb"] = 0.1; }},
+      // The neighbour of 0.1 among doubles.
+      {"fix at another value", [](RunOptions& o) { o.fit.fixed["viscous"] = 0.10000000000000002; }},
+      {"init", [](RunOptions& o) { o.fit.initial["viscous"] = 0.1; }},
+      {"lower bound", [](RunOptions& o) { o.fit.bounds["viscous"].lower = 0.1; }},
+      {"upper bound", [](RunOptions& o) { o.fit.bounds["viscous"].upper = 0.1; }},
+      {"prior",
+       [](RunOptions& o) {
+         o.fit.priors["viscous"] = {0.1, 0.01};
+       }},
+      {"prior of another error",
+       [](RunOptions& o) {
+         o.fit.priors["viscous"] = {0.1, 0.02};
+       }},
+      {"noise gaussian", [](RunOptions& o) { o.fit.noise = NoiseChoice::kGaussian; }},
+      {"noise quantized", [](RunOptions& o) { o.fit.noise = NoiseChoice::kQuantized; }},
+      {"loss huber", [](RunOptions& o) { o.fit.loss = Loss::kHuber; }},
+      {"loss student", [](RunOptions& o) { o.fit.loss = Loss::kStudent; }},
+      {"interval covariance", [](RunOptions& o) { o.fit.interval = IntervalMethod::kCovariance; }},
+      {"interval profile", [](RunOptions& o) { o.fit.interval = IntervalMethod::kProfile; }},
+      {"interval bootstrap", [](RunOptions& o) { o.fit.interval = IntervalMethod::kBootstrap; }},
+      {"seed", [](RunOptions& o) { o.fit.seed = 18446744073709551615U; }},
+      {"seed 2", [](RunOptions& o) { o.fit.seed = 2; }},
+      {"max_trace_error", [](RunOptions& o) { o.fit.max_trace_error = 1e-9; }},
+      {"max_iterations", [](RunOptions& o) { o.fit.max_iterations = 7; }},
+      {"max_traces", [](RunOptions& o) { o.fit.max_traces = 7; }},
+  };
+}
+
+TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
+  std::map<std::string, std::string> known;
+  std::vector<Change> changes = ChangesOfTheRun();
+  for (const Change& change : ChangesOfTheFit()) changes.push_back(change);
+  for (const Change& change : changes) {
+    const std::string json = JsonAfter(change);
+    const auto [other, is_new] = known.emplace(json, change.name);
+    EXPECT_TRUE(is_new) << change.name << " is as " << other->second << ": " << json;
+    EXPECT_TRUE(nlohmann::json::parse(json).is_object());
+    EXPECT_EQ(json, JsonAfter(change));
+  }
+}
+
+// A new member does not compile here: put it into the changes above or among what makes no difference below. `model` is
+// the first of `models`; rig and calibration are hashed apart; `start_values` no user can set.
+TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
+  RunOptions options;
+  [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
+  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range] = read;
+  [[maybe_unused]] auto& [from, to, release] = swing;
+  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, bounds, priors, noise, loss,
+                          interval, seed, threads, progress, max_trace_error, max_iterations, max_traces] = fit;
+}
+
+TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
+  const std::string json = JsonAfter({"nothing", [](RunOptions&) {}});
+  EXPECT_EQ(json, JsonAfter({"threads", [](RunOptions& o) { o.fit.threads = 7; }}));
+  EXPECT_EQ(json, JsonAfter({"progress", [](RunOptions& o) { o.fit.progress = [](int, int) {}; }}));
+}
+
+// Their bytes are hashed apart.
+TEST(OptionsJson, LeavesRigAndCalibrationOut) {
+  const std::string json = JsonAfter({"nothing", [](RunOptions&) {}});
+  EXPECT_EQ(json, JsonAfter({"rig", [](RunOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));
+  EXPECT_EQ(json, JsonAfter({"calibration", [](RunOptions& o) { o.read.calibration = Calibration(); }}));
+}
+
+TEST(OptionsJson, ToldInAnyOrderIsTheSame) {
+  const auto set = [](const std::string& first, const std::string& second) {
+    return JsonAfter({"", [&](RunOptions& o) {
+                        o.fit.fixed[first] = 1;
+                        o.fit.fixed[second] = 1;
+                      }});
+  };
+  EXPECT_EQ(set("viscous", "coulomb"), set("coulomb", "viscous"));
+}
+
+TEST(Provenance, AgreesUnlessWhatCountsDiffers) {
+  const Provenance one = {"d", "r", "c", "o", "v", "cpu"};
+  EXPECT_TRUE(one.Agrees(one));
+  EXPECT_TRUE(one.Agrees({"d", "r", "c", "o", "v", "another cpu"}));
+  EXPECT_FALSE(one.Agrees({"x", "r", "c", "o", "v", "cpu"}));
+  EXPECT_FALSE(one.Agrees({"d", "x", "c", "o", "v", "cpu"}));
+  EXPECT_FALSE(one.Agrees({"d", "r", "x", "o", "v", "cpu"}));
+  EXPECT_FALSE(one.Agrees({"d", "r", "c", "x", "v", "cpu"}));
+  EXPECT_FALSE(one.Agrees({"d", "r", "c", "o", "x", "cpu"}));
+  EXPECT_FALSE(one.Agrees({"d", "r", "", "o", "v", "cpu"}));
+}
+
+TEST(CpuType, NamesTheProcessorAndTheArithmetic) {
+  EXPECT_THAT(CpuType(), AnyOf(EndsWith(" (baseline)"), EndsWith(" (avx2)"), EndsWith(" (avx512)")));
+  EXPECT_EQ(CpuType(), CpuType());
+}
+
+}  // namespace
+}  // namespace pendulum::provenance_test

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/refit.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/batch/fit_run.h"
+#include "pendulum/report/json.h"
+#include "tests/batch/refit_folder.h"
+#include "tests/batch/small_batch.h"
+#include "tests/batch/store_rows.h"
+
+namespace pendulum::refit_test {
+namespace {
+
+using refit_folder::RefitTest;
+using refit_folder::ResultAlone;
+using small_batch::Folder;
+using small_batch::OptionsWith;
+using small_batch::RecordingText;
+using small_batch::RefitInto;
+using small_batch::WriteBatch;
+using store_rows::AllRows;
+using store_rows::Rows;
+using store_rows::Value;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCalibration =
+    R"({"schema_version": 1, "input": "counts", "angle_unit": "deg", "coefficients": [-49.6077, 0.1985]})";
+
+/// A recording as the counts that this calibration turns into degrees.
+std::string CountsText(std::uint64_t seed) {
+  const auto recording = SimulateRecording(small_batch::Truth(seed));
+  if (!recording) return recording.error().message;
+  std::string text = "time_s,angle_counts\n";
+  for (Eigen::Index i = 0; i < recording->size(); ++i) {
+    const double degrees = recording->value[i] * 180 / 3.14159265358979;
+    text += std::to_string(recording->time[i]) + "," + std::to_string(std::lround((degrees + 49.6077) / 0.1985)) + "\n";
+  }
+  return text;
+}
+
+// ---- The same results as of one recording at a time
+// ------------------------------------------------------------------
+
+TEST_F(RefitTest, GivesToTheLastBitWhatEachRecordingGivesAlone) {
+  folder_.Write("rigs/one.json", small_batch::kRigText);
+  folder_.Write("data/1.csv", RecordingText(1));
+  folder_.Write("data/2.csv", RecordingText(2));
+  folder_.Write("runs.csv", "path,id,rig\ndata/1.csv,a,rigs/one.json\ndata/2.csv,b,\n");
+  RefitOptions options = OptionsWith({"viscous", "coulomb"});
+  options.threads = 2;
+  RefitAll(options);
+  const auto rig = ReadRig(folder_ / "rigs/one.json");
+  ASSERT_TRUE(rig);
+  EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'a'"),
+            ResultAlone(options.run, folder_ / "data/1.csv", *rig, "data/1.csv"));
+  EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'b'"),
+            ResultAlone(options.run, folder_ / "data/2.csv", std::nullopt, "data/2.csv"));
+  EXPECT_THAT(Rows(store_, "SELECT id, exit_code, reason FROM runs ORDER BY id"), ElementsAre("a|0|NULL", "b|0|NULL"));
+}
+
+TEST_F(RefitTest, GivesTheDatasetsResultsByOneRigForAllAndACalibrationOfOne) {
+  for (const char* name : {"runs_1.csv", "coulomb.csv"}) fs::copy(std::string("datasets/") + name, folder_ / name);
+  folder_.Write("counts.csv", CountsText(3));
+  folder_.Write("calibration.json", kCalibration);
+  folder_.Write("runs.csv", "path,calibration\nruns_1.csv,\ncoulomb.csv,\ncounts.csv,calibration.json\n");
+  RefitOptions options = coulomb_;
+  options.rig = R"({"gravity_torque": 1.8033})";
+  RefitAll(options);
+  const auto rig = ParseRig(*options.rig, "--rig");
+  const auto calibration = ParseCalibration(kCalibration, "calibration.json");
+  ASSERT_TRUE(rig && calibration);
+  for (const std::string name : {"runs_1.csv", "coulomb.csv", "counts.csv"}) {
+    RunOptions alone = options.run;
+    if (name == "counts.csv") alone.read.calibration = *calibration;
+    EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = '" + name + "'"),
+              ResultAlone(alone, folder_ / name, *rig, name));
+  }
+}
+
+TEST_F(RefitTest, GivesClosedFormsAloneWithoutAnyFit) {
+  WriteBatch(folder_, 1);
+  RefitOptions options = coulomb_;
+  options.run.closed_form_only = true;
+  const RefitCounts counts = RefitAll(options);
+  EXPECT_EQ(counts.unfitted, 0);
+  EXPECT_EQ(ValueOf("SELECT result FROM runs"), ResultAlone(options.run, folder_ / "0.csv", std::nullopt, "0.csv"));
+  EXPECT_EQ(ValueOf("SELECT count(*) FROM fits"), "0");
+}
+
+TEST_F(RefitTest, MakesOneRunAsItMakesABatch) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  ManifestEntry entry;
+  entry.id = entry.path = "0.csv";
+  const auto source = OpenSource(folder_ / "runs.csv");
+  ASSERT_TRUE(source);
+  const RunOutcome outcome = RefitRun(*source, entry, coulomb_);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.reason, "");
+  EXPECT_EQ(outcome.result.dump(), ValueOf("SELECT result FROM runs"));
+  EXPECT_EQ(outcome.provenance.data_sha256, ValueOf("SELECT data_sha256 FROM runs"));
+  entry.path = "nowhere.csv";
+  EXPECT_EQ(RefitRun(*source, entry, coulomb_).exit_code, ExitCode(StatusCode::kNotFound));
+}
+
+TEST_F(RefitTest, DoesNotDependOnItsThreads) {
+  WriteBatch(folder_, 7);
+  folder_.Write("runs.csv", folder_.Read("runs.csv") + "nowhere.csv,z\n");
+  std::vector<std::string> rows;
+  for (const int threads : {1, 2, 5}) {
+    RefitOptions options = OptionsWith({"viscous", "coulomb"});
+    options.threads = threads;
+    const fs::path store = folder_ / ("store" + std::to_string(threads));
+    RefitInto(store, folder_ / "runs.csv", options);
+    if (threads == 1) rows = AllRows(store);
+    EXPECT_THAT(rows, SizeIs(testing::Gt(8U + 16U)));
+    EXPECT_EQ(AllRows(store), rows) << threads;
+  }
+}
+
+// ---- Only what changed ---------------------------------------------------------------------------------------------
+
+TEST_F(RefitTest, MakesNothingTwice) {
+  WriteBatch(folder_, 3);
+  const RefitCounts first = RefitAll(coulomb_);
+  EXPECT_EQ(first.runs, 3);
+  EXPECT_EQ(first.refitted, 3);
+  EXPECT_EQ(first.current, 0);
+  const std::vector<std::string> rows = AllRows(store_);
+  const RefitCounts second = RefitAll(coulomb_);
+  EXPECT_EQ(second.runs, 3);
+  EXPECT_EQ(second.refitted, 0);
+  EXPECT_EQ(second.current, 3);
+  EXPECT_FALSE(second.stopped);
+  EXPECT_EQ(AllRows(store_), rows);
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());
+}
+
+TEST_F(RefitTest, SeesOneByteThatChangedInARecording) {
+  WriteBatch(folder_, 3);
+  RefitAll(coulomb_);
+  std::string text = folder_.Read("1.csv");
+  text.back() = ' ';  // as good as a line break
+  folder_.Write("1.csv", text);
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());
+}
+
+TEST_F(RefitTest, SeesAChangeInARigOrACalibrationOfSomeRuns) {
+  folder_.Write("counts.csv", CountsText(2));
+  folder_.Write("0.csv", RecordingText(1));
+  folder_.Write("calibration.json", kCalibration);
+  for (const char* name : {"one.json", "two.json"}) folder_.Write(name, small_batch::kRigText);
+  folder_.Write("runs.csv",
+                "path,id,rig,calibration\n0.csv,a,one.json,\n0.csv,b,two.json,\n0.csv,c,,\n"
+                "counts.csv,d,,calibration.json\n");
+  EXPECT_EQ(RefitAll(coulomb_).unfitted, 0);
+  folder_.Write("two.json", R"({"gravity_torque": 1.9})");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
+  folder_.Write("calibration.json", std::string(kCalibration) + "\n");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("d"));
+  RefitOptions with_rig = coulomb_;  // of those that name none
+  with_rig.rig = small_batch::kRigText;
+  EXPECT_THAT(Refitted(with_rig), ElementsAre("c", "d"));
+  EXPECT_THAT(Refitted(with_rig), IsEmpty());
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("c", "d"));
+}
+
+TEST_F(RefitTest, SeesOtherOptions) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::vector<std::function<void(RunOptions&)>> changes = {
+      [](RunOptions& run) {
+        run.models = {"viscous", "coulomb"};
+      },
+      [](RunOptions& run) { run.swing.from = 0.5; },
+      [](RunOptions& run) { run.swing.to = 6; },
+      [](RunOptions& run) { run.fit.fixed["coulomb"] = 0.002; },
+      [](RunOptions& run) {
+        run.fit.bounds["coulomb"] = {0, 1};
+      },
+      [](RunOptions& run) { run.fit.initial["coulomb"] = 0.002; },
+      [](RunOptions& run) {
+        run.fit.priors["coulomb"] = {0.002, 0.001};
+      },
+      [](RunOptions& run) { run.fit.noise = NoiseChoice::kGaussian; },
+      [](RunOptions& run) { run.fit.seed = 2; },
+      [](RunOptions& run) { run.read.resolution = 0.001; },
+      [](RunOptions& run) { run.closed_form_only = true; }};
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    RefitOptions options = coulomb_;
+    changes[k](options.run);
+    EXPECT_THAT(Refitted(options), ElementsAre("a", "b")) << k;
+    EXPECT_THAT(Refitted(options), IsEmpty()) << k;
+  }
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
+}
+
+TEST_F(RefitTest, DoesNotTakeThreadsForAnOption) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  RefitOptions options = coulomb_;
+  options.threads = 2;
+  options.run.fit.threads = 7;
+  EXPECT_THAT(Refitted(options), IsEmpty());
+}
+
+TEST_F(RefitTest, SeesAWindowOrModelsThatTheManifestChanged) {
+  WriteBatch(folder_, 3);
+  folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,,\n1.csv,b,,\n2.csv,c,,\n");
+  RefitAll(coulomb_);
+  folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,1,\n1.csv,b,,\n2.csv,c,,viscous\n");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "c"));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'c'"), ElementsAre("viscous"));
+  folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,1,coulomb\n1.csv,b,,\n2.csv,c,,viscous\n");
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // the same in other words
+}
+
+TEST_F(RefitTest, TakesRowsOfAnotherVersionForOld) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  SQLite::Database(store_.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET version = '0.0.1' WHERE id = 'b'");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
+}
+
+TEST_F(RefitTest, MakesAllAnewWhenItIsForced) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::vector<std::string> rows = AllRows(store_);
+  RefitOptions forced = coulomb_;
+  forced.force = true;
+  EXPECT_THAT(Refitted(forced), ElementsAre("a", "b"));
+  EXPECT_EQ(AllRows(store_), rows);
+}
+
+TEST_F(RefitTest, TriesAgainWhatFailedWhenItIsAsked) {
+  WriteBatch(folder_, 2);
+  folder_.Write("bad.csv", "time_s,angle_rad\n0,nonsense\n");
+  folder_.Write("runs.csv", folder_.Read("runs.csv") + "bad.csv,bad\nnowhere.csv,none\n");
+  RefitAll(coulomb_);
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());
+  RefitOptions again = coulomb_;
+  again.retry_failed = true;
+  EXPECT_THAT(Refitted(again), ElementsAre("bad", "none"));
+}
+
+TEST_F(RefitTest, ForgetsRowsOfModelsThatAreNotAskedForAnyMore) {
+  WriteBatch(folder_, 1);
+  RefitAll(OptionsWith({"viscous", "coulomb", "drag"}));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits ORDER BY model"), ElementsAre("coulomb", "drag", "viscous"));
+  RefitAll(OptionsWith({"viscous"}));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits"), ElementsAre("viscous"));
+  EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities WHERE model <> 'viscous'"), "0");
+}
+
+}  // namespace
+}  // namespace pendulum::refit_test

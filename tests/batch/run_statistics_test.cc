@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/run_statistics.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <boost/random/normal_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/batch/run_values.h"
+
+namespace pendulum::run_statistics_test {
+namespace {
+
+using run_values::kNone;
+using run_values::NormalRuns;
+using run_values::OneGroup;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// ---- Describe ------------------------------------------------------------------------------------------------------
+
+const std::vector<double> kTen = {2.1, 3.7, 1.4, 5.9, 4.4, 2.8, 3.3, 6.2, 3.1, 2.5};
+
+// np.percentile(x, [0, 25, 50, 75, 100]) is type 7 of Hyndman and Fan, R's default; x.mean(), x.std(ddof=1).
+TEST(Describe, GivesQuartilesMeanAndStandardDeviation) {
+  const Distribution distribution = Describe(kTen);
+  EXPECT_EQ(distribution.minimum, 1.4);
+  EXPECT_DOUBLE_EQ(distribution.lower_quartile, 2.575);
+  EXPECT_DOUBLE_EQ(distribution.median, 3.2);
+  EXPECT_DOUBLE_EQ(distribution.upper_quartile, 4.225);
+  EXPECT_EQ(distribution.maximum, 6.2);
+  EXPECT_DOUBLE_EQ(distribution.mean, 3.54);
+  EXPECT_NEAR(distribution.std_dev, 1.5614807786912468, 1e-14);
+}
+
+// np.histogram(x, bins=np.histogram_bin_edges(x, 'fd')): edges 1.4, 2.6, 3.8, 5.0, 6.2.
+TEST(Describe, CountsInTheBinsOfFreedmanAndDiaconis) {
+  const Distribution distribution = Describe(kTen);
+  EXPECT_EQ(distribution.from, 1.4);
+  EXPECT_EQ(distribution.to, 6.2);
+  EXPECT_THAT(distribution.counts, ElementsAre(3, 4, 1, 2));
+  EXPECT_EQ(distribution.below, 0);
+  EXPECT_EQ(distribution.above, 0);
+}
+
+// Quartiles of 0..100 and a value far off each side: 24.5 and 75.5, so that bins end at 75.5 + 3 · 51 at most; none is
+// lost, and no bar stands alone.
+TEST(Describe, CountsOutliersBesideTheBins) {
+  std::vector<double> values(101);
+  std::iota(values.begin(), values.end(), 0);
+  values.push_back(1e6);
+  values.push_back(-1e6);
+  const Distribution distribution = Describe(values);
+  EXPECT_DOUBLE_EQ(distribution.lower_quartile, 24.5);
+  EXPECT_DOUBLE_EQ(distribution.upper_quartile, 75.5);
+  EXPECT_DOUBLE_EQ(distribution.from, 24.5 - 3 * 51);
+  EXPECT_DOUBLE_EQ(distribution.to, 75.5 + 3 * 51);
+  EXPECT_EQ(distribution.below, 1);
+  EXPECT_EQ(distribution.above, 1);
+  EXPECT_EQ(std::accumulate(distribution.counts.begin(), distribution.counts.end(), std::size_t{0}), 101);
+}
+
+// Of 10^6 equal steps the rule has 2 · 500000 / 100 a bin: 100 bins.
+TEST(Describe, HasSixtyBinsAtMost) {
+  std::vector<double> values(1000000);
+  std::iota(values.begin(), values.end(), 0);
+  EXPECT_THAT(Describe(values).counts, SizeIs(60));
+}
+
+TEST(Describe, HasOneBinForValuesThatDoNotDiffer) {
+  const Distribution one = Describe({2.5});
+  EXPECT_EQ(one.median, 2.5);
+  EXPECT_EQ(one.std_dev, 0);
+  EXPECT_THAT(one.counts, ElementsAre(1));
+  const Distribution same = Describe({2.5, 2.5, 2.5});
+  EXPECT_EQ(same.from, 2.5);
+  EXPECT_EQ(same.to, 2.5);
+  EXPECT_THAT(same.counts, ElementsAre(3));
+}
+
+TEST(Describe, CountsEveryValueOnce) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    const RunValues values = NormalRuns(1, 300, 1, seed);
+    const Distribution distribution = Describe(values.estimate);
+    const std::size_t inside = std::accumulate(distribution.counts.begin(), distribution.counts.end(), std::size_t{0});
+    EXPECT_EQ(inside + distribution.below + distribution.above, 300);
+  }
+}
+
+// ---- FindOutliers --------------------------------------------------------------------------------------------------
+
+// The rate of such a rule on its own (NumPy, 4000 batches a size): 3.3 to 4.4 % for 5 to 200 runs; 1 % is four times
+// the rate's own standard deviation.
+TEST(FindOutliers, AreFalseOnceInTwentyBatchesOfRunsWithTrueErrors) {
+  constexpr int kBatches = 3000;
+  for (const std::size_t runs : {5U, 20U, 100U}) {
+    int alarms = 0;
+    for (int seed = 0; seed < kBatches; ++seed) {
+      if (!FindOutliers(NormalRuns(1, runs, 1, static_cast<std::uint64_t>(seed) + 1)).empty()) ++alarms;
+    }
+    EXPECT_GT(alarms, 0.025 * kBatches) << runs;
+    EXPECT_LT(alarms, 0.06 * kBatches) << runs;
+  }
+}
+
+TEST(FindOutliers, AreFoundWithTheirDistanceTheFarthestFirst) {
+  RunValues values = OneGroup({10, 11, 9, 10.5, 30, 9.5, -30, 10});
+  std::ranges::fill(values.std_error, 2);
+  const auto outliers = FindOutliers(values);
+  ASSERT_THAT(outliers, SizeIs(2));
+  EXPECT_EQ(outliers[0].run, 6);
+  EXPECT_DOUBLE_EQ(outliers[0].z, 20);  // 40 from the median 10, of errors 2
+  EXPECT_EQ(outliers[1].run, 4);
+  EXPECT_DOUBLE_EQ(outliers[1].z, 10);
+}
+
+// Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and 1.4826 · 0.5 the scale.
+TEST(FindOutliers, AreJudgedByTheScatterWhereThereIsNoError) {
+  const auto outliers = FindOutliers(OneGroup({10, 11, 9, 10.5, 30, 9.5, 10}));
+  ASSERT_THAT(outliers, SizeIs(1));
+  EXPECT_EQ(outliers[0].run, 4);
+  EXPECT_NEAR(outliers[0].z, 20 / (1.4826 * 0.5), 1e-12);
+}
+
+// st.norm.isf((1 - 0.95 ** (1 / 6)) / 2) = 2.63104 for six runs.
+TEST(FindOutliers, BeginAtTheLimitOfSidak) {
+  for (const auto& [value, count] : {std::pair{2.631, 0}, std::pair{2.632, 1}}) {
+    EXPECT_THAT(FindOutliers(OneGroup({-0.2, 0.1, 0, -0.1, value, 0}, 1)), SizeIs(count)) << value;
+  }
+}
+
+TEST(FindOutliers, AreThoseOfTheirOwnGroup) {
+  RunValues values = NormalRuns(2, 10, 1, 7);  // about 100 and 150
+  EXPECT_THAT(FindOutliers(values), IsEmpty());
+  values.estimate[4] = 150;  // of the first group
+  const auto outliers = FindOutliers(values);
+  ASSERT_THAT(outliers, SizeIs(1));
+  EXPECT_EQ(outliers[0].run, 4);
+}
+
+TEST(FindOutliers, AreNotToldAmongFewerThanFiveRuns) {
+  EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1000}, 0.1)), IsEmpty());
+  EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000}, 0.1)), SizeIs(1));
+  EXPECT_THAT(FindOutliers(OneGroup({})), IsEmpty());
+}
+
+TEST(FindOutliers, AreNotToldWithoutAnyScale) { EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty()); }
+
+// ---- Repeat --------------------------------------------------------------------------------------------------------
+
+// Weights 1, 1, 1/4: mean 25.5 / 2.25, chi2 = (4/3)² + (2/3)² + (8/3)² / 4 = 4; of two degrees of freedom p is
+// exp(-chi2 / 2).
+TEST(Repeat, IsWhatThreeRunsGiveByHand) {
+  RunValues values = OneGroup({10, 12, 14});
+  values.std_error = {1, 1, 2};
+  const auto repeatability = Repeat(values, {});
+  ASSERT_TRUE(repeatability);
+  ASSERT_THAT(repeatability->groups, SizeIs(1));
+  const GroupRepeatability& group = repeatability->groups[0];
+  EXPECT_EQ(group.runs, 3);
+  EXPECT_NEAR(group.mean, 25.5 / 2.25, 1e-13);
+  EXPECT_NEAR(group.std_error, 1 / 1.5, 1e-13);
+  EXPECT_NEAR(group.chi2, 4, 1e-12);
+  EXPECT_NEAR(group.ScatterRatio(), std::sqrt(2), 1e-12);
+  EXPECT_NEAR(group.P(), std::exp(-2), 1e-12);
+  EXPECT_EQ(repeatability->runs, 3);
+  EXPECT_EQ(repeatability->dof, 2);
+  EXPECT_NEAR(repeatability->upper_p, std::exp(-2), 1e-12);
+  EXPECT_NEAR(repeatability->lower_p, 1 - std::exp(-2), 1e-12);
+  EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kAgrees);
+}
+
+// Of equal errors the equation of Paule and Mandel is between² = s² - error²: 4 - 1 and 16 - 1; with 2 and 1 degrees of
+// freedom sqrt((2 · 3 + 1 · 15) / 3).
+TEST(Repeat, PutsGroupsTogetherByTheirDegreesOfFreedom) {
+  RunValues values = OneGroup({10, 12, 14, 100, 100 + std::sqrt(32)}, 1);
+  values.group = {0, 0, 0, 1, 1};
+  const auto repeatability = Repeat(values, {});
+  ASSERT_TRUE(repeatability);
+  ASSERT_THAT(repeatability->groups, SizeIs(2));
+  EXPECT_NEAR(repeatability->groups[0].between, std::sqrt(3), 1e-6);
+  EXPECT_NEAR(repeatability->groups[1].between, std::sqrt(15), 1e-6);
+  EXPECT_NEAR(repeatability->between, std::sqrt(7), 1e-6);
+  EXPECT_EQ(repeatability->dof, 3);
+  EXPECT_NEAR(repeatability->chi2, 8 + 16, 1e-9);
+  EXPECT_NEAR(repeatability->ScatterRatio(), std::sqrt(8), 1e-9);
+}
+
+/// How many batches of `runs` runs of three rigs, with true errors, are not said to agree.
+int FalseVerdicts(int batches, std::size_t runs) {
+  int verdicts = 0;
+  for (int seed = 0; seed < batches; ++seed) {
+    const auto repeatability = Repeat(NormalRuns(3, runs, 1, static_cast<std::uint64_t>(seed) + 1), {});
+    if (repeatability->verdict != Repeatability::Verdict::kAgrees) ++verdicts;
+  }
+  return verdicts;
+}
+
+// p below 1 % on either side: 2 % of 2000 batches, ± 6.3.
+TEST(Repeat, IsSaidWronglyOfTrueErrorsInTwoOfAHundredBatches) {
+  const int verdicts = FalseVerdicts(2000, 10);
+  EXPECT_GT(verdicts, 40 - 4 * 6.3);
+  EXPECT_LT(verdicts, 40 + 4 * 6.3);
+}
+
+// Standard deviation 2, errors 1: between is sqrt(3), and of 198 degrees of freedom its own error is 0.115.
+TEST(Repeat, SeesErrorsThatAreTooSmallAndByHowMuch) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    const auto repeatability = Repeat(NormalRuns(2, 100, 2, seed), {});
+    ASSERT_TRUE(repeatability);
+    EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kScatterLarger);
+    EXPECT_NEAR(repeatability->between, std::sqrt(3), 4 * 0.115);
+    EXPECT_NEAR(repeatability->ScatterRatio(), 2, 4 * 0.1);
+    EXPECT_LT(repeatability->upper_p, 1e-6);
+  }
+}
+
+TEST(Repeat, SeesErrorsThatAreTooLarge) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    const auto repeatability = Repeat(NormalRuns(2, 100, 0.5, seed), {});
+    ASSERT_TRUE(repeatability);
+    EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kScatterSmaller);
+    EXPECT_EQ(repeatability->between, 0);
+    EXPECT_LT(repeatability->lower_p, 1e-6);
+  }
+}
+
+// Rigs 50 apart, errors 1: as one group it is another matter.
+TEST(Repeat, DoesNotTakeRigsThatDifferForScatter) {
+  RunValues values = NormalRuns(5, 20, 1, 3);
+  const auto by_rig = Repeat(values, {});
+  ASSERT_TRUE(by_rig);
+  EXPECT_EQ(by_rig->verdict, Repeatability::Verdict::kAgrees);
+  values.group.assign(values.size(), 0);
+  const auto together = Repeat(values, {});
+  ASSERT_TRUE(together);
+  EXPECT_EQ(together->verdict, Repeatability::Verdict::kScatterLarger);
+  EXPECT_GT(together->between, 50);
+}
+
+// 5 % of scatter is seen in 20000 runs, and nothing to speak of.
+TEST(Repeat, SpeaksOfTenPercentOnly) {
+  for (const double scatter : {1.05, 0.95}) {
+    const auto repeatability = Repeat(NormalRuns(1, 20000, scatter, 1), {});
+    ASSERT_TRUE(repeatability);
+    EXPECT_LT(std::min(repeatability->lower_p, repeatability->upper_p), 1e-6);
+    EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kAgrees) << scatter;
+  }
+}
+
+TEST(Repeat, LeavesOutOutliersAndRunsWithoutErrors) {
+  RunValues values = OneGroup({10, 500, 12, 14, -70});
+  values.std_error = {1, 1, 1, 2, kNone};
+  const auto repeatability = Repeat(values, {{1, 490}});
+  ASSERT_TRUE(repeatability);
+  EXPECT_EQ(repeatability->runs, 3);
+  EXPECT_NEAR(repeatability->chi2, 4, 1e-12);
+}
+
+TEST(Repeat, IsNothingWhereNoGroupHasTwoRunsWithErrors) {
+  EXPECT_FALSE(Repeat(OneGroup({}), {}));
+  EXPECT_FALSE(Repeat(OneGroup({1}, 1), {}));
+  EXPECT_FALSE(Repeat(OneGroup({1, 2, 3}), {}));
+  EXPECT_FALSE(Repeat(OneGroup({1, 2}, 1), {{0, 9}}));
+  RunValues apart = OneGroup({1, 2}, 1);
+  apart.group = {0, 1};
+  EXPECT_FALSE(Repeat(apart, {}));
+}
+
+}  // namespace
+}  // namespace pendulum::run_statistics_test

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/shards.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "pendulum/batch/store_lock.h"
+#include "tests/batch/shards_folder.h"
+#include "tests/batch/small_batch.h"
+#include "tests/batch/store_rows.h"
+
+namespace pendulum::shards_test {
+namespace {
+
+using shards_folder::ShardsTest;
+using small_batch::Folder;
+using small_batch::OptionsWith;
+using small_batch::RecordingText;
+using small_batch::RefitInto;
+using small_batch::WriteBatch;
+using store_rows::AllRows;
+using store_rows::Rows;
+using store_rows::Value;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+// ---- The parts of a batch ------------------------------------------------------------------------------------------
+
+TEST(Shard, CutsABatchIntoPartsThatDifferByOneRunAtMost) {
+  for (const std::int64_t runs : {0, 1, 7, 1000, 999999937}) {
+    for (const std::int64_t count : {1, 2, 3, 7, 64}) {
+      std::int64_t end = 0;
+      for (std::int64_t k = 0; k < count; ++k) {
+        const Shard shard{k, count};
+        EXPECT_EQ(shard.Begin(runs), end);
+        end = shard.End(runs);
+        EXPECT_GE(end - shard.Begin(runs), runs / count);
+        EXPECT_LE(end - shard.Begin(runs), runs / count + 1);
+      }
+      EXPECT_EQ(end, runs);
+    }
+  }
+}
+
+TEST(ShardPath, NamesTheStoreOfAShard) {
+  EXPECT_EQ(ShardPath("out", 3), fs::path("out/shard-3.sqlite"));
+  EXPECT_EQ(ShardList({3, 17}), "3,17");
+  EXPECT_EQ(ShardList({}), "");
+}
+
+// ---- Merged --------------------------------------------------------------------------------------------------------
+
+TEST_F(ShardsTest, GiveTheStoreThatIsMadeAtOnce) {
+  const std::vector<std::string> at_once = RowsAtOnce();
+  for (const std::int64_t count : {1, 2, 3, 9}) {  // nine: two of them are empty
+    fs::remove_all(out_);
+    fs::create_directory(out_);
+    fs::remove(store_);
+    AllShards(count);
+    const auto runs = Merge(count);
+    ASSERT_TRUE(runs) << runs.error().message;
+    EXPECT_EQ(*runs, kRuns + 1);
+    EXPECT_EQ(AllRows(store_), at_once) << count;
+    auto store = Store::Open(store_, Store::Mode::kRead);
+    ASSERT_TRUE(store);
+    const auto meta = store->Meta();
+    ASSERT_TRUE(meta);
+    EXPECT_TRUE(meta->complete);
+    EXPECT_FALSE(meta->shard);
+    EXPECT_EQ(meta->runs, kRuns + 1);
+  }
+}
+
+TEST_F(ShardsTest, AreCurrentForTheWholeBatchOnceTheyAreMerged) {
+  AllShards(3);
+  ASSERT_TRUE(Merge(3));
+  const RefitCounts counts = RefitInto(store_, folder_ / "runs.csv", options_);
+  EXPECT_EQ(counts.current, kRuns + 1);
+  EXPECT_EQ(counts.refitted, 0);
+}
+
+TEST_F(ShardsTest, MayBeMergedTwice) {
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  const std::vector<std::string> rows = AllRows(store_);
+  const auto again = Merge(2);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, kRuns + 1);
+  EXPECT_EQ(AllRows(store_), rows);
+}
+
+TEST_F(ShardsTest, ReplaceTheirRunsInAStoreAndKeepTheOthers) {
+  folder_.Write("other.csv", "path,id\n0.csv,other\n1.csv,b\n");  // b is 1.csv of this batch too
+  RefitInto(store_, folder_ / "other.csv", OptionsWith({"drag"}));
+  const std::string others = "SELECT result FROM runs WHERE id = 'other'";
+  const std::string before = Value(store_, others);
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_EQ(Value(store_, others), before);
+  EXPECT_EQ(Value(store_, "SELECT count(*) FROM runs"), "8");
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'b'"), ElementsAre("viscous"));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'other'"), ElementsAre("drag"));
+  EXPECT_EQ(Value(store_, "SELECT count(*) FROM options"), "2");
+  EXPECT_THAT(Rows(store_, "PRAGMA foreign_key_check"), IsEmpty());
+  EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
+}
+
+TEST_F(ShardsTest, LeaveNothingElseBehindOnceTheyAreMerged) {
+  AllShards(2);
+  for (const char* name :
+       {"shard-0.sqlite.part", "shard-1.sqlite.attempt-9-0-node-4", "shard-1.sqlite.attempt-9-0-node-4-journal"}) {
+    folder_.Write(std::string("out/") + name, "of a dead attempt");
+  }
+  folder_.Write("out/notes.txt", "mine");
+  ASSERT_TRUE(Merge(2));
+  EXPECT_THAT(NamesInOut(), ElementsAre("notes.txt", "shard-0.sqlite", "shard-1.sqlite"));
+  EXPECT_THAT(folder_.Names("store.sqlite"), ElementsAre("store.sqlite"));
+}
+
+// A merge that was killed while it wrote leaves its file and that file's journal; whoever plays the journal back into
+// another file spoils that.
+TEST_F(ShardsTest, AreMergedAlsoAfterAMergeThatWasKilled) {
+  const std::vector<std::string> at_once = RowsAtOnce();
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  LeaveAsKilled(store_, folder_ / "store.sqlite.merging");
+  const auto merged = Merge(2);
+  ASSERT_TRUE(merged) << merged.error().message;
+  EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
+  EXPECT_EQ(Value(store_, "SELECT count(*) FROM options"), "1");
+  EXPECT_EQ(AllRows(store_), at_once);
+}
+
+// ---- Missing and foreign -------------------------------------------------------------------------------------------
+
+TEST_F(ShardsTest, AreListedWhileTheyAreMissingAndNotMerged) {
+  RefitOne(1, 4, options_);
+  std::atomic<bool> stop = false;
+  RefitOne(3, 4, StoppingAfter(1, stop));
+  const auto missing = MissingShards(out_, 4);
+  ASSERT_TRUE(missing) << missing.error().message;
+  EXPECT_THAT(*missing, ElementsAre(0, 2, 3));
+  const auto merged = Merge(4);
+  ASSERT_FALSE(merged);
+  EXPECT_EQ(merged.error().code, StatusCode::kNotFound);
+  EXPECT_EQ(merged.error().message, out_.string() + ": of 4 shards these are missing: 0,2,3; run them and merge again");
+  EXPECT_FALSE(fs::exists(store_));
+  EXPECT_TRUE(fs::exists(out_ / "shard-3.sqlite.part"));  // what is done is kept
+}
+
+TEST_F(ShardsTest, AreNoneMissingWhereAllAreComplete) {
+  AllShards(2);
+  const auto missing = MissingShards(out_, 2);
+  ASSERT_TRUE(missing);
+  EXPECT_THAT(*missing, IsEmpty());
+}
+
+TEST_F(ShardsTest, AreNotLookedForInAFolderThatIsNotThere) {
+  const auto missing = MissingShards(folder_ / "nowhere", 2);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
+  EXPECT_THAT(missing.error().message, StartsWith((folder_ / "nowhere").string() + ": there is no such folder"));
+}
+
+/// The message with which a merge of two shards is refused.
+std::string Refusal(const Result<std::int64_t>& merged) {
+  if (merged) return "merged";
+  EXPECT_EQ(merged.error().code, StatusCode::kDataLoss) << merged.error().message;
+  return merged.error().message;
+}
+
+TEST_F(ShardsTest, OfAnotherManifestAreRefused) {
+  AllShards(2);
+  folder_.Write("runs.csv", folder_.Read("runs.csv") + "0.csv,more\n");
+  RefitOne(1, 2, options_);
+  EXPECT_THAT(Refusal(Merge(2)), AllOf(HasSubstr("shard-1.sqlite"), HasSubstr("shard of another batch")));
+  EXPECT_FALSE(fs::exists(store_));
+}
+
+TEST_F(ShardsTest, OfOtherOptionsAreRefused) {
+  AllShards(2);
+  RefitOne(1, 2, OptionsWith({"coulomb"}));
+  EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard of another batch"));
+}
+
+TEST_F(ShardsTest, OfAnotherVersionAreRefused) {
+  AllShards(2);
+  SQLite::Database(ShardPath(out_, 1).string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE meta SET value = '0.0.1' WHERE key = 'version'");
+  EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard of another batch"));
+}
+
+TEST_F(ShardsTest, OfAnotherNumberAreRefused) {
+  AllShards(3);
+  EXPECT_THAT(Refusal(Merge(2)), AllOf(HasSubstr("shard-0.sqlite"), HasSubstr("0/3")));
+  fs::rename(ShardPath(out_, 0), ShardPath(out_, 2));
+  EXPECT_THAT(Refusal(MergeShards(out_, 3, store_)),
+              AllOf(HasSubstr("shard-2.sqlite"), HasSubstr("the store of shard 0/3, not of shard 2/3")));
+}
+
+TEST_F(ShardsTest, ThatAreNoneAreRefused) {
+  AllShards(2);
+  fs::remove(ShardPath(out_, 1));
+  RefitInto(ShardPath(out_, 1), folder_ / "runs.csv", options_);
+  EXPECT_THAT(Refusal(Merge(2)), AllOf(HasSubstr("shard-1.sqlite"), HasSubstr("a whole batch")));
+  folder_.Write("out/shard-1.sqlite", "this is text");
+  EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard-1.sqlite"));
+}
+
+TEST_F(ShardsTest, AreNotMergedIntoAFileThatIsNoStore) {
+  AllShards(2);
+  folder_.Write("store.sqlite", "this is text");
+  EXPECT_THAT(Refusal(Merge(2)), HasSubstr("store.sqlite"));
+  EXPECT_EQ(folder_.Read("store.sqlite"), "this is text");
+}
+
+TEST_F(ShardsTest, AreNotMergedIntoAStoreThatIsInUse) {
+  AllShards(2);
+  const auto lock = StoreLock::Take(store_);
+  ASSERT_TRUE(lock);
+  const auto merged = Merge(2);
+  ASSERT_FALSE(merged);
+  EXPECT_EQ(merged.error().code, StatusCode::kTryAgain);
+  EXPECT_THAT(merged.error().message, HasSubstr("another process"));
+}
+
+}  // namespace
+}  // namespace pendulum::shards_test

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "pendulum/batch/refit.h"
+#include "pendulum/batch/store.h"
+#include "pendulum/trajectory/synthetic.h"
+
+/// Batches of short synthetic recordings in temporary folders.
+namespace pendulum::small_batch {
+
+/// A temporary folder, which goes with all that is in it.
+class Folder {
+ public:
+  explicit Folder(const std::string& name)
+      : path_(std::filesystem::path(testing::TempDir()) / (name + "_" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() { std::filesystem::remove_all(path_); }
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+  }
+
+  std::string Read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  /// Names of the files in it that begin so, in order.
+  std::vector<std::string> Names(const std::string& prefix = "") const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(prefix)) names.push_back(name);
+    }
+    std::ranges::sort(names);
+    return names;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What is true of the recordings, in units of G: I_O / G = 0.0438 s^2, b / G = 0.0011 s, τ_c / G = 0.0022.
+inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
+  SyntheticOptions options;
+  options.parameters = {0.0438, 0.0011, 0.0022};
+  options.release_angle = release_angle;
+  options.release_time = 0.3;
+  options.duration = 8;
+  options.sample_rate = 40;
+  options.noise = 0.002;
+  options.seed = seed;
+  return options;
+}
+
+/// Such a recording as CSV, to the last bit.
+inline std::string RecordingText(const SyntheticOptions& options) {
+  const auto recording = SimulateRecording(options);
+  if (!recording) {
+    ADD_FAILURE() << recording.error().message;
+    return "";
+  }
+  std::string text = "time_s,angle_rad\n";
+  for (Eigen::Index i = 0; i < recording->size(); ++i) {
+    constexpr std::size_t kMostCharacters = 64;
+    std::array<char, kMostCharacters> line{};
+    std::snprintf(line.data(), line.size(), "%.17g,%.17g\n", recording->time[i], recording->value[i]);
+    text += line.data();
+  }
+  return text;
+}
+
+inline std::string RecordingText(std::uint64_t seed) { return RecordingText(Truth(seed)); }
+
+inline constexpr const char* kRigText = R"({"gravity_torque": {"value": 1.8, "std_dev": 0.002}})";
+
+/// The options of a refit by one thread, unless the environment's cores are to be used.
+inline RefitOptions OptionsWith(const std::vector<std::string>& models) {
+  RefitOptions options;
+  options.run.models = models;
+  options.run.fit.model = models.front();
+  options.threads = 1;
+  return options;
+}
+
+/// Writes so many recordings 0.csv, 1.csv ... and runs.csv, the manifest that has them under the ids a, b, ...
+inline void WriteBatch(const Folder& folder, int runs) {
+  std::string manifest = "path,id\n";
+  for (int k = 0; k < runs; ++k) {
+    folder.Write(std::to_string(k) + ".csv", RecordingText(static_cast<std::uint64_t>(k) + 1));
+    manifest += std::to_string(k) + ".csv," + std::string(1, static_cast<char>('a' + k)) + "\n";
+  }
+  folder.Write("runs.csv", manifest);
+}
+
+/// The store of that path after a refit of that manifest; fails the test where it cannot be made.
+inline RefitCounts RefitInto(const std::filesystem::path& store_path, const std::filesystem::path& manifest,
+                             const RefitOptions& options) {
+  const auto source = OpenSource(manifest);
+  auto store = Store::Open(store_path, Store::Mode::kWrite);
+  if (!source || !store) {
+    ADD_FAILURE() << (source ? store.error().message : source.error().message);
+    return {};
+  }
+  const auto counts = Refit(*source, *store, options);
+  if (counts) return *counts;
+  ADD_FAILURE() << counts.error().message;
+  return {};
+}
+
+}  // namespace pendulum::small_batch

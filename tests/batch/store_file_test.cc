@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The store as a file: what is in it after a process, beside others, and what is none.
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "pendulum/batch/store.h"
+#include "tests/batch/example_runs.h"
+
+namespace pendulum::store_file_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using example_runs::RefittedOutcome;
+using example_runs::SourceOfIds;
+using example_runs::StoreOf;
+using example_runs::UnfittedOutcome;
+using testing::StartsWith;
+
+class StoreFileTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Store Make(const std::vector<std::string>& ids) const { return StoreOf(path_, SourceOfIds(ids)); }
+
+  Store Reopen(Store::Mode mode = Store::Mode::kRead) const { return Store::Open(path_, mode).value(); }
+
+  Status FaultOf(Store::Mode mode) const {
+    const auto store = Store::Open(path_, mode);
+    EXPECT_FALSE(store);
+    return store ? Status{StatusCode::kInternal, ""} : store.error();
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("store_file_test_" + std::to_string(getpid()));
+  const std::string path_ = folder_ / "results.sqlite";
+};
+
+// ---- Durability and other processes --------------------------------------------------------------------------------
+
+TEST_F(StoreFileTest, KeepsWhatIsCommittedAndNothingElse) {
+  {
+    Store store = Make({"a", "b"});
+    ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
+    ASSERT_TRUE(store.Put("a", UnfittedOutcome()) && store.Put("b", UnfittedOutcome()));
+  }
+  Store store = Reopen();
+  EXPECT_EQ(store.Count()->pending, 1);
+  EXPECT_EQ(store.Count()->unfitted, 0);
+  EXPECT_EQ(store.Count()->fits, 2);
+}
+
+TEST_F(StoreFileTest, ShowsReadersWhatWasCommitted) {
+  Store store = Make({"a"});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()));
+  Store reader = Reopen();
+  EXPECT_EQ(reader.Count()->pending, 1);
+  ASSERT_TRUE(store.Commit());
+  EXPECT_EQ(reader.Count()->pending, 0);
+}
+
+// After the ten seconds of SQLite's patience.
+TEST_F(StoreFileTest, LetsOneWriterIn) {
+  Store store = Make({"a"});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()));
+  Store other = Reopen(Store::Mode::kWrite);
+  const auto put = other.Put("a", UnfittedOutcome());
+  ASSERT_FALSE(put);
+  EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
+  EXPECT_EQ(put.error().message, path_ + ": another process has it; try again when that is done");
+  ASSERT_TRUE(store.Commit());
+  ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same later
+  EXPECT_EQ(Reopen().Count()->unfitted, 1);
+}
+
+// ---- Open ----------------------------------------------------------------------------------------------------------
+
+TEST_F(StoreFileTest, ReadsNoStoreThatIsNotThere) {
+  EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kNotFound);
+  EXPECT_EQ(FaultOf(Store::Mode::kRead).message, path_ + ": there is no such store; check the path");
+  EXPECT_FALSE(fs::exists(path_));
+}
+
+TEST_F(StoreFileTest, BeginsInAFileWithoutTables) {
+  std::ofstream file(path_);
+  file.close();
+  EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
+  Store store = Make({"a"});
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 1);
+  EXPECT_EQ(Reopen().Count()->runs, 1);
+}
+
+TEST_F(StoreFileTest, RefusesFoldersAndTexts) {
+  const auto folder = Store::Open(folder_, Store::Mode::kWrite);
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.error().code, StatusCode::kDataLoss);
+  EXPECT_EQ(folder.error().message, folder_.string() + ": this is a directory; name a store in it");
+  std::ofstream(path_) << "path,id\na.csv,1\n";
+  for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
+    EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
+    EXPECT_EQ(FaultOf(mode).message, path_ + ": this is not an SQLite file; name another");
+  }
+  EXPECT_EQ(fs::file_size(path_), 16);
+}
+
+TEST_F(StoreFileTest, RefusesOtherSqliteFiles) {
+  SQLite::Database(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE runs(x)");
+  for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
+    EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
+    EXPECT_EQ(FaultOf(mode).message,
+              path_ + ": this is no result store of refit_pendulums; name one, or a file that is not there yet");
+  }
+}
+
+TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
+  Make({"a"}).database().exec("PRAGMA user_version = 99");
+  for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
+    EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
+    EXPECT_EQ(
+        FaultOf(mode).message,
+        path_ + ": the store has version 99, made by a newer program; this one knows 1 at most; use the newer one");
+  }
+}
+
+TEST_F(StoreFileTest, SaysThatItIsDamaged) {
+  {
+    Store store = Make({"a"});
+    ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
+  }
+  fs::resize_file(path_, fs::file_size(path_) / 2);
+  EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
+  EXPECT_THAT(FaultOf(Store::Mode::kRead).message, StartsWith(path_ + ": the file is damaged ("));
+}
+
+TEST_F(StoreFileTest, SaysThatWhatIsInItIsDamaged) {
+  Store store = Make({"a"});
+  store.database().exec("UPDATE meta SET value = 'many' WHERE key = 'runs'");
+  const auto meta = store.Meta();
+  ASSERT_FALSE(meta);
+  EXPECT_EQ(meta.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(meta.error().message, StartsWith(path_ + ": the file is damaged ("));
+}
+
+TEST_F(StoreFileTest, SaysWhereItCannotBeMade) {
+  const auto store = Store::Open(folder_ / "nowhere" / "results.sqlite", Store::Mode::kWrite);
+  ASSERT_FALSE(store);
+  EXPECT_EQ(store.error().code, StatusCode::kCannotWrite);
+  EXPECT_THAT(store.error().message, StartsWith("cannot write " + (folder_ / "nowhere").string()));
+}
+
+}  // namespace
+}  // namespace pendulum::store_file_test

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/batch/made_outcomes.h"
+#include "tests/batch/schema_check.h"
+#include "tests/batch/small_batch.h"
+
+namespace pendulum::summary_test {
+namespace {
+
+using made_outcomes::FailureOf;
+using made_outcomes::FitOf;
+using made_outcomes::OutcomeOf;
+using schema_check::SchemaCheck;
+using small_batch::Folder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+using Json = nlohmann::ordered_json;
+
+namespace fs = std::filesystem;
+
+/// A store whose runs are made by hand.
+class SummaryTest : public testing::Test {
+ protected:
+  /// Begins a batch of that manifest, and gives each run, by its position, what is made of it; none: nothing.
+  Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
+    folder_.Write("runs.csv", manifest);
+    const auto source = OpenSource(folder_ / "runs.csv");
+    auto store = Store::Open(folder_ / "store.sqlite", Store::Mode::kWrite);
+    const auto begun = store->Begin(*source, std::nullopt, "{}");
+    EXPECT_TRUE(begun) << begun.error().message;
+    const auto runs = store->Next(0, 100000);
+    for (std::size_t i = 0; i < runs->size(); ++i) {
+      const auto outcome = make(i);
+      EXPECT_TRUE(!outcome || store->Put((*runs)[i].entry.id, *outcome));
+    }
+    EXPECT_TRUE(store->Commit());
+    return *std::move(store);
+  }
+
+  static Json SummaryOf(Store& store, const SummaryOptions& options = {}) {
+    auto summary = Summarize(store, options);
+    if (summary) return *std::move(summary);
+    ADD_FAILURE() << summary.error().message;
+    return nullptr;
+  }
+
+  Folder folder_{"summary_test"};
+};
+
+const Json& ParameterOf(const Json& summary, const std::string& model, const std::string& name) {
+  static const Json nothing;
+  for (const Json& parameter : summary["parameters"]) {
+    if (parameter["model"] == model && parameter["name"] == name) return parameter;
+  }
+  ADD_FAILURE() << model << " " << name;
+  return nothing;
+}
+
+/// A manifest of so many runs with columns of their own.
+std::string ManifestOf(std::size_t runs, const std::string& columns,
+                       const std::function<std::string(std::size_t)>& values) {
+  std::string text = "path" + columns + "\n";
+  for (std::size_t i = 0; i < runs; ++i) text += "run" + std::to_string(i) + ".csv" + values(i) + "\n";
+  return text;
+}
+
+std::string PlainManifest(std::size_t runs) {
+  return ManifestOf(runs, "", [](std::size_t) { return ""; });
+}
+
+// ---- Counts --------------------------------------------------------------------------------------------------------
+
+TEST_F(SummaryTest, CountsFitsByModelAndStatusAndWhatIsRecommended) {
+  Store store = StoreOf(PlainManifest(5), [](std::size_t i) -> std::optional<RunOutcome> {
+    if (i == 4) return std::nullopt;
+    if (i == 3) return FailureOf("run3.csv: no swing", 5);
+    const std::vector<Json> fits = {FitOf("viscous", 10, i == 0 ? "not_converged" : "converged"),
+                                    FitOf("coulomb", 10, i == 1 ? "not_identifiable" : "converged")};
+    return OutcomeOf(fits, i == 2 ? nullptr : "viscous");
+  });
+  const Json summary = SummaryOf(store);
+  EXPECT_EQ(summary["schema_version"], 1);
+  EXPECT_EQ(summary["tool"]["name"], "refit_pendulums");
+  EXPECT_EQ(summary["store"]["path"], (folder_ / "store.sqlite").string());
+  EXPECT_EQ(summary["store"]["runs"], 5);
+  EXPECT_EQ(summary["store"]["refitted"], 4);
+  EXPECT_EQ(summary["store"]["pending"], 1);
+  EXPECT_EQ(summary["store"]["fits"], 7);
+  EXPECT_THAT(summary["store"]["versions"], ElementsAre("1.2.3"));
+  EXPECT_THAT(summary["store"]["cpus"], ElementsAre("a processor"));
+  EXPECT_THAT(summary["models"], ElementsAre(Json({{"model", "coulomb"},
+                                                   {"fits", 3},
+                                                   {"converged", 2},
+                                                   {"not_converged", 0},
+                                                   {"not_identifiable", 1},
+                                                   {"failed", 0}}),
+                                             Json({{"model", "viscous"},
+                                                   {"fits", 4},
+                                                   {"converged", 2},
+                                                   {"not_converged", 1},
+                                                   {"not_identifiable", 0},
+                                                   {"failed", 1}})));
+  EXPECT_THAT(summary["recommendations"],
+              ElementsAre(Json({{"model", "viscous"}, {"runs", 2}}), Json({{"model", nullptr}, {"runs", 1}})));
+  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["runs"], 2);  // of converged fits
+  EXPECT_THAT(summary["warnings"], SizeIs(testing::Ge(1U)));         // one is pending
+}
+
+TEST_F(SummaryTest, GroupsFailuresByTheirReasonsWithoutFileNamesAndNumbers) {
+  Store store = StoreOf(PlainManifest(14), [](std::size_t i) -> std::optional<RunOutcome> {
+    const std::string path = "run" + std::to_string(i) + ".csv";
+    const std::string line = std::to_string(3 + i);
+    if (i < 12) return FailureOf(path + ":" + line + ":7: time " + line + ".25 s does not follow 9 s", 4);
+    return FailureOf(path + ": there is no such file; check the path", 3);
+  });
+  const Json failures = SummaryOf(store)["failures"];
+  ASSERT_THAT(failures, SizeIs(2));
+  EXPECT_EQ(failures[0]["fits"], 12);
+  EXPECT_EQ(failures[0]["status"], "failed");
+  EXPECT_EQ(failures[0]["exit_code"], 4);
+  EXPECT_EQ(failures[0]["reason"], "time # s does not follow # s");
+  EXPECT_THAT(failures[0]["models"], ElementsAre("viscous"));
+  EXPECT_THAT(failures[0]["examples"], SizeIs(10));
+  EXPECT_EQ(failures[0]["examples"][0], "run0.csv");
+  EXPECT_EQ(failures[1]["fits"], 2);
+  EXPECT_EQ(failures[1]["exit_code"], 3);
+  EXPECT_EQ(failures[1]["reason"], "there is no such file; check the path");
+  EXPECT_THAT(failures[1]["examples"], ElementsAre("run12.csv", "run13.csv"));
+}
+
+TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
+  Store store = StoreOf(PlainManifest(3), [](std::size_t) {
+    RunOutcome outcome = OutcomeOf({FitOf("viscous", 10, "not_converged")});
+    outcome.exit_code = 1;
+    return outcome;
+  });
+  const Json summary = SummaryOf(store);
+  ASSERT_THAT(summary["failures"], SizeIs(1));
+  EXPECT_EQ(summary["failures"][0]["status"], "not_converged");
+  EXPECT_EQ(summary["failures"][0]["exit_code"], 1);
+  EXPECT_EQ(summary["failures"][0]["reason"], "after # iterations");
+  EXPECT_THAT(summary["parameters"], IsEmpty());
+}
+
+// ---- Parameters ----------------------------------------------------------------------------------------------------
+
+// 10, 12, 14 by hand; np.percentile(x, [25, 75]) is 11, 13.
+TEST_F(SummaryTest, DescribesEachParameterThatWasFitted) {
+  const std::vector<double> values = {10, 12, 14};
+  Store store = StoreOf(PlainManifest(3), [&](std::size_t i) { return OutcomeOf({FitOf("viscous", values[i])}); });
+  const Json summary = SummaryOf(store);
+  ASSERT_THAT(summary["parameters"], SizeIs(2));  // what is held is none
+  const Json& inertia = ParameterOf(summary, "viscous", "inertia");
+  EXPECT_EQ(inertia["unit"], "kg m^2");
+  EXPECT_EQ(inertia["runs"], 3);
+  EXPECT_EQ(inertia["median"], 12);
+  EXPECT_EQ(inertia["mean"], 12);
+  EXPECT_EQ(inertia["std_dev"], 2);
+  EXPECT_EQ(inertia["minimum"], 10);
+  EXPECT_EQ(inertia["maximum"], 14);
+  EXPECT_EQ(inertia["lower_quartile"], 11);
+  EXPECT_EQ(inertia["upper_quartile"], 13);
+  EXPECT_EQ(inertia["median_std_error"], 1);
+  EXPECT_EQ(inertia["histogram"]["from"], 10);
+  EXPECT_EQ(inertia["histogram"]["to"], 14);
+  const Json& repeatability = inertia["repeatability"];  // errors of 1: chi2 = 4 + 0 + 4, p = exp(-8 / 2)
+  EXPECT_EQ(repeatability["groups"], 1);
+  EXPECT_EQ(repeatability["runs"], 3);
+  EXPECT_EQ(repeatability["dof"], 2);
+  EXPECT_NEAR(repeatability["chi2"].get<double>(), 8, 1e-12);
+  EXPECT_NEAR(repeatability["scatter_ratio"].get<double>(), 2, 1e-12);
+  EXPECT_NEAR(repeatability["p"].get<double>(), std::exp(-4), 1e-9);
+  EXPECT_NEAR(repeatability["between_std_dev"].get<double>(), std::sqrt(3), 1e-6);
+  EXPECT_EQ(repeatability["verdict"], "agrees");
+  EXPECT_THAT(repeatability["text"], StartsWith("3 runs scatter 2 times as much as their quoted errors say (p "));
+  ASSERT_THAT(repeatability["rows"], SizeIs(1));
+  EXPECT_EQ(repeatability["rows"][0]["group"], "all runs");
+  EXPECT_NEAR(repeatability["rows"][0]["weighted_mean"].get<double>(), 12, 1e-12);
+  EXPECT_NEAR(repeatability["rows"][0]["std_error"].get<double>(), 1 / std::sqrt(3), 1e-12);
+  EXPECT_EQ(inertia["repeatability_reason"], nullptr);
+  EXPECT_THAT(inertia["outliers"], IsEmpty());
+}
+
+TEST_F(SummaryTest, DoesNotExpectTheStartOfEachRunToRepeat) {
+  Store store =
+      StoreOf(PlainManifest(6), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 5 ? 1e6 : 10)}); });
+  const Json angle = ParameterOf(SummaryOf(store), "viscous", "release_angle");
+  EXPECT_EQ(angle["repeatability"], nullptr);
+  EXPECT_THAT(angle["repeatability_reason"], HasSubstr("no constant of the rig"));
+  EXPECT_EQ(angle["outliers_total"], 0);
+}
+
+// The position is what a trend is over: y = 10 + 0.5 i and an outlier, which is left out.
+TEST_F(SummaryTest, NamesOutliersAndFindsTheTrendOfTheOthers) {
+  Store store = StoreOf(PlainManifest(20), [](std::size_t i) {
+    const double scatter = i % 2 == 0 ? 0.01 : -0.01;
+    return OutcomeOf({FitOf("viscous", i == 7 ? 1000 : 10 + 0.5 * static_cast<double>(i) + scatter)});
+  });
+  const Json summary = SummaryOf(store);
+  EXPECT_EQ(summary["group_by"], nullptr);
+  EXPECT_EQ(summary["trend_by"], nullptr);
+  const Json& inertia = ParameterOf(summary, "viscous", "inertia");
+  EXPECT_EQ(inertia["outliers_total"], 1);
+  ASSERT_THAT(inertia["outliers"], SizeIs(1));
+  EXPECT_EQ(inertia["outliers"][0]["id"], "run7.csv");
+  EXPECT_EQ(inertia["outliers"][0]["estimate"], 1000);
+  EXPECT_EQ(inertia["outliers"][0]["std_error"], 1);
+  EXPECT_EQ(inertia["outliers"][0]["group"], nullptr);
+  EXPECT_THAT(inertia["repeatability"]["text"], HasSubstr("; 1 outlier left out"));
+  const Json& trend = inertia["trend"];
+  EXPECT_EQ(trend["column"], "position");
+  EXPECT_EQ(trend["unit"], nullptr);
+  EXPECT_NEAR(trend["slope"].get<double>(), 0.5, 0.001);
+  EXPECT_LT(trend["p"].get<double>(), 1e-12);
+  EXPECT_THAT(trend["text"], AllOf(StartsWith("it changes by 0.5"), HasSubstr(" kg m^2 a run (p ")));
+  EXPECT_THAT(trend["points"], SizeIs(20));
+  EXPECT_EQ(trend["points_total"], 20);
+  EXPECT_EQ(trend["points"][3]["x"], 3);
+  EXPECT_EQ(trend["points"][3]["id"], "run3.csv");
+}
+
+TEST_F(SummaryTest, GroupsRunsByAColumnOfTheManifest) {
+  const std::string manifest = ManifestOf(20, ",rig no", [](std::size_t i) { return i % 2 == 0 ? ",A" : ",B"; });
+  Store store = StoreOf(manifest, [](std::size_t i) {  // rigs of 10 and 90, runs ± 1
+    return OutcomeOf({FitOf("viscous", (i % 2 == 0 ? 10 : 90) + (i % 4 < 2 ? 1 : -1))});
+  });
+  EXPECT_EQ(ParameterOf(SummaryOf(store), "viscous", "inertia")["repeatability"]["verdict"], "scatter_larger");
+  const Json summary = SummaryOf(store, {"rig no", ""});
+  EXPECT_EQ(summary["group_by"], "rig no");
+  const Json& repeatability = ParameterOf(summary, "viscous", "inertia")["repeatability"];
+  EXPECT_EQ(repeatability["groups"], 2);
+  EXPECT_EQ(repeatability["dof"], 18);
+  EXPECT_EQ(repeatability["verdict"], "agrees");
+  ASSERT_THAT(repeatability["rows"], SizeIs(2));
+  EXPECT_EQ(repeatability["rows"][0]["group"], "A");
+  EXPECT_NEAR(repeatability["rows"][0]["weighted_mean"].get<double>(), 10, 1e-9);
+  EXPECT_EQ(repeatability["rows"][1]["group"], "B");
+  EXPECT_NEAR(repeatability["rows"][1]["weighted_mean"].get<double>(), 90, 1e-9);
+}
+
+TEST_F(SummaryTest, TakesColumnsOfAnyName) {
+  for (const std::string name : {"a.b", "$", "günther", "[0]", "it's", "a b"}) {
+    const std::string manifest = ManifestOf(6, "," + name, [](std::size_t i) { return i < 3 ? ",A" : ",B"; });
+    Store store = StoreOf(manifest, [](std::size_t i) { return OutcomeOf({FitOf("viscous", i < 3 ? 10 : 90)}); });
+    const Json summary = SummaryOf(store, {name, ""});
+    EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["repeatability"]["groups"], 2) << name;
+    fs::remove(folder_ / "store.sqlite");
+  }
+}
+
+TEST_F(SummaryTest, FindsTrendsOverDates) {
+  const std::string manifest = ManifestOf(
+      10, ",date", [](std::size_t i) { return ",2026-03-" + std::string(i < 9 ? "0" : "") + std::to_string(i + 1); });
+  Store store = StoreOf(manifest, [](std::size_t i) {
+    return OutcomeOf({FitOf("viscous", 10 - 0.25 * static_cast<double>(i) + (i % 3 == 0 ? 0.01 : 0))});
+  });
+  const Json trend = ParameterOf(SummaryOf(store, {"", "date"}), "viscous", "inertia")["trend"];
+  EXPECT_EQ(trend["column"], "date");
+  EXPECT_EQ(trend["unit"], "days since 1970-01-01");
+  EXPECT_NEAR(trend["slope"].get<double>(), -0.25, 0.002);
+  EXPECT_THAT(trend["text"], HasSubstr(" kg m^2 a day (p "));
+  EXPECT_EQ(trend["points"][0]["x"], 20513);  // 2026-03-01
+}
+
+TEST_F(SummaryTest, FindsTrendsOverNumbers) {
+  const std::string manifest =
+      ManifestOf(10, ",temperature", [](std::size_t i) { return "," + std::to_string(20 + 2 * i); });
+  Store store = StoreOf(manifest, [](std::size_t i) {
+    return OutcomeOf({FitOf("viscous", 10 + static_cast<double>(i) + (i % 3 == 0 ? 0.01 : 0))});
+  });
+  const Json trend = ParameterOf(SummaryOf(store, {"", "temperature"}), "viscous", "inertia")["trend"];
+  EXPECT_EQ(trend["unit"], nullptr);
+  EXPECT_NEAR(trend["slope"].get<double>(), 0.5, 0.002);
+  EXPECT_THAT(trend["text"], HasSubstr(" for 1 of temperature (p "));
+}
+
+TEST_F(SummaryTest, KnowsDatesAlsoWhereTheLastRunHasNone) {
+  const std::string manifest =
+      ManifestOf(10, ",date", [](std::size_t i) { return i == 9 ? "," : ",2026-03-0" + std::to_string(i + 1); });
+  Store store =
+      StoreOf(manifest, [](std::size_t i) { return OutcomeOf({FitOf("viscous", 10 + static_cast<double>(i % 3))}); });
+  const Json trend = ParameterOf(SummaryOf(store, {"", "date"}), "viscous", "inertia")["trend"];
+  EXPECT_THAT(trend["points"], SizeIs(9));
+  EXPECT_EQ(trend["unit"], "days since 1970-01-01");
+  EXPECT_THAT(trend["text"], HasSubstr(" a day (p "));
+}
+
+TEST_F(SummaryTest, ThinsThePointsOfManyRuns) {
+  Store store = StoreOf(PlainManifest(4500),
+                        [](std::size_t i) { return OutcomeOf({FitOf("viscous", 10 + static_cast<double>(i % 3))}); });
+  const Json trend = ParameterOf(SummaryOf(store), "viscous", "inertia")["trend"];
+  EXPECT_THAT(trend["points"], SizeIs(1500));
+  EXPECT_EQ(trend["points_total"], 4500);
+}
+
+// ---- Refusals ------------------------------------------------------------------------------------------------------
+
+TEST_F(SummaryTest, RefusesAColumnThatTheManifestDoesNotHave) {
+  Store store = StoreOf(ManifestOf(2, ",rig,place,date", [](std::size_t) { return ",,here,2026-01-01"; }),
+                        [](std::size_t) { return OutcomeOf({FitOf("viscous", 10)}); });
+  for (const auto& [options, flag] :
+       {std::pair{SummaryOptions{"room", ""}, "--group_by"}, std::pair{SummaryOptions{"", "room"}, "--trend_by"}}) {
+    const auto summary = Summarize(store, options);
+    ASSERT_FALSE(summary);
+    EXPECT_EQ(summary.error().code, StatusCode::kInvalidArgument);
+    EXPECT_EQ(summary.error().message, std::string(flag) + ": the manifest has no column 'room'; it has date, place");
+  }
+}
+
+TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
+  Store store = StoreOf(PlainManifest(2), [](std::size_t) { return std::nullopt; });
+  const auto summary = Summarize(store, {});
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_EQ(summary.error().message,
+            (folder_ / "store.sqlite").string() + ": no run is refitted yet; refit some first");
+}
+
+TEST_F(SummaryTest, GivesTheOverviewBesideOrWithoutParameters) {
+  Store store = StoreOf(PlainManifest(3), [](std::size_t i) {
+    return i == 0 ? FailureOf("no swing", 5) : OutcomeOf({FitOf("viscous", 10)});
+  });
+  const auto overview = Overview(store);
+  ASSERT_TRUE(overview) << overview.error().message;
+  const Json summary = SummaryOf(store);
+  ASSERT_THAT(*overview, SizeIs(3));
+  for (const char* key : {"models", "recommendations", "failures"}) EXPECT_EQ((*overview)[key], summary[key]) << key;
+}
+
+// ---- The published schema ------------------------------------------------------------------------------------------
+
+TEST_F(SummaryTest, IsAsItsSchemaSays) {
+  const char* const path = "include/pendulum/report/summary.schema.json";
+  if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path;
+  std::ifstream file(path);
+  const Json schema = Json::parse(file);
+  const SchemaCheck check(schema);
+  const std::string manifest = ManifestOf(30, ",rig no,date", [](std::size_t i) {
+    return (i % 2 == 0 ? ",A," : ",B,") + std::string("2026-01-") + (i < 9 ? "0" : "") + std::to_string(i + 1);
+  });
+  Store store = StoreOf(manifest, [](std::size_t i) -> std::optional<RunOutcome> {
+    if (i == 0) return std::nullopt;
+    if (i == 1) return FailureOf("run1.csv: no swing", 5);
+    const double value = (i % 2 == 0 ? 10 : 90) + (i == 9 ? 500 : static_cast<double>(i % 3));
+    return OutcomeOf({FitOf("viscous", value), FitOf("coulomb", value, i == 2 ? "not_converged" : "converged")});
+  });
+  for (const SummaryOptions& options :
+       {SummaryOptions{"rig no", "date"}, SummaryOptions{"rig no", ""}, SummaryOptions{}}) {
+    const Json summary = SummaryOf(store, options);
+    EXPECT_THAT(check.Faults(summary), IsEmpty()) << options.group_by;
+    for (const Json& key : schema["required"]) EXPECT_TRUE(summary.contains(key.get<std::string>())) << key;
+  }
+  EXPECT_THAT(check.Faults({{"schema_version", 2}}), SizeIs(testing::Gt(8U)));  // the check does see faults
+}
+
+}  // namespace
+}  // namespace pendulum::summary_test

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The Debian packages say what they are and hold it: debian_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import empty_root
+
+PACKAGES = BIN = pathlib.Path()
+
+
+def output(*command, cwd=None):
+    return subprocess.run(command, check=True, capture_output=True, text=True, cwd=cwd).stdout
+
+
+class DebianTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.tools = empty_root.only_one(PACKAGES, "pendulum_*.deb")
+        cls.development = empty_root.only_one(PACKAGES, "libpendulum-dev_*.deb")
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.root = pathlib.Path(folder.name)
+        for package in (cls.tools, cls.development):
+            output("dpkg-deb", "--extract", package, cls.root)
+
+    def check_fields(self, package, **expected):
+        project = (empty_root.TOP / "CMakeLists.txt").read_text()
+        architecture = output("dpkg", "--print-architecture").strip()
+        expected |= {"Version": re.search(r"VERSION (\S+)", project[project.index("project("):])[1],
+                     "Architecture": architecture, "Priority": "optional"}
+        for field, value in expected.items():
+            self.assertEqual(output("dpkg-deb", "--field", package, field).strip(), value)
+        self.assertEqual(package.name, "{Package}_{Version}_{Architecture}.deb".format(**expected))
+        self.assertRegex(output("dpkg-deb", "--field", package, "Maintainer"), r"\A\S.* <\S+@\S+>\n\Z")
+        self.assertIn("Description: Moment of inertia", output("dpkg-deb", "--info", package))
+
+    def check_contents(self, package, patterns):
+        """Each file is by one of the patterns, and none can be written by others than root, as --contents lists them."""
+        for line in output("dpkg-deb", "--contents", package).splitlines():
+            mode, owner, _, _, _, path = line.split(maxsplit=5)
+            self.assertEqual(owner, "root/root", line)
+            self.assertRegex(mode, r"\A(?:d|-).{4}-..-.\Z")
+            if mode.startswith("-"):
+                self.assertTrue(any(re.fullmatch(pattern, path) for pattern in patterns), line)
+
+    def check_dependencies(self, package, expected):
+        """Each is of a package that is here, in a version that is enough: these were built with it."""
+        names = []
+        for alternatives in output("dpkg-deb", "--field", package, "Depends").strip().split(", "):
+            name, _, version = re.fullmatch(r"([a-z0-9.+-]+)( \(>= (.*)\))?", alternatives.split(" | ")[0]).groups()
+            here = output("dpkg-query", "--show", "--showformat", "${Version}\n", name).splitlines()[0]
+            output("dpkg", "--compare-versions", here, "ge", version or "0")
+            names.append(name)
+        self.assertLessEqual(expected, set(names))
+
+    def test_package_of_the_tools(self):
+        self.check_fields(self.tools, Package="pendulum", Section="science")
+        self.check_contents(self.tools, [r"\./usr/bin/[a-z_]+", r"\./usr/share/doc/pendulum/(?:copyright|README\.md)",
+                                         r"\./usr/share/pendulum/.*"])
+        self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libssl3", "libstdc++6"})
+
+    def test_package_of_the_libraries(self):
+        self.check_fields(self.development, Package="libpendulum-dev", Section="libdevel")
+        self.check_contents(self.development, [r"\./usr/include/pendulum/.*\.(?:h|json)", r"\./usr/lib/libpendulum_\w+\.a",
+                                               r"\./usr/lib/cmake/pendulum/pendulum\w+(?:-\w+)?\.cmake",
+                                               r"\./usr/share/doc/libpendulum-dev/copyright"])
+        self.check_dependencies(self.development, {"libceres-dev", "libeigen3-dev"})
+
+    def test_every_header_is_in_it(self):
+        ours = {path.relative_to(empty_root.TOP) for path in (empty_root.TOP / "include").rglob("*.h")}
+        packed = {path.relative_to(self.root / "usr") for path in (self.root / "usr/include").rglob("*.h")}
+        self.assertEqual(packed, ours)
+
+    def test_cmake_finds_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output("cmake", "-S", empty_root.TOP / "tests/consumer", "-B", folder, "-D", f"CMAKE_PREFIX_PATH={self.root}/usr")
+            cache = (pathlib.Path(folder) / "CMakeCache.txt").read_text()
+        self.assertIn(f"pendulum_DIR:PATH={self.root}/usr/lib/cmake/pendulum\n", cache)
+
+    def test_tools_run_with_the_libraries_of_the_system(self):
+        installed = self.root / "usr/bin"
+        for tool in sorted(installed.iterdir()):
+            self.assertIn(tool.name, output(tool, "--version"))
+            self.assertNotRegex(output("readelf", "--wide", "--dynamic", tool), r"\((?:RPATH|RUNPATH)\)")
+        self.assertEqual(output(installed / "fit_pendulum", *empty_root.FIT, cwd=empty_root.TOP),
+                         output(BIN / "fit_pendulum", *empty_root.FIT, cwd=empty_root.TOP))
+
+
+if __name__ == "__main__":
+    BIN = pathlib.Path(sys.argv.pop(2)).resolve()
+    PACKAGES = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/refit_commands.h"
+
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "pendulum/batch/store_lock.h"
+
+namespace pendulum::refit_commands_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using testing::HasSubstr;
+using testing::internal::CaptureStderr;
+using testing::internal::CaptureStdout;
+using testing::internal::GetCapturedStderr;
+using testing::internal::GetCapturedStdout;
+
+/// A batch of one recording that is there and one that is not.
+class RefitCommandsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "runs.csv") << "path,id\n"
+                                        << fs::absolute("datasets/runs_1.csv").string() << ",one\n"
+                                        << "missing.csv,two\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  RefitPendulumsOptions Options(RefitCommand command) const {
+    RefitPendulumsOptions options;
+    options.command = command;
+    options.manifest = folder_ / "runs.csv";
+    options.stores = {folder_ / "a.sqlite"};
+    options.refit.run.models = {"coulomb"};
+    return options;
+  }
+
+  /// The exit code, or that of the error; what was said stays in said_ and printed_.
+  int Run(const RefitPendulumsOptions& options) {
+    CaptureStderr();
+    CaptureStdout();
+    const auto code = RunRefitCommand(options);
+    printed_ = GetCapturedStdout();
+    said_ = GetCapturedStderr();
+    if (!code) said_ += code.error().message;
+    return code ? *code : ExitCode(code.error().code);
+  }
+
+  const fs::path folder_ = testing::TempDir() + "refit_commands_test_" + std::to_string(getpid());
+  std::string printed_, said_;
+};
+
+TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunHasItsRows) {
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  EXPECT_THAT(said_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
+  EXPECT_THAT(printed_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
+  EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
+  EXPECT_THAT(printed_, HasSubstr("in the store                    2\n"));
+}
+
+TEST_F(RefitCommandsTest, RefusesACommonRigThatIsWrongBeforeAnyFit) {
+  RefitPendulumsOptions options = Options(RefitCommand::kRefit);
+  options.rig = folder_ / "rig.json";
+  EXPECT_EQ(Run(options), 3);
+  std::ofstream(options.rig) << "{}";
+  EXPECT_EQ(Run(options), 4);
+  EXPECT_THAT(said_, HasSubstr("rig.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
+}
+
+TEST_F(RefitCommandsTest, ExportsByTheNameOfTheOutput) {
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  RefitPendulumsOptions options = Options(RefitCommand::kExport);
+  options.out = "-";
+  EXPECT_EQ(Run(options), 0);
+  EXPECT_THAT(printed_, HasSubstr("id,path,model,recommended,status,"));
+  options.out = folder_ / "a.jsonl";
+  EXPECT_EQ(Run(options), 0);
+  std::string line;
+  std::getline(std::ifstream(options.out) >> std::ws, line);
+  EXPECT_THAT(line, HasSubstr(R"({"id":"one","manifest":{)"));
+  options.out = folder_ / "a.txt";
+  EXPECT_EQ(Run(options), 2);
+}
+
+TEST_F(RefitCommandsTest, TellsByItsExitCodeWhetherSomethingMoved) {
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  RefitPendulumsOptions other = Options(RefitCommand::kRefit);
+  other.stores = {folder_ / "b.sqlite"};
+  other.refit.run.fit.fixed["coulomb"] = 0;  // its torque is now the viscous friction's
+  ASSERT_EQ(Run(other), 0);
+  RefitPendulumsOptions compare = Options(RefitCommand::kCompare);
+  compare.stores = {folder_ / "a.sqlite", folder_ / "a.sqlite"};
+  EXPECT_EQ(Run(compare), 0);
+  compare.stores[1] = folder_ / "b.sqlite";
+  EXPECT_EQ(Run(compare), 1);
+}
+
+TEST_F(RefitCommandsTest, MissesAndMergesShards) {
+  RefitPendulumsOptions options = Options(RefitCommand::kRefit);
+  options.refit.shard = Shard{1, 2};
+  fs::create_directories(folder_ / "out");
+  options.stores = {folder_ / "out/shard-1.sqlite"};
+  options.shard.store = options.stores[0];
+  EXPECT_EQ(Run(options), 0);
+  RefitPendulumsOptions shards = Options(RefitCommand::kMissing);
+  shards.shard_dir = folder_ / "out";
+  shards.shard_count = 2;
+  EXPECT_EQ(Run(shards), 0);
+  EXPECT_EQ(printed_, "0\n");
+  shards.command = RefitCommand::kMerge;
+  EXPECT_EQ(Run(shards), 3);
+  EXPECT_THAT(said_, HasSubstr("of 2 shards these are missing: 0"));
+}
+
+TEST_F(RefitCommandsTest, MergesWhatIsComplete) {
+  for (const std::int64_t k : {0, 1}) {
+    RefitPendulumsOptions options = Options(RefitCommand::kRefit);
+    options.refit.shard = Shard{k, 2};
+    options.shard.store = ShardPath(folder_, k);
+    options.stores = {options.shard.store};
+    ASSERT_EQ(Run(options), 0) << said_;
+  }
+  RefitPendulumsOptions merge = Options(RefitCommand::kMerge);
+  merge.shard_dir = folder_;
+  merge.shard_count = 2;
+  EXPECT_EQ(Run(merge), 0);
+  EXPECT_THAT(said_, HasSubstr("2 runs of 2 shards merged into " + merge.stores[0]));
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  EXPECT_THAT(said_, HasSubstr("0 runs refitted, 2 were current"));
+  merge.command = RefitCommand::kMissing;
+  EXPECT_EQ(Run(merge), 0);
+  EXPECT_EQ(printed_, "");
+}
+
+TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
+  RefitPendulumsOptions options = Options(RefitCommand::kReport);
+  options.out = folder_ / "summary.json";
+  EXPECT_EQ(Run(options), 3);  // there is no store
+  EXPECT_THAT(said_, HasSubstr("a.sqlite: there is no such store"));
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  EXPECT_EQ(Run(options), 0) << said_;
+  std::ifstream file(options.out);
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json["store"]["runs"], 2);
+  options.out = folder_ / "summary.html";
+  EXPECT_EQ(Run(options), 0) << said_;
+  std::string line;
+  std::getline(std::ifstream(options.out) >> std::ws, line);
+  EXPECT_THAT(line, HasSubstr("<!"));
+  options.summary.group_by = "room";
+  EXPECT_EQ(Run(options), 2);
+  EXPECT_THAT(said_, HasSubstr("--group_by: the manifest has no column 'room'"));
+  options.out = options.stores[0];
+  EXPECT_EQ(Run(options), 2);  // the store itself
+}
+
+TEST_F(RefitCommandsTest, RefitsWhatItPacked) {
+  RefitPendulumsOptions pack = Options(RefitCommand::kPack);
+  pack.out = folder_ / "runs.pack";
+  ASSERT_EQ(Run(pack), 0) << said_;
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  RefitPendulumsOptions packed = Options(RefitCommand::kRefit);
+  packed.manifest = pack.out;
+  EXPECT_EQ(Run(packed), 0);
+  EXPECT_THAT(said_, HasSubstr("0 runs refitted, 2 were current"));
+  pack.out = pack.manifest;
+  EXPECT_EQ(Run(pack), 2);
+}
+
+TEST_F(RefitCommandsTest, PacksOverNoneOfTheRecordings) {
+  fs::copy("datasets/runs_1.csv", folder_ / "one.csv");
+  RefitPendulumsOptions pack = Options(RefitCommand::kPack);
+  pack.manifest.clear();
+  pack.patterns = {folder_};
+  pack.out = folder_ / "one.csv";
+  EXPECT_EQ(Run(pack), 2);
+  EXPECT_EQ(fs::file_size(folder_ / "one.csv"), fs::file_size("datasets/runs_1.csv"));
+}
+
+TEST_F(RefitCommandsTest, RefitsNothingIntoAStoreThatIsInUse) {
+  const auto lock = StoreLock::Take(folder_ / "a.sqlite");
+  ASSERT_TRUE(lock);
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 75);
+  EXPECT_THAT(said_, HasSubstr("another process writes to this store"));
+}
+
+/// Refits twice, the second time after a signal, which only that process gets.
+int RefitAfter(int signal, const RefitPendulumsOptions& options) {
+  if (!RunRefitCommand(options)) return -1;
+  std::raise(signal);
+  RefitPendulumsOptions forced = options;
+  forced.refit.force = true;
+  return RunRefitCommand(forced).value_or(-1);
+}
+
+TEST_F(RefitCommandsTest, TellsASignalByItsExitCodeAndWhatIsLeft) {
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 75}}) {
+    EXPECT_EXIT(std::exit(RefitAfter(signal, Options(RefitCommand::kRefit))), testing::ExitedWithCode(code),
+                "2 are left: the same command goes on from here");
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::refit_commands_test

@@ -1,0 +1,408 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests refit_pendulums as its users meet it: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
+
+import csv
+import json
+import os
+import pathlib
+import pty
+import resource
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+import unittest
+
+from refit_lab import DATASETS, Lab, RIG, TIMEOUT_S, TOOL, TOOLS, as_nobody, sound
+
+
+def exact(text):
+    """JSON with its numbers as they are written, so that equal means bit for bit."""
+    return json.loads(text, parse_float=str, parse_int=str)
+
+
+class SameAsFitPendulum(Lab):
+    """The store holds what fit_pendulum says of each file, bit for bit, whoever computes it in whatever order."""
+
+    def fitted(self, path, *more):
+        done = subprocess.run([TOOLS / "fit_pendulum", "--data", self.folder / path, "--model", "viscous,coulomb", "--json", "-",
+                               *more], capture_output=True, text=True, timeout=TIMEOUT_S)
+        result = exact(done.stdout)
+        result["data"]["path"] = path
+        return result, done.returncode
+
+    def test_results_equal_those_of_fit_pendulum(self):
+        paths = self.simulate(6)
+        shutil.copy(DATASETS / "textbook_rig.csv", self.folder)
+        manifest = self.manifest([{"path": path, "rig": str(RIG)} for path in paths] +
+                                 [{"path": paths[0], "id": "window", "rig": str(RIG), "from_s": "0.1", "to_s": "5"},
+                                  {"path": "textbook_rig.csv", "id": "none"}])
+        self.refit(manifest, "a.sqlite", "--seed", "7", "--noise", "gaussian")
+        with sqlite3.connect(self.folder / "a.sqlite") as database:
+            stored = {row[0]: (exact(row[1]), row[2]) for row in database.execute("SELECT id, result, exit_code FROM runs")}
+        self.assertEqual(len(stored), 8)
+        flags = {"window": ["--from", "0.1", "--to", "5", "--rig", RIG], "none": []}
+        for run, (result, code) in stored.items():
+            path = {"window": paths[0], "none": "textbook_rig.csv"}.get(run, run)
+            expected, expected_code = self.fitted(path, "--seed", "7", "--noise", "gaussian", *flags.get(run, ["--rig", RIG]))
+            self.assertEqual(result, expected, run)
+            self.assertEqual(code, expected_code, run)
+
+    def test_columns_equal_the_result_json(self):
+        self.refit(self.manifest(self.simulate(2)), "a.sqlite")
+        stored = self.rows("a.sqlite")
+        for (table, run, model, name), row in stored.items():
+            run_row = stored["runs", run, None, None]
+            result = json.loads(run_row["result"])
+            if table == "runs":
+                self.assertEqual(row["data_sha256"], result["data"]["sha256"])
+                self.assertEqual(row["recommended"], result["comparison"]["recommended"])
+                continue
+            fit = next(fit for fit in result["fits"] if fit["model"] == model)
+            if table == "fits":
+                self.assertEqual((row["status"], row["bic"], row["rms_residual"], row["residual_unit"]),
+                                 (fit["status"], fit["statistics"]["bic"], fit["statistics"]["rms_residual_rad"], "rad"))
+            else:
+                quantity = {**fit["parameters"], **fit["derived"]}[name]
+                self.assertEqual((row["estimate"], row["std_error"], row["unit"]),
+                                 (quantity["estimate"], quantity["std_error"], quantity["unit"]), name)
+
+    def test_rows_do_not_depend_on_threads_shards_order_or_packing(self):
+        paths = self.simulate(9)
+        paths.insert(4, "runs/missing.csv")
+        manifest = self.manifest(paths)
+        self.refit(manifest, "one.sqlite", "--threads", "1")
+        expected = self.rows("one.sqlite")
+        self.refit(manifest, "five.sqlite", "--threads", "5")
+        self.assertEqual(self.rows("five.sqlite"), expected)
+        for shard in (2, 0, 1):
+            (self.folder / "out").mkdir(exist_ok=True)
+            self.refit(manifest, f"out/shard-{shard}.sqlite", "--shard", f"{shard}/3")
+        self.run_tool("merge", "--shard_dir", "out", "--shard_count", "3", "--store", "merged.sqlite")
+        self.assertEqual(self.rows("merged.sqlite"), expected)
+        self.run_tool("pack", "--manifest", manifest, "--out", "runs.pack")
+        shutil.rmtree(self.folder / "runs")
+        self.refit("runs.pack", "packed.sqlite")
+        self.assertEqual(self.rows("packed.sqlite"), expected)
+        self.simulate(9)
+        self.refit(self.manifest(paths[::-1], "reversed.csv"), "reversed.sqlite")
+        turned = self.rows("reversed.sqlite")
+        for row in (*turned.values(), *expected.values()):
+            row.pop("position", None)
+        self.assertEqual(turned, expected)
+
+
+class Survival(Lab):
+    """Nothing is lost, nothing doubled."""
+
+    def test_killed_at_twenty_random_moments_it_goes_on_to_the_same_store(self):
+        manifest = self.manifest(self.simulate(200))
+        begin = time.monotonic()
+        self.refit(manifest, "whole.sqlite")
+        needed = time.monotonic() - begin
+        finished = 0
+        for kill in range(20):
+            # Moments spread over the whole run, commits included; multiples of the golden ratio stand for chance.
+            process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "killed.sqlite")
+            try:
+                process.wait(timeout=0.02 + needed * ((0.618 * (kill + 1)) % 1) / 4)
+                finished += 1
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGKILL)
+            process.communicate()
+            if (self.folder / "killed.sqlite").exists():
+                self.assertTrue(sound(self.folder / "killed.sqlite"))
+        self.assertLess(finished, 15)
+        self.refit(manifest, "killed.sqlite")
+        self.assertEqual(self.rows("killed.sqlite"), self.rows("whole.sqlite"))
+
+    def test_ctrl_c_stores_what_was_done_and_says_how_much_is_left(self):
+        manifest = self.manifest(self.simulate(200))
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 75)):
+            process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "stopped.sqlite", "--force")
+            time.sleep(0.5)
+            process.send_signal(number)
+            _, said = process.communicate(timeout=TIMEOUT_S)
+            self.assertEqual(process.returncode, code, said)
+            self.assertRegex(said, r"are left: the same command goes on from here")
+        self.refit(manifest, "stopped.sqlite")
+        self.refit(manifest, "whole.sqlite")
+        self.assertEqual(self.rows("stopped.sqlite"), self.rows("whole.sqlite"))
+
+    def test_refits_only_what_changed(self):
+        paths = self.simulate(5)
+        rig = self.folder / "rig.json"
+        shutil.copy(RIG, rig)
+        entries = [{"path": path, "rig": "rig.json" if i == 1 else str(RIG)} for i, path in enumerate(paths)]
+        manifest = self.manifest(entries)
+        self.assertIn("5 runs refitted, 0 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("0 runs refitted, 5 were current", self.refit(manifest, "a.sqlite")[1])
+        with open(self.folder / paths[0], "a", encoding="utf-8") as file:
+            file.write("# another byte\n")
+        self.assertIn("1 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        rig.write_text(rig.read_text() + "\n")
+        self.assertIn("1 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        entries[2]["to_s"] = "5"
+        self.assertIn("1 runs refitted, 4 were current", self.refit(self.manifest(entries), "a.sqlite")[1])
+        self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile")[1])
+        self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile", "--force")[1])
+
+    def test_a_full_disk_is_said_and_the_store_stays_sound(self):
+        manifest = self.manifest(self.simulate(60))
+        self.refit(manifest, "whole.sqlite")
+        small = self.folder / "small"
+        small.mkdir()
+        kilobytes = (self.folder / "whole.sqlite").stat().st_size // 2048
+        # A file system of half the store's size; its own name space of mounts ends with the process.
+        script = (f'mount -t tmpfs -o size={kilobytes}k none "{small}" && "{TOOL}" --manifest {manifest} --models viscous,coulomb '
+                  f'--store small/a.sqlite; code=$?; cp small/a.sqlite full.sqlite; exit $code')
+        command = ["unshare", "--mount"] + ([] if os.geteuid() == 0 else ["--user", "--map-root-user"])
+        done = subprocess.run([*command, "sh", "-c", script], cwd=self.folder, capture_output=True, text=True, timeout=TIMEOUT_S)
+        self.assertEqual(done.returncode, 73, done.stderr)
+        self.assertRegex(done.stderr, r"cannot write small/a.sqlite: .*full")
+        stored = self.rows("full.sqlite")
+        self.assertEqual(sum(key[0] == "runs" for key in stored), 60)
+        self.refit(manifest, "full.sqlite")
+        self.assertEqual(self.rows("full.sqlite"), self.rows("whole.sqlite"))
+
+    def test_a_limit_to_the_size_of_files_is_a_full_disk(self):
+        manifest = self.manifest(self.simulate(60))
+        _, said = self.refit(manifest, "a.sqlite", code=73,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300000, 300000)))
+        self.assertIn("cannot write a.sqlite", said)
+        self.refit(manifest, "a.sqlite")
+        self.refit(manifest, "whole.sqlite")
+        self.assertEqual(self.rows("a.sqlite"), self.rows("whole.sqlite"))
+
+    def test_a_read_only_store_is_said_and_left_as_it_is(self):
+        manifest = self.manifest(self.simulate(2))
+        self.refit(manifest, "a.sqlite")
+        before = (self.folder / "a.sqlite").read_bytes()
+        (self.folder / "a.sqlite").chmod(0o444)
+        self.folder.chmod(0o555)
+        self.addCleanup(self.folder.chmod, 0o755)
+        _, said = self.refit(manifest, "a.sqlite", "--force", code=73, preexec_fn=as_nobody)
+        self.assertIn("cannot write a.sqlite", said)
+        self.assertEqual((self.folder / "a.sqlite").read_bytes(), before)
+        out, _ = self.run_tool("status", "--store", "a.sqlite", preexec_fn=as_nobody)
+        self.assertIn("in the store                    2", out)
+
+    def test_a_store_that_is_in_use_is_to_be_tried_again(self):
+        manifest = self.manifest(self.simulate(200))
+        process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "a.sqlite")
+        time.sleep(0.4)
+        _, said = self.refit(manifest, "a.sqlite", code=75)
+        self.assertIn("another process writes to this store", said)
+        self.assertIn("[[Runs]]", self.run_tool("status", "--store", "a.sqlite")[0])
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse((self.folder / "a.sqlite.lock").exists())
+
+
+class HostileManifests(Lab):
+    """A manifest that is wrong is refused with its line before anything is fitted; files that are wrong cost their rows."""
+
+    def test_files_that_cannot_be_fitted_are_rows_with_reasons(self):
+        good = self.simulate(1)[0]
+        (self.folder / "empty.csv").touch()
+        (self.folder / "binary.csv").write_bytes(bytes(range(256)) * 50)
+        (self.folder / "text.csv").write_text("time_s,angle_deg\n0,zero\n")
+        (self.folder / "folder.csv").mkdir()
+        os.mkfifo(self.folder / "pipe.csv")
+        manifest = self.manifest([good, "missing.csv", "empty.csv", "binary.csv", "text.csv", "folder.csv", "pipe.csv",
+                                  {"path": good, "id": "no rig", "rig": "nowhere.json"},
+                                  {"path": good, "id": "wrong rig", "rig": "text.csv"},
+                                  {"path": "/dev/zero"}])
+        _, said = self.refit(manifest, "a.sqlite")
+        self.assertIn("9 of these could not be fitted", said)
+        stored = self.rows("a.sqlite")
+        codes = {key[1]: row["exit_code"] for key, row in stored.items() if key[0] == "runs"}
+        self.assertEqual(codes, {good: codes[good], "missing.csv": 3, "empty.csv": codes["empty.csv"], "binary.csv": 4,
+                                 "text.csv": 4, "folder.csv": 4, "pipe.csv": 4, "no rig": 3, "wrong rig": 4, "/dev/zero": 4})
+        for (table, run, model, _), row in stored.items():
+            if table == "fits" and run != good:
+                self.assertEqual(row["status"], "failed")
+                self.assertRegex(row["reason"], r"\w+ \w+")
+        self.assertEqual(stored["runs", "text.csv", None, None]["reason"].split(" ")[0], "text.csv:2:3:")
+
+    def test_names_may_hold_anything(self):
+        good = (self.folder / self.simulate(1)[0]).read_bytes()
+        names = ["with blanks.csv", 'a "quote".csv', "a,comma;semi.csv", "line\nbreak.csv", "ünïcode 摆.csv", "-dash.csv",
+                 "<script>alert(1)</script>.csv".replace("/", "|"), "'; DROP TABLE runs; --.csv", "percent %s %n.csv", "x" * 200 + ".csv"]
+        for name in names:
+            (self.folder / name).write_bytes(good)
+        self.refit(self.manifest([{"path": name, "note": name} for name in names]), "a.sqlite")
+        with sqlite3.connect(self.folder / "a.sqlite") as database:
+            found = database.execute("SELECT id, exit_code, columns, result FROM runs ORDER BY position").fetchall()
+        self.assertEqual([row[0] for row in found], names)
+        for name, code, columns, result in found:
+            self.assertLess(code, 2, name)
+            self.assertEqual(json.loads(columns), {"note": name})
+            self.assertEqual(json.loads(result)["data"]["path"], name)
+        self.run_tool("export", "--store", "a.sqlite", "--out", "a.csv")
+        with open(self.folder / "a.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual([row["note"] for row in csv.DictReader(file)], [name for name in names for _ in range(2)])
+
+    def test_what_is_wrong_with_a_manifest_is_said_with_its_line(self):
+        for text, words in {
+            "path,id\na.csv,1\nb.csv,1\n": 'bad.csv:3: the id "1" stands at bad.csv:2 too',
+            "id\n1\n": "bad.csv:1: the header has no column path",
+            "path,path\na,b\n": 'bad.csv:1: the header has the column "path" twice',
+            "path,id\na.csv\n": "bad.csv:2: the row has 1 fields, the header 2",
+            "path,models\na.csv,viscous\nb.csv,tar\n": "bad.csv:3: column models: there is no model 'tar'",
+            "path,from_s\na.csv,soon\n": 'bad.csv:2: column from_s: "soon" is not a time',
+            "path,from_s,to_s\na.csv,3,2\n": "bad.csv:2: from_s 3 does not lie before to_s 2",
+            'path,id\n"a.csv,1\n': "bad.csv:2: a field begins with a double quote that is never closed",
+            'path,id\na"b.csv,1\n': "bad.csv:2: a double quote stands inside a field",
+            "path\n\0\n": "bad.csv:2:1: a NUL byte stands here",
+            "": "bad.csv: the manifest is empty",
+        }.items():
+            (self.folder / "bad.csv").write_text(text)
+            _, said = self.refit("bad.csv", "a.sqlite", code=4)
+            self.assertIn(words, said)
+        (self.folder / "bad.csv").write_text("path,id\n")
+        self.assertIn("names no recording", self.refit("bad.csv", "a.sqlite", code=5)[1])
+        self.assertIn("there is no such file", self.refit("nowhere.csv", "a.sqlite", code=3)[1])
+
+    def test_a_million_lines_are_read_in_bounded_memory(self):
+        with open(self.folder / "million.csv", "w", encoding="utf-8") as file:
+            file.write("path,id,operator\n")
+            file.writelines(f'nowhere/run_{i}.csv,run {i},"O""Neil, A"\n' for i in range(10**6))
+        # What is asked of memory hangs on the program and the store's page cache, not on a million entries.
+        self.refit("million.csv", "a.sqlite", "--shard", "5/10000",
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_DATA, (300 << 20, 300 << 20)))
+        stored = self.rows("a.sqlite")
+        self.assertEqual([key[1] for key in stored if key[0] == "runs"], [f"run {i}" for i in range(500, 600)])
+
+    def test_folders_and_patterns_are_gone_through_without_loops(self):
+        self.simulate(2, "runs")
+        (self.folder / "runs" / "deep" / "er").mkdir(parents=True)
+        shutil.copy(self.folder / "runs" / "run_001.csv", self.folder / "runs" / "deep" / "er" / "a.csv")
+        (self.folder / "runs" / "deep" / "loop").symlink_to("..")
+        (self.folder / "runs" / "deep" / "self").symlink_to("self")
+        (self.folder / "runs" / "notes.txt").write_text("no recording")
+        for data, ids in {"runs": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"],
+                          "runs/**/*.csv": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"],
+                          "runs/run_00[2-9].csv,runs/*/er": ["runs/run_002.csv"],
+                          "runs/run_*.csv,runs": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"]}.items():
+            if data.endswith("er"):
+                self.assertIn("no file is like this pattern",
+                              self.run_tool("--data", data, "--store", "b.sqlite", code=3)[1])
+                continue
+            store = f"{len(data)}.sqlite"
+            self.run_tool("--data", data, "--store", store)
+            self.assertEqual(sorted(key[1] for key in self.rows(store) if key[0] == "runs"), ids)
+
+
+@unittest.skipUnless(os.environ.get("PENDULUM_RECORDINGS"), "PENDULUM_RECORDINGS names no folder of recordings")
+class RealRecordings(Lab):
+    """One command over a folder of other people's recordings, some of which cannot be fitted as they are."""
+
+    def test_a_folder_gives_a_table(self):
+        recordings = pathlib.Path(os.environ["PENDULUM_RECORDINGS"])
+        self.run_tool("--data", recordings, "--models", "viscous,coulomb", "--store", "a.sqlite")
+        stored = self.rows("a.sqlite")
+        runs = {pathlib.Path(key[1]).stem: row for key, row in stored.items() if key[0] == "runs"}
+        self.assertEqual(sorted(runs), sorted(path.stem for path in recordings.glob("*.csv")))
+        self.assertEqual(sum(key[0] == "fits" for key in stored), 2 * len(runs))
+        self.assertGreater(sum(row["exit_code"] == 0 for row in runs.values()), len(runs) / 2)
+        for name, row in runs.items():
+            self.assertTrue(row["result"] or row["reason"], name)
+        # Volts without a calibration, and counts that were never calibrated, are not for these models.
+        self.assertIn("calibrate first", runs["cubli_PRINT_00"]["reason"])
+        self.assertIn("coulomb", self.run_tool("status", "--store", "a.sqlite")[0])
+
+
+class Reading(Lab):
+    """What is told of a store."""
+
+    def test_export_report_and_comparison(self):
+        paths = self.simulate(6)
+        manifest = self.manifest([{"path": path, "rig": str(RIG), "date": f"2026-03-{i + 1:02}"} for i, path in enumerate(paths)] +
+                                 [{"path": "missing.csv", "rig": "", "date": ""}])
+        self.refit(manifest, "a.sqlite")
+        self.run_tool("export", "--store", "a.sqlite", "--out", "a.jsonl")
+        lines = [json.loads(line) for line in (self.folder / "a.jsonl").read_text().splitlines()]
+        self.assertEqual([line["id"] for line in lines], [*paths, "missing.csv"])
+        self.assertEqual(lines[0]["manifest"], {"path": paths[0], "rig": str(RIG), "date": "2026-03-01"})
+        self.assertEqual(lines[0]["result"]["fits"][1]["model"], "coulomb")
+        self.assertEqual(lines[6]["result"], None)
+        self.assertEqual(lines[6]["error"], {"exit_code": 3, "message": "missing.csv: there is no such file; check the path"})
+        out, _ = self.run_tool("export", "--store", "a.sqlite", "--out", "-")
+        table = list(csv.DictReader(out.splitlines()))
+        self.assertEqual(len(table), 14)
+        inertia = {row["id"]: float(row["inertia"]) for row in table if row["model"] == "coulomb" and row["inertia"]}
+        self.assertEqual(inertia, {line["id"]: line["result"]["fits"][1]["parameters"]["inertia"]["estimate"] for line in lines[:6]})
+        self.run_tool("report", "--store", "a.sqlite", "--out", "a.html", "--trend_by", "date", "--group_by", "rig")
+        self.assertTrue('id="summary"' in (self.folder / "a.html").read_text())
+        self.assertIn("the manifest has no column 'day'; it has date",
+                      self.run_tool("report", "--store", "a.sqlite", "--out", "a.html", "--group_by", "day", code=2)[1])
+
+    def test_comparison_tells_what_moved(self):
+        manifest = self.manifest(self.simulate(3))
+        self.refit(manifest, "a.sqlite")
+        self.refit(manifest, "b.sqlite", "--threads", "1")
+        out, _ = self.run_tool("compare", "a.sqlite", "b.sqlite")
+        self.assertRegex(out, r"moved by more +0\n")
+        heavier = json.loads(RIG.read_text())
+        heavier["bob_mass"] = {**heavier["bob_mass"], "value": heavier["bob_mass"]["value"] * 2} if isinstance(
+            heavier["bob_mass"], dict) else heavier["bob_mass"] * 2
+        (self.folder / "heavier.json").write_text(json.dumps(heavier))
+        self.refit(self.manifest([{"path": path, "rig": "heavier.json"} for path in self.simulate(3)]), "c.sqlite")
+        out, _ = self.run_tool("compare", "a.sqlite", "c.sqlite", code=1)
+        self.assertIn("Moved by more than their errors", out)
+        self.assertIn("inertia", out)
+
+    def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(self):
+        manifest = self.manifest(self.simulate(60))
+        reader, writer = pty.openpty()
+        process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "a.sqlite")
+        process.communicate(timeout=TIMEOUT_S)
+        done = subprocess.Popen([TOOL, "--manifest", manifest, "--store", "b.sqlite", "--model", "viscous,coulomb"],
+                                cwd=self.folder, stdout=subprocess.DEVNULL, stderr=writer)
+        done.wait(timeout=TIMEOUT_S)
+        os.close(writer)
+        shown = b""
+        try:
+            while piece := os.read(reader, 65536):
+                shown += piece
+        except OSError:  # the other end is closed
+            pass
+        os.close(reader)
+        self.assertRegex(shown.decode(), r"\r\[#+\.+\] \d+ of 60 runs \(\d+ %\), [\d.]+ a second, \d+ s left")
+
+    def test_wrong_flags_are_said(self):
+        for arguments, words in {
+            (): "no store was given",
+            ("--store", "a.sqlite"): "no runs were given",
+            ("--store", "a.sqlite", "--manifest", "a", "--data", "b"): "--manifest and --data both name runs",
+            ("--store", "a.sqlite", "--data", "b", "--shard", "3/3"): "--shard is '3/3'; it must be k/N",
+            ("--store", "a.sqlite", "--data", "b", "--scratch", "."): "give --shard too",
+            ("--store", "a.sqlite", "--data", "b", "--out", "."): "--out is not a flag of a refit",
+            ("--store", "a.sqlite", "--data", "b", "--release", "all"): "--release all makes several results",
+            ("statsu", "--store", "a.sqlite"): "'statsu' is no command",
+            ("status",): "status needs --store",
+            ("status", "--store", "a.sqlite", "--force"): "--force is not a flag of status",
+            ("compare", "a.sqlite"): "compare takes two stores",
+            ("export", "--store", "a.sqlite", "--out", "a.txt"): "its name ends with .csv",
+            ("missing", "--shard_dir", ".", "--shard_count", "0"): "it must be at least 1",
+        }.items():
+            self.assertIn(words, self.run_tool(*arguments, code=2)[1])
+
+    def test_what_is_no_store_is_refused_and_left_as_it_is(self):
+        manifest = self.manifest(self.simulate(1))
+        (self.folder / "text").write_text("these are notes\n" * 100)
+        with sqlite3.connect(self.folder / "other.sqlite") as database:
+            database.execute("CREATE TABLE runs(x)")
+        for name, words in {"text": "this is not an SQLite file", "other.sqlite": "this is no result store"}.items():
+            before = (self.folder / name).read_bytes()
+            self.assertIn(words, self.refit(manifest, name, code=4)[1])
+            self.assertIn(words, self.run_tool("status", "--store", name, code=4)[1])
+            self.assertEqual((self.folder / name).read_bytes(), before)
+        self.assertIn("there is no such store", self.run_tool("status", "--store", "nowhere", code=3)[1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/refit_progress.h"
+
+#include <array>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+namespace pendulum::refit_progress_test {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(DurationText, IsInTheUnitsThatPeopleUse) {
+  EXPECT_EQ(DurationText(0.2), "0 s");
+  EXPECT_EQ(DurationText(59.4), "59 s");
+  EXPECT_EQ(DurationText(60), "1 min 00 s");
+  EXPECT_EQ(DurationText(185), "3 min 05 s");
+  EXPECT_EQ(DurationText(3600), "1 h 00 min");
+  EXPECT_EQ(DurationText(7800), "2 h 10 min");
+}
+
+// 500 of 2000 in 10 s: 50 a second, and 1500 more take 30 s.
+TEST(ProgressText, TellsRateAndTimeLeft) {
+  RefitCounts counts;
+  counts.runs = 2000;
+  counts.refitted = 400;
+  counts.current = 100;
+  EXPECT_EQ(ProgressText(counts, 10), "500 of 2000 runs (25 %), 50 a second, 30 s left");
+  counts.unfitted = 3;
+  EXPECT_THAT(ProgressText(counts, 10), EndsWith(", 3 could not be fitted"));
+}
+
+TEST(ProgressText, KnowsNoRateBeforeTheFirstRun) {
+  RefitCounts counts;
+  counts.runs = 5;
+  EXPECT_EQ(ProgressText(counts, 1), "0 of 5 runs (0 %)");
+  counts.runs = 0;
+  EXPECT_EQ(ProgressText(counts, 1), "0 of 0 runs (100 %)");
+}
+
+/// What can be read from a descriptor at once.
+std::string ReadFrom(int descriptor) {
+  std::array<char, 4096> text{};
+  const ssize_t got = ::read(descriptor, text.data(), text.size());
+  return {text.data(), static_cast<std::size_t>(got > 0 ? got : 0)};
+}
+
+TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
+  int leader = -1, follower = -1;
+  ASSERT_EQ(::openpty(&leader, &follower, nullptr, nullptr, nullptr), 0);
+  RefitProgress progress("refit_pendulums", follower);
+  RefitCounts counts;
+  counts.runs = 4;
+  counts.refitted = 1;
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  progress.Show(counts);
+  EXPECT_THAT(ReadFrom(leader), AllOf(StartsWith("\r[#####...............] 1 of 4 runs (25 %)"), EndsWith("\x1b[K")));
+  progress.Finish();
+  EXPECT_EQ(ReadFrom(leader), "\r\x1b[K");
+  ::close(leader);
+  ::close(follower);
+}
+
+TEST(RefitProgress, DrawsNothingOnAPipeWithinSeconds) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  RefitProgress progress("refit_pendulums", ends[1]);
+  RefitCounts counts;
+  counts.runs = 4;
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  progress.Show(counts);
+  progress.Finish();
+  ::close(ends[1]);
+  EXPECT_EQ(ReadFrom(ends[0]), "");
+  ::close(ends[0]);
+}
+
+}  // namespace
+}  // namespace pendulum::refit_progress_test

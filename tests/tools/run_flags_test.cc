@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/run_flags.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::run_flags_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string Refusal(const RunFlags& flags) {
+  const auto options = MakeRunOptions(flags);
+  if (options) return "";
+  EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
+  return options.error().message;
+}
+
+TEST(MakeRunOptions, FitsCoulombToTheLongestSwingUnlessItIsTold) {
+  const auto options = MakeRunOptions({});
+  ASSERT_TRUE(options);
+  EXPECT_THAT(options->models, ElementsAre("coulomb"));
+  EXPECT_EQ(options->fit.model, "coulomb");
+  EXPECT_EQ(options->swing.release, SwingChoice::kLongest);
+  EXPECT_FALSE(options->closed_form_only);
+}
+
+TEST(MakeRunOptions, TakesModelsWindowAndParameters) {
+  RunFlags flags;
+  flags.model = "viscous,drag";
+  flags.from = "1.5";
+  flags.to = "20";
+  flags.fix = "viscous=0.003";
+  flags.unit = "counts";
+  const auto options = MakeRunOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_THAT(options->models, ElementsAre("viscous", "drag"));
+  EXPECT_EQ(options->swing.from, 1.5);
+  EXPECT_EQ(options->swing.to, 20);
+  EXPECT_EQ(options->fit.fixed.at("viscous"), 0.003);
+  EXPECT_EQ(options->read.unit, "counts");
+}
+
+TEST(MakeRunOptions, NamesTheFlagThatIsWrong) {
+  RunFlags flags;
+  flags.model = "tar";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--model: there is no model 'tar'"));
+  flags = {};
+  flags.from = "3";
+  flags.to = "2";
+  EXPECT_EQ(Refusal(flags), "--from 3 s does not lie before --to 2 s");
+  flags = {};
+  flags.fix = "drag=1";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--fix: model coulomb has no parameter 'drag'"));
+}
+
+}  // namespace
+}  // namespace pendulum::run_flags_test
