@@ -84,4 +84,8 @@ std::string ShownJson(const Json& value) {
   return value.dump();
 }
 
+std::string JsonText(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace pendulum

@@ -30,10 +30,7 @@ std::int64_t CountOf(SQLite::Database& database, const std::string& schema) {
 }
 
 std::vector<std::string> CpusOf(SQLite::Database& database, const std::string& schema) {
-  SQLite::Statement cpus(database, "SELECT DISTINCT cpu FROM " + schema + ".runs WHERE cpu IS NOT NULL ORDER BY cpu");
-  std::vector<std::string> list;
-  while (cpus.executeStep()) list.push_back(sqlite::Text(cpus, 0));
-  return list;
+  return sqlite::Texts(database, "SELECT DISTINCT cpu FROM " + schema + ".runs WHERE cpu IS NOT NULL ORDER BY cpu");
 }
 
 void CompareFits(SQLite::Database& database, StoreComparison& comparison) {

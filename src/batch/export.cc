@@ -12,13 +12,12 @@
 
 #include "batch/sqlite.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 
 namespace pendulum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// Columns of this query: 0 id, 1 path, 2 rig, 3 calibration, 4 from_s, 5 to_s, 6 models, 7 columns, 8 exit_code, 9
 /// reason, 10 result.
@@ -41,10 +40,10 @@ Json ManifestJson(const SQLite::Statement& row) {
 
 std::string JsonLine(const SQLite::Statement& row) {
   std::string line =
-      "{\"id\":" + Dump(sqlite::Text(row, 0)) + ",\"manifest\":" + Dump(ManifestJson(row)) + ",\"result\":";
+      "{\"id\":" + JsonText(sqlite::Text(row, 0)) + ",\"manifest\":" + JsonText(ManifestJson(row)) + ",\"result\":";
   if (!row.getColumn(10).isNull()) return line + sqlite::Text(row, 10) + "}\n";
   const Json error = {{"exit_code", row.getColumn(8).getInt()}, {"message", sqlite::Text(row, 9)}};
-  return line + "null,\"error\":" + Dump(error) + "}\n";
+  return line + "null,\"error\":" + JsonText(error) + "}\n";
 }
 
 /// Statistics of table fits, which need no word of explanation beside their names.
@@ -65,34 +64,41 @@ std::string FieldOf(const SQLite::Column& value) {
   return CsvField(value.getString());
 }
 
+/// Columns before those of the manifest: id, path, rig, calibration.
+constexpr int kOfTheRun = 4;
+
 /// The CSV table of a store.
 class CsvTable {
  public:
   explicit CsvTable(SQLite::Database& database) : database_(database), members_(database, MembersQuery()) {
-    SQLite::Statement names(database, "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key");
-    while (names.executeStep()) columns_.push_back(sqlite::Text(names, 0));
-    SQLite::Statement quantities(database, "SELECT name FROM quantities GROUP BY name ORDER BY min(derived), name");
-    while (quantities.executeStep()) quantities_.push_back(sqlite::Text(quantities, 0));
+    columns_ = sqlite::Texts(database, sqlite::kManifestColumns);
+    quantities_ = sqlite::Texts(database, "SELECT name FROM quantities GROUP BY name ORDER BY min(derived), name");
   }
 
   std::string Header() const {
-    std::vector<std::string> ours = {"id", "path", "model", "recommended"};
+    std::vector<std::string> ours = {"id", "path", "rig", "calibration", "model", "recommended"};
     ours.insert(ours.end(), kStatistics.begin(), kStatistics.end());
     for (const std::string& name : quantities_) {
       for (const char* member : kMembers) ours.push_back(NameOf(name, member));
     }
-    std::string line = "id,path";
-    for (const std::string& name : columns_) {
-      const bool taken = std::ranges::find(ours, name) != ours.end();
-      line += "," + CsvField(taken ? "manifest_" + name : name);
+    std::vector<std::string> names = ours;
+    std::string theirs;
+    for (std::string name : columns_) {
+      while (std::ranges::find(names, name) != names.end()) name.insert(0, "manifest_");
+      names.push_back(name);
+      theirs += "," + CsvField(name);
     }
-    for (std::size_t i = 2; i < ours.size(); ++i) line += "," + CsvField(ours[i]);
+    std::string line = ours.front();
+    for (std::size_t i = 1; i < ours.size(); ++i) {
+      if (i == kOfTheRun) line += theirs;
+      line += "," + CsvField(ours[i]);
+    }
     return line + "\n";
   }
 
   /// Rows of all fits.
   Result<void> Rows(const TakeText& take) {
-    std::string query = "SELECT fits.run, id, path, columns, fits.model, recommended = fits.model";
+    std::string query = "SELECT fits.run, id, path, rig, calibration, columns, fits.model, recommended = fits.model";
     for (const char* name : kStatistics) query += std::string(", fits.") + name;
     SQLite::Statement fits(database_, query + " FROM runs JOIN fits USING(run) ORDER BY position, id, fits.model");
     while (fits.executeStep()) {
@@ -113,13 +119,14 @@ class CsvTable {
   }
 
   std::string Row(const SQLite::Statement& fit) {
-    std::string line = FieldOf(fit.getColumn(1)) + "," + FieldOf(fit.getColumn(2));
-    const Json columns = Json::parse(sqlite::Text(fit, 3));
+    std::string line = FieldOf(fit.getColumn(1));
+    for (int i = 2; i <= kOfTheRun; ++i) line += "," + FieldOf(fit.getColumn(i));
+    const Json columns = Json::parse(sqlite::Text(fit, kOfTheRun + 1));
     for (const std::string& name : columns_) {
       const auto found = columns.find(name);
       line += "," + (found == columns.end() ? "" : CsvField(found->get<std::string>()));
     }
-    constexpr int kFirst = 4;
+    constexpr int kFirst = kOfTheRun + 2;
     for (int i = kFirst; i < fit.getColumnCount(); ++i) line += "," + FieldOf(fit.getColumn(i));
     return line + Quantities(fit.getColumn(0).getInt64(), sqlite::Text(fit, kFirst)) + "\n";
   }

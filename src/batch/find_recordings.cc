@@ -9,6 +9,8 @@
 
 #include <fnmatch.h>
 
+#include "pendulum/base/file.h"
+
 namespace pendulum {
 namespace {
 
@@ -22,16 +24,29 @@ bool IsLike(const std::string& name, const std::string& part) {
   return ::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0;
 }
 
-/// Puts what `parts` stand for in `folder` behind `found`, in the order of names. What cannot be looked into is empty.
-void Find(const fs::path& folder, std::span<const std::string> parts, std::vector<std::string>& found) {
+/// What is in a folder, in the order of names; nothing in one that is not there.
+Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
   std::error_code error;
-  if (parts.front() == kAnyFolders) Find(folder, parts.subspan(1), found);  // no folder at all
   std::vector<fs::directory_entry> entries;
   for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
     entries.push_back(*at);
   }
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory) {
+    return Fault(folder.string(), "this folder cannot be looked into; check its permissions, or name others");
+  }
   std::ranges::sort(entries, {}, [](const fs::directory_entry& entry) { return entry.path().filename(); });
-  for (const fs::directory_entry& entry : entries) {
+  return entries;
+}
+
+/// Puts what `parts` stand for in `folder` behind `found`, in the order of names.
+Result<void> Find(const fs::path& folder, std::span<const std::string> parts, std::vector<std::string>& found) {
+  if (parts.front() == kAnyFolders) {  // no folder at all
+    if (auto done = Find(folder, parts.subspan(1), found); !done) return done;
+  }
+  const auto entries = EntriesOf(folder);
+  if (!entries) return tl::unexpected(entries.error());
+  std::error_code error;
+  for (const fs::directory_entry& entry : *entries) {
     const std::string name = entry.path().filename().string();
     const bool any = parts.front() == kAnyFolders;
     if (any ? name.starts_with('.') : !IsLike(name, parts.front())) continue;
@@ -39,9 +54,10 @@ void Find(const fs::path& folder, std::span<const std::string> parts, std::vecto
     if (last && !any) {
       if (!entry.is_directory(error)) found.push_back((folder / name).string());
     } else if (entry.is_directory(error) && !entry.is_symlink(error)) {
-      Find(folder / name, any ? parts : parts.subspan(1), found);
+      if (auto done = Find(folder / name, any ? parts : parts.subspan(1), found); !done) return done;
     }
   }
+  return {};
 }
 
 /// Cuts a path into the folder before its first pattern, followed as it is, and the parts from there on.
@@ -63,18 +79,20 @@ std::pair<fs::path, std::vector<std::string>> Cut(const fs::path& path) {
 Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
   std::error_code error;
   std::vector<std::string> found;
+  Result<void> done;
   std::string what = "there is no such file or folder";
   if (fs::is_directory(pattern, error)) {
-    Find(pattern, std::vector<std::string>{kAnyFolders, "*.csv"}, found);
+    done = Find(pattern, std::vector<std::string>{kAnyFolders, "*.csv"}, found);
     what = "there is no *.csv file in this folder or below it";
   } else if (fs::exists(pattern, error)) {
     found.push_back(pattern);
   } else if (IsPattern(pattern)) {
     auto [folder, parts] = Cut(pattern);
     if (parts.back() == kAnyFolders) parts.emplace_back("*");
-    Find(folder, parts, found);
+    done = Find(folder, parts, found);
     what = "no file is like this pattern";
   }
+  if (!done) return tl::unexpected(done.error());
   std::ranges::sort(found);
   found.erase(std::unique(found.begin(), found.end()), found.end());  // two ** may meet in one file
   if (!found.empty()) return found;

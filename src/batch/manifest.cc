@@ -17,6 +17,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/line_reader.h"
 
@@ -34,6 +35,7 @@ class CsvRows {
  public:
   explicit CsvRows(InputFile file) : lines_(std::move(file)) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
+    csv_set_blk_size(&parser_, kBlock);
   }
   CsvRows(CsvRows&&) = delete;
   CsvRows(const CsvRows&) = delete;
@@ -109,6 +111,7 @@ class CsvRows {
   }
 
   static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // libcsv's 128 make 10^5 copies of a long row
 
   LineReader lines_;
   csv_parser parser_{};
@@ -158,7 +161,7 @@ class Header {
       }
     }
     if (entry.id.empty()) entry.id = entry.path;
-    entry.columns = columns.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    entry.columns = JsonText(columns);
     if (entry.from && entry.to && *entry.from >= *entry.to) {
       return Fault(where, "from_s " + NumberText(*entry.from) + " does not lie before to_s " + NumberText(*entry.to));
     }

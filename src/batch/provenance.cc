@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/instruction_set.h"
+#include "pendulum/base/json.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -78,7 +79,7 @@ std::string OptionsJson(const RunOptions& options) {
       {"models", options.models},   {"from_s", NumberOrNull(swing.from)},           {"to_s", NumberOrNull(swing.to)},
       {"release", swing.release},   {"closed_form_only", options.closed_form_only}, {"read", ReadJson(options.read)},
       {"fit", FitJson(options.fit)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return JsonText(json);
 }
 
 const std::string& CpuType() {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/json.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/version.h"
@@ -75,10 +76,7 @@ Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
 }
 
 /// The names that result and reasons have of a run's files.
-std::string PathsOf(const ManifestEntry& entry) {
-  return nlohmann::ordered_json{entry.path, entry.rig, entry.calibration, 0}.dump(
-      -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
+std::string PathsOf(const ManifestEntry& entry) { return JsonText({entry.path, entry.rig, entry.calibration, 0}); }
 
 Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inputs) {
   Provenance provenance;
@@ -145,6 +143,17 @@ RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, cons
   return outcome;
 }
 
+/// What comes of a run; nothing where what it would follow from is current.
+template <typename IsCurrent>
+std::optional<RunOutcome> RefitUnless(const Source& source, const ManifestEntry& entry, const RefitOptions& options,
+                                      const IsCurrent& is_current) {
+  RunInputs inputs = ReadInputs(source, entry, options);
+  auto provenance = ProvenanceOf(entry, inputs);
+  if (!provenance) return Failure(entry, options, provenance.error());
+  if (is_current(*provenance)) return std::nullopt;
+  return OutcomeOf(entry, inputs, *std::move(provenance));
+}
+
 /// The refit of a batch by several threads, which take runs from the store and put their outcomes into it.
 class Refitter {
  public:
@@ -166,19 +175,12 @@ class Refitter {
   static constexpr int kPage = 256;
   static constexpr std::chrono::seconds kCommitInterval{1};
 
-  /// What comes of a run; nothing of one that is current.
-  std::optional<RunOutcome> One(const StoredRun& run) const {
-    RunInputs inputs = ReadInputs(source_, run.entry, options_);
-    auto provenance = ProvenanceOf(run.entry, inputs);
-    if (!provenance) return Failure(run.entry, options_, provenance.error());
-    if (IsCurrent(run, *provenance)) return std::nullopt;
-    return OutcomeOf(run.entry, inputs, *std::move(provenance));
-  }
-
-  /// The same; an exception, which is our bug or the memory's end, costs this run only, and this time only.
+  /// What comes of a run; nothing of one that is current. An exception, which is our bug or the memory's end, costs
+  /// this run only, and this time only.
   std::optional<RunOutcome> TryOne(const StoredRun& run) const {
     try {
-      return One(run);
+      return RefitUnless(source_, run.entry, options_,
+                         [&](const Provenance& provenance) { return IsCurrent(run, provenance); });
     } catch (const std::exception& error) {
       return Failure(run.entry, options_, {StatusCode::kInternal, std::string("internal error: ") + error.what()});
     }
@@ -254,10 +256,7 @@ class Refitter {
 }  // namespace
 
 RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const RefitOptions& options) {
-  RunInputs inputs = ReadInputs(source, entry, options);
-  auto provenance = ProvenanceOf(entry, inputs);
-  if (!provenance) return Failure(entry, options, provenance.error());
-  return OutcomeOf(entry, inputs, *std::move(provenance));
+  return *RefitUnless(source, entry, options, [](const Provenance&) { return false; });
 }
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {

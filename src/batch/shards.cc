@@ -8,56 +8,13 @@
 #include <utility>
 
 #include "batch/sqlite.h"
-#include "pendulum/base/file.h"
-#include "pendulum/base/staged_file.h"
 #include "pendulum/batch/store_lock.h"
+#include "pendulum/batch/temporary_store.h"
 
 namespace pendulum {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path WithSuffix(const fs::path& path, const std::string& suffix) { return path.string() + suffix; }
-
-/// Copies a store that nobody writes to, whole or not at all.
-Result<void> Publish(const fs::path& from, const fs::path& to) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  auto input = InputFile::Open(from, "store");
-  if (!input) return tl::unexpected(input.error());
-  StagedFile output(to.string());
-  if (auto opened = output.Open(); !opened) return opened;
-  std::string block(kBlock, '\0');
-  for (std::size_t got = kBlock; got == kBlock;) {
-    const auto read = input->Read(block);
-    if (!read) return tl::unexpected(read.error());
-    got = *read;
-    if (auto written = output.Write({block.data(), got}); !written) return written;
-  }
-  if (auto finished = output.Finish(); !finished) return finished;
-  return output.Commit();
-}
-
-/// A file that goes when this does, and its journal: also before, for what a killed process left under the name would
-/// be played back into another file.
-class TemporaryStore {
- public:
-  explicit TemporaryStore(fs::path path) : path_(std::move(path)) { Remove(); }
-  TemporaryStore(TemporaryStore&&) = delete;
-  TemporaryStore(const TemporaryStore&) = delete;
-  TemporaryStore& operator=(TemporaryStore&&) = delete;
-  TemporaryStore& operator=(const TemporaryStore&) = delete;
-  ~TemporaryStore() { Remove(); }
-  const fs::path& path() const { return path_; }
-
- private:
-  void Remove() const {
-    std::error_code unknown;
-    fs::remove(path_, unknown);
-    fs::remove(WithSuffix(path_, "-journal"), unknown);
-  }
-
-  fs::path path_;
-};
 
 /// What the store of that path is about, if it is one.
 std::optional<StoreMeta> MetaOf(const fs::path& path) {
@@ -109,11 +66,7 @@ Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, Ref
 Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, const RefitOptions& options) {
   const fs::path folder = shard.scratch.empty() ? shard.store.parent_path() : shard.scratch;
   const TemporaryStore attempt(folder / (shard.store.filename().string() + ".attempt-" + shard.attempt));
-  std::error_code unknown;
-  if (!shard.store.parent_path().empty() && !fs::is_directory(shard.store.parent_path(), unknown)) {
-    return CannotWrite(shard.store.string(),
-                       "there is no folder " + shard.store.parent_path().string() + "; make it first");
-  }
+  if (auto checked = CheckFolderOf(shard.store); !checked) return tl::unexpected(checked.error());
   const auto before = MetaOf(shard.store);
   if (before && !before->shard) {
     return Error(StatusCode::kInvalidArgument, shard.store.string() +
@@ -131,6 +84,7 @@ Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, 
   if (is_new) {
     if (auto published = Publish(attempt.path(), shard.store); !published) return tl::unexpected(published.error());
   }
+  std::error_code unknown;
   fs::remove(WithSuffix(shard.store, ".part"), unknown);
   return counts;
 }
@@ -248,7 +202,7 @@ Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
   return {};
 }
 
-/// What attempts that are dead, or were overtaken, left.
+/// Files of attempts: dead ones, and such as were overtaken by others, for the shards are all there.
 void RemoveLeftovers(const fs::path& folder, std::int64_t count) {
   std::error_code error;
   std::vector<fs::path> leftovers;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <mutex>
@@ -19,7 +18,9 @@
 #include "batch/sqlite.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/staged_file.h"
 #include "pendulum/batch/find_recordings.h"
+#include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/motion_model.h"
 
 namespace pendulum {
@@ -153,6 +154,15 @@ Result<Source> OpenPack(const fs::path& path) {
   });
 }
 
+/// pack replaces packed files only: neither a recording nor the results of a term.
+Result<void> CheckReplaceable(const fs::path& path) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(path, unknown)) return {};
+  if (IsSqlite(path) && OpenPack(path)) return {};
+  return Error(StatusCode::kInvalidArgument,
+               path.string() + ": this file is there and is no packed file, which pack would replace; name another");
+}
+
 /// A packed file that is being written.
 class Packer {
  public:
@@ -240,24 +250,20 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
 }
 
 Result<void> Pack(const Source& source, const fs::path& path) {
-  const std::string unfinished = path.string() + ".unfinished";
-  std::error_code unknown;
-  if (fs::is_regular_file(path, unknown) && !IsSqlite(path)) {
-    return Error(StatusCode::kInvalidArgument,
-                 path.string() + ": this file is there and is no packed file, which pack would replace; name another");
-  }
-  fs::remove(unfinished, unknown);
+  if (auto checked = CheckFolderOf(path); !checked) return checked;
+  if (auto checked = CheckReplaceable(path); !checked) return checked;
+  const TemporaryStore unfinished(WithSuffix(path, ".unfinished"));
   auto packed = sqlite::Guard(path.string(), [&]() -> Result<void> {
-    Packer packer(unfinished, source);
+    Packer packer(unfinished.path().string(), source);
     auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
     if (taken) packer.Commit();
     return taken;
   });
-  if (packed && std::rename(unfinished.c_str(), path.c_str()) != 0) {
-    packed = Error(StatusCode::kCannotWrite, "cannot write " + path.string() + ": it cannot be renamed");
-  }
-  if (!packed) fs::remove(unfinished, unknown);
-  return packed;
+  if (!packed) return packed;
+  std::error_code error;
+  fs::rename(unfinished.path(), FollowLinks(path), error);
+  if (error) return CannotWrite(path.string(), SystemWords(error.value()));
+  return {};
 }
 
 }  // namespace pendulum

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <nlohmann/json.hpp>
@@ -72,5 +73,16 @@ SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
 inline std::string Text(const SQLite::Statement& statement, int column) {
   return statement.getColumn(column).getString();
 }
+
+/// The first column of all rows of a query.
+inline std::vector<std::string> Texts(SQLite::Database& database, const std::string& query) {
+  SQLite::Statement rows(database, query);
+  std::vector<std::string> texts;
+  while (rows.executeStep()) texts.push_back(Text(rows, 0));
+  return texts;
+}
+
+/// Names of the columns that a store's manifests carry through.
+inline constexpr const char* kManifestColumns = "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key";
 
 }  // namespace pendulum::sqlite

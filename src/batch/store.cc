@@ -10,9 +10,10 @@
 #include "batch/store_schema.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
-#include "pendulum/base/staged_file.h"
 #include "pendulum/base/version.h"
+#include "pendulum/batch/temporary_store.h"
 
 namespace pendulum {
 namespace {
@@ -45,7 +46,7 @@ std::string EntryLine(const ManifestEntry& entry) {
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   const Json line = {entry.id,           entry.path,       entry.rig,    entry.calibration,
                      number(entry.from), number(entry.to), entry.models, entry.columns};
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return JsonText(line);
 }
 
 std::optional<std::string> NullIfEmpty(const std::string& text) {
@@ -207,7 +208,7 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
     if (comparison.is_object() && comparison["recommended"].is_string()) {
       recommended = comparison["recommended"].get<std::string>();
     }
-    result = outcome.result.dump(-1, ' ', false, Json::error_handler_t::replace);
+    result = JsonText(outcome.result);
   }
   sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason), recommended,
                provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256, provenance.options_sha256,
@@ -248,8 +249,8 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   if (mode == Mode::kRead && !fs::exists(path, unknown)) {
     return Error(StatusCode::kNotFound, name + ": there is no such store; check the path");
   }
-  if (mode == Mode::kWrite && path.has_parent_path() && !fs::is_directory(path.parent_path(), unknown)) {
-    return CannotWrite(name, "there is no folder " + path.parent_path().string() + "; make it first");
+  if (const auto checked = CheckFolderOf(path); mode == Mode::kWrite && !checked) {
+    return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
   return sqlite::Guard(name, [&]() -> Result<Store> {

@@ -25,13 +25,6 @@ constexpr int kMostOutliers = 50;
 constexpr int kMostExamples = 10;
 constexpr std::size_t kMostPoints = 2000;
 
-Json Texts(SQLite::Database& database, const std::string& query) {
-  Json list = Json::array();
-  SQLite::Statement rows(database, query);
-  while (rows.executeStep()) list.push_back(sqlite::Text(rows, 0));
-  return list;
-}
-
 Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
   SQLite::Database& database = store.database();
   return {{"path", store.name()},
@@ -39,8 +32,9 @@ Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
           {"refitted", counts.runs - counts.pending},
           {"pending", counts.pending},
           {"fits", counts.fits},
-          {"versions", Texts(database, "SELECT DISTINCT version FROM runs WHERE version IS NOT NULL ORDER BY version")},
-          {"cpus", Texts(database, "SELECT DISTINCT cpu FROM runs WHERE cpu IS NOT NULL ORDER BY cpu")},
+          {"versions",
+           sqlite::Texts(database, "SELECT DISTINCT version FROM runs WHERE version IS NOT NULL ORDER BY version")},
+          {"cpus", sqlite::Texts(database, "SELECT DISTINCT cpu FROM runs WHERE cpu IS NOT NULL ORDER BY cpu")},
           {"manifest_sha256", TextOrNull(meta.manifest_sha256)}};
 }
 
@@ -332,14 +326,10 @@ SELECT model, name, unit FROM quantities GROUP BY model, name, unit ORDER BY mod
 
 Result<void> CheckColumn(SQLite::Database& database, const char* flag, const std::string& column) {
   if (column.empty() || std::ranges::find(kOwnColumns, column) != kOwnColumns.end()) return {};
-  std::string known;
-  SQLite::Statement names(database, "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key");
-  while (names.executeStep()) {
-    if (sqlite::Text(names, 0) == column) return {};
-    known += (known.empty() ? "" : ", ") + sqlite::Text(names, 0);
-  }
+  const std::vector<std::string> known = sqlite::Texts(database, sqlite::kManifestColumns);
+  if (std::ranges::find(known, column) != known.end()) return {};
   return Error(StatusCode::kInvalidArgument, std::string(flag) + ": the manifest has no column '" + column + "'" +
-                                                 (known.empty() ? ", nor any other" : "; it has " + known));
+                                                 (known.empty() ? ", nor any other" : "; it has " + NameList(known)));
 }
 
 Json WarningsJson(const StoreCounts& counts, const Json& store) {

@@ -2,11 +2,8 @@
 #include "pendulum/recording/line_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <utility>
-
-#include <openssl/evp.h>
 
 #include "pendulum/base/format.h"
 
@@ -20,18 +17,15 @@ const char* Find(const char* from, const char* end, char wanted) {
 
 }  // namespace
 
-void LineReader::FreeDigest::operator()(evp_md_ctx_st* digest) const { EVP_MD_CTX_free(digest); }
-
 LineReader::LineReader(std::string_view text, std::string name)
-    : name_(std::move(name)), at_(text.data()), end_(text.data() + text.size()), digest_(EVP_MD_CTX_new()) {}
+    : name_(std::move(name)), at_(text.data()), end_(text.data() + text.size()) {}
 
 LineReader::LineReader(InputFile file)
     : name_(file.name()),
       file_(std::make_unique<InputFile>(std::move(file))),
       block_(std::make_unique_for_overwrite<Block>()),
       at_(block_->data()),
-      end_(block_->data()),
-      digest_(EVP_MD_CTX_new()) {}
+      end_(block_->data()) {}
 
 LineReader::LineReader(LineReader&& other) noexcept = default;
 LineReader::~LineReader() = default;
@@ -39,9 +33,6 @@ LineReader::~LineReader() = default;
 Result<void> LineReader::Begin() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   has_begun_ = true;
-  if (digest_ == nullptr || EVP_DigestInit_ex(digest_.get(), EVP_sha256(), nullptr) != 1) {
-    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
-  }
   if (Result<void> taken = file_ == nullptr ? Take({at_, end_}) : Refill(); !taken) return taken;
   is_empty_ = at_ == end_;
   if (std::string_view(at_, end_).starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
@@ -63,9 +54,7 @@ Result<void> LineReader::Refill() {
 /// Hashes bytes that came into memory, and looks for what a logger leaves that lost its power, or an encoding of two
 /// bytes a character.
 Result<void> LineReader::Take(std::string_view bytes) {
-  if (!bytes.empty() && EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()) != 1) {
-    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
-  }
+  if (auto added = digest_.Add(bytes); !added) return added;
   const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
   if (nul == nullptr) return {};
   const std::string_view before(at_, nul);
@@ -116,17 +105,6 @@ Result<bool> LineReader::NextBlock() {
     if (const Result<void> filled = Refill(); !filled) return tl::unexpected(filled.error());
   }
   return true;
-}
-
-Result<std::string> LineReader::Sha256() {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_DigestFinal_ex(digest_.get(), digest.data(), &size) != 1) {
-    return Error(StatusCode::kInternal, "OpenSSL cannot compute a SHA-256");
-  }
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += {HexDigit(digest.at(i) >> 4), HexDigit(digest.at(i) & 15)};
-  return text;
 }
 
 }  // namespace pendulum

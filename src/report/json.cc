@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "pendulum/base/json.h"
 #include "pendulum/base/version.h"
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
@@ -131,7 +132,7 @@ nlohmann::ordered_json ToJson(const RunReport& report) {
 
 std::string ToJsonText(const RunReport& report) {
   constexpr int kIndent = 2;
-  return ToJson(report).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(ToJson(report), kIndent) + "\n";
 }
 
 }  // namespace pendulum

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 
+#include "pendulum/base/json.h"
+
 namespace pendulum {
 
 std::string ScriptText(const nlohmann::ordered_json& json) {
-  const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string text = JsonText(json);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

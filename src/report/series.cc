@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/report/json_parts.h"
 
@@ -160,7 +161,7 @@ nlohmann::ordered_json SeriesJson(const std::vector<Recording>& used, const RunR
 }
 
 std::string ToSeriesJsonText(const std::vector<Recording>& used, const RunReport& report) {
-  return SeriesJson(used, report).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(SeriesJson(used, report)) + "\n";
 }
 
 }  // namespace pendulum

@@ -185,9 +185,7 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
   if (!store) return tl::unexpected(store.error());
   const auto summary = Summarize(*store, options.summary);
   if (!summary) return tl::unexpected(summary.error());
-  const std::string text = options.out.ends_with(".json")
-                               ? summary->dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-                               : SummaryHtml(*summary);
+  const std::string text = options.out.ends_with(".json") ? JsonText(*summary, 2) + "\n" : SummaryHtml(*summary);
   if (auto written = WriteOutputs(std::vector<Output>{{options.out, text}}); !written) {
     return tl::unexpected(written.error());
   }
@@ -203,7 +201,7 @@ Result<int> RunCompare(const RefitPendulumsOptions& options) {
   if (!comparison) return tl::unexpected(comparison.error());
   if (auto written = WriteText(ComparisonText(*comparison, options.stores[0], options.stores[1])); !written)
     return written;
-  return comparison->moved + comparison->changed_status > 0 ? 1 : 0;
+  return comparison->moved + comparison->changed_status + comparison->only_before > 0 ? 1 : 0;
 }
 
 Result<int> RunPack(const RefitPendulumsOptions& options) {

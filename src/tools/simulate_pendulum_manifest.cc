@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "pendulum/base/format.h"
+#include "pendulum/batch/export.h"
 
 namespace pendulum {
 namespace {
@@ -26,13 +27,6 @@ std::string SeenFrom(const fs::path& base, const fs::path& folder) {
 }
 
 }  // namespace
-
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of(" \t\r\n\",;#") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
-  return field + '"';
-}
 
 Manifest::Manifest(const SimulateOptions& options) : options_(options) {
   const fs::path base = RealFolder(IsStandardOutput(options.manifest_out) ? "" : options.manifest_out);

@@ -8,9 +8,6 @@
 
 namespace pendulum {
 
-/// A field of a CSV file, in quotes where RFC 4180 or a reader that trims or skips comments would have them.
-std::string CsvField(const std::string& text);
-
 /// The list of the recordings that were made: path, id, rig (with --rig), seed and the truth's parameters. A header,
 /// then a row for each, in lines that end with \n; paths are seen from the manifest's folder, or from the current one
 /// where it goes to standard output.

@@ -57,5 +57,12 @@ TEST(ShownJson, ShowsNumbersAndStringsAndOnlyTheKindOfTheRest) {
   EXPECT_EQ(ShownJson(nlohmann::ordered_json::object()), "an object");
 }
 
+// U+FFFD in UTF-8 is EF BF BD (Unicode 15, section 3.9).
+TEST(JsonText, ReplacesWhatIsNoUtf8) {
+  EXPECT_EQ(JsonText("a\xFF"), "\"a\xEF\xBF\xBD\"");
+  EXPECT_EQ(JsonText({{"a", 1}}), R"({"a":1})");
+  EXPECT_EQ(JsonText({{"a", 1}}, 2), "{\n  \"a\": 1\n}");
+}
+
 }  // namespace
 }  // namespace pendulum::json_test

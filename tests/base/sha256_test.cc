@@ -18,5 +18,12 @@ TEST(Sha256, GivesTheDigestsOfTheStandard) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+// However the bytes are cut: the digest is of all of them.
+TEST(Sha256Digest, IsOfAllThatWasAdded) {
+  Sha256Digest digest;
+  for (const char* piece : {"a", "", "bc"}) ASSERT_TRUE(digest.Add(piece));
+  EXPECT_EQ(digest.Text().value(), Sha256("abc").value());
+}
+
 }  // namespace
 }  // namespace pendulum::sha256_test

@@ -258,6 +258,28 @@ TEST_F(ExportTest, PrefixesColumnsOfTheManifestWhoseNamesAreTaken) {
   EXPECT_EQ(rows[0].at("model"), "coulomb");
 }
 
+TEST_F(ExportTest, PrefixesAgainWhereThePrefixedNameIsTakenToo) {
+  Store store = Make({EntryOf("a", {{"manifest_model", "first"}, {"model", "second"}})});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()));
+  const auto rows = RowsOf(store);
+  ASSERT_EQ(rows.size(), 2);
+  EXPECT_EQ(rows[0].at("manifest_model"), "first");
+  EXPECT_EQ(rows[0].at("manifest_manifest_model"), "second");
+}
+
+TEST_F(ExportTest, NamesRigAndCalibrationOfEachRun) {
+  ManifestEntry entry = EntryOf("a");
+  entry.rig = "rigs/left.json";
+  Store store = Make({entry, EntryOf("b")});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", UnfittedOutcome()));
+  EXPECT_THAT(CsvOf(store), StartsWith("id,path,rig,calibration,model,recommended,"));
+  const auto rows = RowsOf(store);
+  ASSERT_EQ(rows.size(), 4);
+  EXPECT_EQ(rows[0].at("path"), "runs/a.csv");
+  EXPECT_EQ(rows[0].at("rig"), "rigs/left.json");
+  EXPECT_EQ(rows[2].at("rig") + rows[2].at("calibration"), "");
+}
+
 TEST_F(ExportTest, WritesIdsOfAnyLetters) {
   const std::vector<std::string> ids = {"a,\"b\"",    "line\nline", "cr\r\nlf", " blank ", "\ttab",
                                         "semi;colon", "π 振り子",   "\"",       ",",       "\"\"",

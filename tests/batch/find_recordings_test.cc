@@ -157,12 +157,25 @@ TEST_F(FindRecordingsTest, SaysWhatIsNotFound) {
   EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file is like this pattern; check the path");
 }
 
-TEST_F(FindRecordingsTest, PassesByAFolderThatCannotBeLookedInto) {
-  if (::geteuid() == 0) GTEST_SKIP() << "root looks into everything";
+TEST_F(FindRecordingsTest, RefusesAFolderThatCannotBeLookedInto) {
   Make({"a/x.csv", "locked/y.csv", "z.csv"});
+  fs::permissions(folder_, fs::perms::all);
   fs::permissions(folder_ / "locked", fs::perms::none);
-  EXPECT_THAT(Find("*/*.csv"), ElementsAre("a/x.csv"));
-  EXPECT_EQ(FaultOf("locked").code, StatusCode::kNotFound);
+  const uid_t self = ::geteuid();
+  constexpr uid_t kNobody = 65534;  // root looks into everything
+  if (self == 0) {
+    ASSERT_EQ(::seteuid(kNobody), 0);
+  }
+  for (const char* pattern : {"locked", "", "*/*.csv", "**/*.csv"}) {
+    EXPECT_EQ(FaultOf(pattern).code, StatusCode::kDataLoss) << pattern;
+    EXPECT_EQ(
+        FaultOf(pattern).message,
+        (folder_ / "locked").string() + ": this folder cannot be looked into; check its permissions, or name others");
+  }
+  EXPECT_THAT(Find("a/*.csv"), ElementsAre("a/x.csv"));
+  if (self == 0) {
+    ASSERT_EQ(::seteuid(self), 0);
+  }
   fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 

@@ -229,6 +229,28 @@ TEST_F(SourceTest, SaysWhereAPackCannotBeWritten) {
   }
 }
 
+TEST_F(SourceTest, PacksOverNothingButPacks) {
+  const Source source = Manifest();
+  const fs::path store = folder_ / "results.sqlite";
+  SQLite::Database(store.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE runs(result)");
+  for (const fs::path& other : {store, folder_ / "runs" / "a.csv"}) {
+    const auto before = fs::file_size(other);
+    const auto packed = Pack(source, other);
+    ASSERT_FALSE(packed);
+    EXPECT_EQ(packed.error().code, StatusCode::kInvalidArgument);
+    EXPECT_THAT(packed.error().message, StartsWith(other.string() + ": this file is there and is no packed file"));
+    EXPECT_EQ(fs::file_size(other), before);
+  }
+}
+
+TEST_F(SourceTest, PacksToWhereALinkLeads) {
+  fs::create_directory(folder_ / "disk");
+  fs::create_symlink("disk/batch.pack", pack_);
+  ASSERT_TRUE(Pack(Manifest(), pack_));
+  EXPECT_TRUE(fs::is_symlink(pack_));
+  EXPECT_EQ(IdsOf(OpenSource(folder_ / "disk" / "batch.pack").value()).size(), 3);
+}
+
 // ---- What is no pack -----------------------------------------------------------------------------------------------
 
 TEST_F(SourceTest, RefusesOtherSqliteFiles) {

@@ -18,6 +18,7 @@ import time
 import unittest
 
 import swing
+from sanitizers import memory_limit
 
 TOOL = ""  # path of the binary, from the command line
 ROWS = [line.split(",") for line in swing.angle_csv().splitlines()[1:]]  # time [s], angle [deg]
@@ -171,13 +172,10 @@ class WhatIsRefused(ReadTest):
                                     stderr=subprocess.DEVNULL)
         self.addCleanup(producer.wait)
         self.addCleanup(producer.stdout.close)
-        little = (100_000_000, 100_000_000)
-        # The address sanitizer reserves more than that before it begins.
-        limit = None if b"__asan_init" in pathlib.Path(TOOL).read_bytes() else lambda: resource.setrlimit(resource.RLIMIT_DATA, little)
         began = time.monotonic()
         self.assert_refused(4, 'standard input:1:1: this line is longer than 1 MiB and begins with "' + 40 * "a" +
                             '...", so this is not CSV text; name a CSV file', "--data", "-", stdin=producer.stdout,
-                            preexec_fn=limit)
+                            preexec_fn=memory_limit(TOOL, 100_000_000))
         self.assertLess(time.monotonic() - began, 30)  # Reading all of it would take as long as its producer.
 
     def test_a_calibration_of_another_sensor(self):

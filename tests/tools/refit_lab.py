@@ -9,6 +9,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 TOOL = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -71,6 +72,13 @@ class Lab(unittest.TestCase):
     def start(self, *arguments, **options):
         return subprocess.Popen([TOOL, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                 text=True, **options)
+
+    def wait_for(self, name):
+        """Until a file is there."""
+        end = time.monotonic() + TIMEOUT_S
+        while not (self.folder / name).exists():
+            self.assertLess(time.monotonic(), end, f"{name} never came")
+            time.sleep(0.005)
 
     def run_tool(self, *arguments, code=0, **options):
         """Runs the tool; gives what it wrote to standard output and to standard error."""

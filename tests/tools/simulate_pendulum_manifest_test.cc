@@ -49,16 +49,6 @@ class ManifestTest : public testing::Test {
   SimulateFlags flags_;
 };
 
-// The rules are those of RFC 4180 section 2, 5 to 7.
-TEST(CsvField, IsQuotedWhereACommaAQuoteOrALineEndsInIt) {
-  EXPECT_EQ(CsvField("run-1_é.csv"), "run-1_é.csv");
-  EXPECT_EQ(CsvField("a,b"), "\"a,b\"");
-  EXPECT_EQ(CsvField("a \"b\""), "\"a \"\"b\"\"\"");
-  EXPECT_EQ(CsvField("a\nb"), "\"a\nb\"");
-  EXPECT_EQ(CsvField(" a"), "\" a\"");
-  EXPECT_EQ(CsvField("#a"), "\"#a\"");
-}
-
 TEST_F(ManifestTest, HasARowForARecordingWithItsSeedAndTruth) {
   EXPECT_EQ(Header(), "path,id,seed,true_inertia,true_viscous,true_release_angle,true_release_time,true_zero_angle\n");
   EXPECT_EQ(Row(2), "../runs/run_003.csv,run_003,9,0.04,0,0.25,0.5,0\n");

@@ -23,4 +23,7 @@ Result<nlohmann::ordered_json> ParseJsonObject(std::string_view text, const std:
 /// A JSON value as a message may show it: a string in quotes, of an array or object only that it is one.
 std::string ShownJson(const nlohmann::ordered_json& value);
 
+/// A JSON value as text, in one line or with so many blanks for each level. Bytes that are no UTF-8 become U+FFFD.
+std::string JsonText(const nlohmann::ordered_json& value, int indent = -1);
+
 }  // namespace pendulum

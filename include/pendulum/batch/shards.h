@@ -37,9 +37,10 @@ std::string ShardList(const std::vector<std::int64_t>& shards);
 Result<std::vector<std::int64_t>> MissingShards(const std::filesystem::path& folder, std::int64_t count);
 
 /// Puts all shards into a store, replacing what that has of their runs; the store is replaced as a whole at the end, so
-/// that this may be done again at any time. Removes what dead attempts left in the folder. Gives the number of runs
-/// that were merged. kNotFound: shards are missing; the message names them. kDataLoss: shards of different batches.
-/// kTryAgain: another process writes to the store.
+/// that this may be done again at any time. Removes checkpoints and the files of attempts from the folder: an attempt
+/// that is still alive, which nobody needs any more, fails. Gives the number of runs that were merged. kNotFound:
+/// shards are missing; the message names them. kDataLoss: shards of different batches. kTryAgain: another process
+/// writes to the store.
 Result<std::int64_t> MergeShards(const std::filesystem::path& folder, std::int64_t count,
                                  const std::filesystem::path& store);
 

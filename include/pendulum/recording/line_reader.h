@@ -8,9 +8,8 @@
 #include <string_view>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/sha256.h"
 #include "pendulum/base/status.h"
-
-struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
 
 namespace pendulum {
 
@@ -46,15 +45,11 @@ class LineReader {
   const std::string& name() const { return name_; }
 
   /// SHA-256 of all bytes, once Next has given false; lower-case hexadecimal. kInternal: OpenSSL cannot compute it.
-  Result<std::string> Sha256();
+  Result<std::string> Sha256() { return digest_.Text(); }
 
  private:
   /// A line of the longest kind with its end just fits, so that a longer one fills it.
   using Block = std::array<char, kLongestLine + 2>;
-
-  struct FreeDigest {
-    void operator()(evp_md_ctx_st* digest) const;
-  };
 
   bool GoOn();
   Result<bool> NextBlock();
@@ -69,7 +64,7 @@ class LineReader {
   std::unique_ptr<Block> block_;     // Null when all bytes were in memory from the start.
   const char* at_ = nullptr;         // Of the bytes in memory, the first that is not yet in a line.
   const char* end_ = nullptr;        // Their end.
-  std::unique_ptr<evp_md_ctx_st, FreeDigest> digest_;
+  Sha256Digest digest_;
   std::string_view line_;
   std::size_t number_ = 0;
   bool is_terminated_ = true;
