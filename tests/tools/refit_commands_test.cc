@@ -85,7 +85,7 @@ TEST_F(RefitCommandsTest, ExportsByTheNameOfTheOutput) {
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = "-";
   EXPECT_EQ(Run(options), 0);
-  EXPECT_THAT(printed_, HasSubstr("id,path,model,recommended,status,"));
+  EXPECT_THAT(printed_, HasSubstr("id,path,rig,calibration,model,recommended,status,"));
   options.out = folder_ / "a.jsonl";
   EXPECT_EQ(Run(options), 0);
   std::string line;

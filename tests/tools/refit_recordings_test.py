@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Other people's recordings, all of them by one command: refit_recordings_test.py PATH_OF_THE_TOOL.
+
+PENDULUM_RECORDINGS names their folder; without it the test is skipped.
+"""
+
+import os
+import pathlib
+import unittest
+
+from refit_lab import Lab
+
+
+@unittest.skipUnless(os.environ.get("PENDULUM_RECORDINGS"), "PENDULUM_RECORDINGS names no folder of recordings")
+class RealRecordings(Lab):
+    """One command over a folder of other people's recordings, some of which cannot be fitted as they are."""
+
+    def test_a_folder_gives_a_table(self):
+        recordings = pathlib.Path(os.environ["PENDULUM_RECORDINGS"])
+        self.run_tool("--data", recordings, "--models", "viscous,coulomb", "--store", "a.sqlite")
+        stored = self.rows("a.sqlite")
+        runs = {pathlib.Path(key[1]).stem: row for key, row in stored.items() if key[0] == "runs"}
+        self.assertEqual(sorted(runs), sorted(path.stem for path in recordings.glob("*.csv")))
+        self.assertEqual(sum(key[0] == "fits" for key in stored), 2 * len(runs))
+        self.assertGreater(sum(row["exit_code"] == 0 for row in runs.values()), len(runs) / 2)
+        for name, row in runs.items():
+            self.assertTrue(row["result"] or row["reason"], name)
+        # Volts without a calibration, and counts that were never calibrated, are not for these models.
+        self.assertIn("calibrate first", runs["cubli_PRINT_00"]["reason"])
+        self.assertIn("coulomb", self.run_tool("status", "--store", "a.sqlite")[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
