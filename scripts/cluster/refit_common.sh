@@ -62,8 +62,10 @@ check_request() {
   [[ ${option[all]} == true || ${option[all]} == false ]] || refuse 2 "--all takes no value"
   require_counts shards cpus
   for flag in "${tool_flags[@]}"; do
-    case $flag in
-      --data | --data=* | --force* | --manifest* | --model* | --scratch* | --shard* | --store* | --threads*)
+    [[ $flag == -* ]] || continue
+    name=${flag#-}  # gflags takes one dash too
+    case ${name#-} in
+      data | data=* | force* | manifest* | model* | scratch* | shard* | store* | threads*)
         refuse 2 "$flag stands behind --, but is not for you to give there"
         ;;
     esac

@@ -62,7 +62,8 @@ Result<void> StagedFile::Open() {
   while (descriptor_ < 0) {
     // A name may be taken by what a process of that number left when it was killed: the next one is tried.
     static std::atomic<std::uint64_t> names = 0;
-    const std::string name = ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(names++) + ".tmp";
+    std::string name(kPrefix);
+    name.append(std::to_string(::getpid()) + "." + std::to_string(names++)).append(kSuffix);
     const std::string temporary = directory / name;
     descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) {

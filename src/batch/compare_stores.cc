@@ -17,6 +17,12 @@ SELECT id, mine.model, mine.status, theirs.status
   JOIN other.fits AS theirs ON theirs.run = their_runs.run AND theirs.model = mine.model
   ORDER BY main.runs.position, id, mine.model)sql";
 
+constexpr const char* kGone = R"sql(
+SELECT id, model FROM main.runs JOIN main.fits USING(run)
+  WHERE NOT EXISTS (SELECT * FROM other.runs AS their_runs JOIN other.fits AS theirs USING(run)
+                      WHERE their_runs.id = main.runs.id AND theirs.model = main.fits.model)
+  ORDER BY main.runs.position, id, model LIMIT ?)sql";
+
 constexpr const char* kParameters = R"sql(
 SELECT id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, mine.std_error, theirs.std_error, theirs.unit
   FROM main.runs JOIN other.runs AS their_runs USING(id)
@@ -43,6 +49,9 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
   }
   comparison.only_before = CountOf(database, "main") - comparison.fits;
   comparison.only_after = CountOf(database, "other") - comparison.fits;
+  SQLite::Statement gone(database, kGone);
+  sqlite::Bind(gone, StoreComparison::kMostListed);
+  while (gone.executeStep()) comparison.gone.push_back({sqlite::Text(gone, 0), sqlite::Text(gone, 1)});
   comparison.other_data = database
                               .execAndGet(
                                   "SELECT count(*) FROM main.runs AS a JOIN other.runs AS b USING(id) "

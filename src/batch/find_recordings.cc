@@ -82,7 +82,7 @@ Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
   Result<void> done;
   std::string what = "there is no such file or folder";
   if (fs::is_directory(pattern, error)) {
-    done = Find(pattern, std::vector<std::string>{kAnyFolders, "*.csv"}, found);
+    done = Find(pattern, std::vector<std::string>{kAnyFolders, "*.[cC][sS][vV]"}, found);
     what = "there is no *.csv file in this folder or below it";
   } else if (fs::exists(pattern, error)) {
     found.push_back(pattern);

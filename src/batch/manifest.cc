@@ -55,8 +55,10 @@ class CsvRows {
       const Result<bool> next = lines_.Next();
       if (!next) return tl::unexpected(next.error());
       if (!*next) return AtEnd();
-      if (lines_.number() == 1) ChooseDelimiter(lines_.line());
+      if (!has_delimiter_ && lines_.line().find_first_not_of(" \t") != std::string::npos)
+        ChooseDelimiter(lines_.line());
       if (!Parse(lines_.line()) || !Parse("\n")) return Unreadable();
+      if (goes_on_) return CarriageReturn();
       if (row_bytes_ > kLongestRow) return TooLong();
       if (!complete_ && row_.fields.empty() && !in_quotes()) {
         row_.line = lines_.number() + 1;
@@ -71,6 +73,7 @@ class CsvRows {
   /// The first separator outside of quotes.
   void ChooseDelimiter(std::string_view header) {
     bool quoted = false;
+    has_delimiter_ = true;
     for (const char c : header) {
       if (c == '"') quoted = !quoted;
       if (quoted || (c != ',' && c != ';' && c != '\t')) continue;
@@ -85,7 +88,9 @@ class CsvRows {
       if (c == '"') quotes_ += 1;
     }
     const auto take_field = [](void* field, std::size_t size, void* self) {
-      static_cast<CsvRows*>(self)->row_.fields.emplace_back(static_cast<const char*>(field), size);
+      auto& rows = *static_cast<CsvRows*>(self);
+      rows.goes_on_ = rows.goes_on_ || rows.complete_;
+      rows.row_.fields.emplace_back(static_cast<const char*>(field), size);
     };
     const auto end_row = [](int, void* self) { static_cast<CsvRows*>(self)->complete_ = true; };
     return csv_parse(&parser_, text.data(), text.size(), take_field, end_row, this) == text.size();
@@ -105,6 +110,12 @@ class CsvRows {
                  "the row that begins here is longer than 16 MiB; is a double quote not closed?");
   }
 
+  /// libcsv's third line end.
+  Result<bool> CarriageReturn() const {
+    return Fault(name() + ":" + std::to_string(lines_.number()),
+                 "a carriage return stands within the line; end lines with LF or CRLF");
+  }
+
   Result<bool> Unreadable() {
     return Fault(name() + ":" + std::to_string(lines_.number()),
                  "a double quote stands inside a field; put the whole field in quotes and write its own quotes twice");
@@ -117,7 +128,7 @@ class CsvRows {
   csv_parser parser_{};
   Row row_;
   std::size_t quotes_ = 0, row_bytes_ = 0;
-  bool complete_ = false;
+  bool complete_ = false, goes_on_ = false, has_delimiter_ = false;
 };
 
 /// What an entry takes from a column of this name; other columns are carried through.

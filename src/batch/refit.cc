@@ -162,9 +162,14 @@ class Refitter {
 
   /// What each thread does.
   void Work() {
-    while (std::optional<StoredRun> run = Take()) {
-      const std::optional<RunOutcome> outcome = TryOne(*run);
-      Done(*run, outcome ? &*outcome : nullptr);
+    try {
+      while (std::optional<StoredRun> run = Take()) {
+        const std::optional<RunOutcome> outcome = TryOne(*run);
+        Done(*run, outcome ? &*outcome : nullptr);
+      }
+    } catch (const std::exception& error) {  // the memory's end, between two runs
+      const std::scoped_lock lock(mutex_);
+      error_ = {StatusCode::kInternal, std::string("internal error: ") + error.what()};
     }
   }
 
@@ -260,6 +265,7 @@ RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const Refi
 }
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
+  store.HurryOn(options.stop);
   const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
   if (!meta) return tl::unexpected(meta.error());
   RefitCounts counts;

@@ -2,6 +2,7 @@
 #include "pendulum/batch/run_statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -202,25 +203,48 @@ std::optional<Trend> FitTrend(const RunValues& values, const std::vector<Outlier
   return trend;
 }
 
+namespace {
+
+constexpr int kHours = 24, kMinutes = 60;
+
+/// Minutes by which a time with this behind it is ahead of UTC: "Z", "+01:00"; 0 for nothing.
+std::optional<double> MinutesOfZone(const std::string& zone) {
+  if (zone.empty() || zone == "Z") return 0;
+  std::array<char, 2> sign{};
+  unsigned int hour = 0, minute = 0;
+  int end = 0;
+  if (std::sscanf(zone.c_str(), "%1[+-]%2u:%2u%n", sign.data(), &hour, &minute, &end) != 3) return std::nullopt;
+  if (end != static_cast<int>(zone.size()) || hour >= kHours || minute >= kMinutes) return std::nullopt;
+  return (sign[0] == '-' ? -1.0 : 1.0) * (kMinutes * hour + minute);
+}
+
+/// Days of a time of day, "T12:30", "T12:30:21.6Z"; 0 for nothing.
+std::optional<double> DaysOfTime(const std::string& time) {
+  if (time.empty()) return 0;
+  unsigned int hour = 0, minute = 0;
+  double second = 0;
+  int end = 0;
+  if (std::sscanf(time.c_str(), "%*1[T ]%2u:%2u%n:%lf%n", &hour, &minute, &end, &second, &end) < 2) return std::nullopt;
+  const auto zone = MinutesOfZone(time.substr(end));
+  if (!zone || hour >= kHours || minute >= kMinutes || !(second >= 0 && second <= kMinutes)) return std::nullopt;
+  return (kMinutes * hour + minute - *zone + second / kMinutes) / (kHours * kMinutes);
+}
+
+}  // namespace
+
 std::optional<double> OrderOf(const std::string& text, bool& is_date) {
   is_date = false;
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && rest == text.data() + text.size() && std::isfinite(number)) return number;
-  int year = 0, hour = 0, minute = 0, date_end = 0, time_end = 0;
+  int year = 0, end = 0;
   unsigned int month = 0, day = 0;
-  double second = 0;
-  const int fields = std::sscanf(text.c_str(), "%4d-%2u-%2u%n%*1[T ]%2d:%2d%n:%lf%n", &year, &month, &day, &date_end,
-                                 &hour, &minute, &time_end, &second, &time_end);
+  if (std::sscanf(text.c_str(), "%4d-%2u-%2u%n", &year, &month, &day, &end) < 3) return std::nullopt;
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};
-  const auto end = static_cast<std::size_t>(fields > 3 ? time_end : date_end);
-  constexpr int kHours = 24, kMinutes = 60;
-  const bool is_time =
-      hour >= 0 && hour < kHours && minute >= 0 && minute < kMinutes && second >= 0 && second <= kMinutes;
-  if (fields < 3 || end != text.size() || !date.ok() || !is_time) return std::nullopt;
+  const auto time = DaysOfTime(text.substr(end));
+  if (!date.ok() || !time) return std::nullopt;
   is_date = true;
-  const double minutes = kMinutes * hour + minute + second / kMinutes;
-  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) + minutes / (kHours * kMinutes);
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) + *time;
 }
 
 }  // namespace pendulum

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "batch/sqlite.h"
+#include "pendulum/base/staged_file.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
 
@@ -30,11 +31,16 @@ bool IsSameBatch(const StoreMeta& one, const StoreMeta& other) {
          (!one.shard || one.shard->count == other.shard->count);
 }
 
+bool IsSound(const fs::path& path) {
+  auto store = Store::Open(path, Store::Mode::kRead);
+  return store && store->Check();
+}
+
 /// Copies what an attempt begins with, if anything: the checkpoint, which began as the store of before, else that. One
 /// that is damaged is none, nor is one that another attempt takes away meanwhile.
 Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
   for (const fs::path& path : {WithSuffix(shard.store, ".part"), shard.store}) {
-    if (!MetaOf(path)) continue;
+    if (!IsSound(path)) continue;
     auto copied = Publish(path, attempt);
     if (copied || copied.error().code != StatusCode::kNotFound) return copied;
   }
@@ -122,7 +128,7 @@ Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int
       return Fault(path.string(), "this is the store of " + is + ", not of shard " + std::to_string(k) + "/" +
                                       std::to_string(count) + "; give the number it was made with, or another folder");
     }
-    if (!meta->complete) missing.push_back(k);
+    if (!meta->complete || !store->Check()) missing.push_back(k);
   }
   return missing;
 }
@@ -175,6 +181,7 @@ Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Stor
   return sqlite::Guard(store.name(), [&]() -> Result<std::int64_t> {
     SQLite::Database& database = store.database();
     database.exec("PRAGMA synchronous = OFF");  // the file is synchronised as a whole
+    database.exec("UPDATE runs SET position = -1 WHERE position <> -1");
     std::int64_t runs = 0;
     for (std::int64_t k = 0; k < count; ++k) {
       SQLite::Statement attach(database, "ATTACH ? AS shard");
@@ -202,14 +209,25 @@ Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
   return {};
 }
 
+/// The merged store is none of what is merged.
+Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs::path& store) {
+  std::error_code unknown;
+  for (std::int64_t k = 0; k < count; ++k) {
+    if (!fs::equivalent(ShardPath(folder, k), store, unknown)) continue;
+    return Error(StatusCode::kInvalidArgument,
+                 store.string() + ": this is one of the shards; name another store to merge them into");
+  }
+  return {};
+}
+
 /// Files of attempts: dead ones, and such as were overtaken by others, for the shards are all there.
 void RemoveLeftovers(const fs::path& folder, std::int64_t count) {
   std::error_code error;
   std::vector<fs::path> leftovers;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (!name.starts_with("shard-")) continue;
-    if (name.find(".sqlite.attempt-") != std::string::npos) leftovers.push_back(at->path());
+    const bool attempt = name.starts_with("shard-") && name.find(".sqlite.attempt-") != std::string::npos;
+    if (attempt || StagedFile::IsTemporary(name)) leftovers.push_back(at->path());
   }
   for (std::int64_t k = 0; k < count; ++k) leftovers.push_back(WithSuffix(ShardPath(folder, k), ".part"));
   for (const fs::path& path : leftovers) fs::remove(path, error);
@@ -226,6 +244,7 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
                                             "; run them and merge again");
   }
   if (auto checked = CheckOneBatch(folder, count); !checked) return tl::unexpected(checked.error());
+  if (auto checked = CheckIsNoShard(folder, count, store); !checked) return tl::unexpected(checked.error());
   const auto lock = StoreLock::Take(store);
   if (!lock) return tl::unexpected(lock.error());
   const TemporaryStore merged(WithSuffix(store, ".merging"));

@@ -20,6 +20,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/find_recordings.h"
+#include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/motion_model.h"
 
@@ -36,7 +37,8 @@ Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
   if (type == fs::file_type::not_found) {
     return Error(StatusCode::kNotFound, path + ": there is no such file; check the path");
   }
-  if (type != fs::file_type::regular && type != fs::file_type::directory && type != fs::file_type::none) {
+  if (type == fs::file_type::directory) return Fault(path, "this is a directory; name a file in it");
+  if (type != fs::file_type::regular && type != fs::file_type::none) {
     return Fault(path, "this is a pipe or a device; a batch reads files");
   }
   auto bytes = ReadFile(file, "CSV", kMostRecordingBytes);
@@ -141,6 +143,7 @@ class PackedFile {
 
 Result<Source> OpenPack(const fs::path& path) {
   const std::string name = path.string();
+  if (const auto readable = sqlite::CheckReadable(name); !readable) return tl::unexpected(readable.error());
   return sqlite::Guard(name, [&]() -> Result<Source> {
     SQLite::Database probe(sqlite::FileName(name), SQLite::OPEN_READONLY);
     if (probe.execAndGet("PRAGMA application_id").getInt() != kPackId || !probe.tableExists("files")) {
@@ -154,10 +157,12 @@ Result<Source> OpenPack(const fs::path& path) {
   });
 }
 
-/// pack replaces packed files only: neither a recording nor the results of a term.
+/// pack replaces packed files only: neither a recording nor the results of a term, nor a device.
 Result<void> CheckReplaceable(const fs::path& path) {
   std::error_code unknown;
-  if (!fs::is_regular_file(path, unknown)) return {};
+  const fs::file_type type = fs::status(path, unknown).type();
+  if (type == fs::file_type::not_found) return {};
+  if (type != fs::file_type::regular) return CannotWrite(path.string(), "it is no regular file; name one");
   if (IsSqlite(path) && OpenPack(path)) return {};
   return Error(StatusCode::kInvalidArgument,
                path.string() + ": this file is there and is no packed file, which pack would replace; name another");
@@ -184,6 +189,8 @@ class Packer {
 
   void Commit() { begun_->commit(); }
 
+  const PackCounts& counts() const { return counts_; }
+
  private:
   static std::unique_ptr<SQLite::Transaction> Begin(SQLite::Database& database) {
     database.exec("PRAGMA application_id = " + std::to_string(kPackId));
@@ -196,6 +203,8 @@ class Packer {
   void AddFile(const std::string& path) {
     if (path.empty() || sqlite::Bind(has_file_, path).executeStep()) return;
     const auto bytes = source_.read(path);
+    ++counts_.files;
+    if (!bytes && counts_.unreadable++ == 0) counts_.first_reason = bytes.error().message;
     sqlite::Bind(add_file_, path);
     if (bytes) {
       add_file_.bind(4, bytes->data(), static_cast<int>(bytes->size()));
@@ -212,6 +221,7 @@ class Packer {
   SQLite::Statement add_entry_;
   SQLite::Statement add_file_;
   SQLite::Statement has_file_;
+  PackCounts counts_;
 };
 
 }  // namespace
@@ -219,7 +229,7 @@ class Packer {
 Result<Source> OpenSource(const fs::path& path) {
   std::error_code unknown;
   if (fs::is_regular_file(path, unknown) && IsSqlite(path)) return OpenPack(path);
-  if (path != "-") {
+  if (path != "-" && !fs::is_fifo(path, unknown)) {  // whose writer sees its reader go
     if (const auto opened = InputFile::Open(path, "manifest"); !opened) return tl::unexpected(opened.error());
   }
   const fs::path folder = path == "-" ? fs::path() : path.parent_path();
@@ -240,7 +250,8 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
   const auto for_each = [paths = std::move(paths)](const TakeEntry& take) -> Result<void> {
     ManifestEntry entry;
     for (const std::string& path : paths) {
-      entry.id = entry.path = path;
+      entry.path = path;
+      entry.id = fs::path(path).lexically_normal().string();
       if (auto taken = take(entry); !taken) return taken;
       ++entry.position;
     }
@@ -249,21 +260,24 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
   return Source{patterns.front(), for_each, [](const std::string& file) { return ReadBelow({}, file); }};
 }
 
-Result<void> Pack(const Source& source, const fs::path& path) {
-  if (auto checked = CheckFolderOf(path); !checked) return checked;
-  if (auto checked = CheckReplaceable(path); !checked) return checked;
+Result<PackCounts> Pack(const Source& source, const fs::path& path) {
+  if (const auto checked = CheckFolderOf(path); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckReplaceable(path); !checked) return tl::unexpected(checked.error());
+  const auto lock = StoreLock::Take(path);
+  if (!lock) return tl::unexpected(lock.error());
   const TemporaryStore unfinished(WithSuffix(path, ".unfinished"));
-  auto packed = sqlite::Guard(path.string(), [&]() -> Result<void> {
+  const auto packed = sqlite::Guard(path.string(), [&]() -> Result<PackCounts> {
     Packer packer(unfinished.path().string(), source);
-    auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
-    if (taken) packer.Commit();
-    return taken;
+    const auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
+    if (!taken) return tl::unexpected(taken.error());
+    packer.Commit();
+    return packer.counts();
   });
   if (!packed) return packed;
   std::error_code error;
   fs::rename(unfinished.path(), FollowLinks(path), error);
   if (error) return CannotWrite(path.string(), SystemWords(error.value()));
-  return {};
+  return packed;
 }
 
 }  // namespace pendulum

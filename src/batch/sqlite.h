@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cerrno>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sqlite3.h>
+#include <unistd.h>
 
+#include "pendulum/base/file.h"
 #include "pendulum/base/status.h"
 
 /// SQLite as the stores use it: no exception of it leaves a function of ours.
@@ -35,6 +39,12 @@ inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exc
 
 /// A path as SQLite takes it for one, also where it looks like a URI or ":memory:".
 inline std::string FileName(const std::string& path) { return path.starts_with('/') ? path : "./" + path; }
+
+/// What SQLite would call a file that cannot be opened, where it is one that may not be read.
+inline Result<void> CheckReadable(const std::string& name) {
+  if (::faccessat(AT_FDCWD, name.c_str(), R_OK, AT_EACCESS) == 0 || errno != EACCES) return {};
+  return Fault(name, "the file cannot be read; check its permissions");
+}
 
 /// What `work` gives, or SQLite's refusal of the file of that name; what is not as the tables say is damage.
 template <typename Work>

@@ -115,7 +115,16 @@ struct Store::State {
       : name(path),
         database(sqlite::FileName(path),
                  mode == Mode::kRead ? SQLite::OPEN_READWRITE : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
-                 kBusyTimeoutMs) {}
+                 kReaderPatienceMs) {
+    if (mode == Mode::kWrite) ::sqlite3_busy_handler(database.getHandle(), Wait, this);
+  }
+
+  /// What SQLite asks of a writer whom readers keep waiting, for the so-and-so-many-th time: whether to go on waiting.
+  static int Wait(void* self, int times) {
+    const std::atomic<bool>* stop = static_cast<const State*>(self)->stop;
+    const int patience = stop != nullptr && stop->load() ? kStoppedPatienceMs : kWriterPatienceMs;
+    return times * ::sqlite3_sleep(kStepMs) < patience ? 1 : 0;
+  }
 
   /// A statement that is prepared once.
   SQLite::Statement& Prepared(std::unique_ptr<SQLite::Statement>& statement, const char* sql) {
@@ -149,10 +158,11 @@ struct Store::State {
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const RunOutcome& outcome, std::int64_t run);
 
-  static constexpr int kBusyTimeoutMs = 10000;
+  static constexpr int kReaderPatienceMs = 10000, kWriterPatienceMs = 600000, kStoppedPatienceMs = 2000, kStepMs = 20;
 
   std::string name;
   SQLite::Database database;
+  const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
   std::unique_ptr<SQLite::Statement> run_of, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
 };
@@ -188,6 +198,7 @@ void Store::State::TakeShard(const std::optional<Shard>& shard, StoreMeta& meta)
   meta.runs = database.execAndGet("SELECT count(*) FROM batch").getInt64();
   if (!shard) {  // of what the manifest names no more, results stay
     database.exec("DELETE FROM runs WHERE exit_code IS NULL AND id NOT IN (SELECT id FROM batch)");
+    database.exec("UPDATE runs SET position = -1 WHERE position <> -1 AND id NOT IN (SELECT id FROM batch)");
     return;
   }
   SQLite::Statement leave_out(database, "DELETE FROM batch WHERE position < ? OR position >= ?");
@@ -253,6 +264,9 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
+  if (const auto readable = sqlite::CheckReadable(name); mode == Mode::kRead && !readable) {
+    return tl::unexpected(readable.error());
+  }
   return sqlite::Guard(name, [&]() -> Result<Store> {
     auto state = std::make_unique<State>(name, mode);
     if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
@@ -356,6 +370,7 @@ Result<StoreCounts> Store::Count() {
     counts.runs = runs.getColumn(0).getInt64();
     counts.pending = runs.getColumn(1).getInt64();
     counts.unfitted = runs.getColumn(2).getInt64();
+    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE position < 0").getInt64();
     SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();
@@ -363,6 +378,16 @@ Result<StoreCounts> Store::Count() {
     return counts;
   });
 }
+
+Result<void> Store::Check() {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    const std::string found = sqlite::Texts(state_->database, "PRAGMA quick_check(1)").front();
+    if (found == "ok") return {};
+    return Fault(name(), "the file is damaged (" + found + "); restore it, or begin anew");
+  });
+}
+
+void Store::HurryOn(const std::atomic<bool>* stop) { state_->stop = stop; }
 
 const std::string& Store::name() const { return state_->name; }
 

@@ -22,7 +22,7 @@ CREATE TABLE options(  -- what was asked of all fits of a batch: meta's options_
 CREATE TABLE runs(  -- one row a run: what the manifest says of it, and what came of it
   run INTEGER PRIMARY KEY,        -- of this store only; id is the run's name elsewhere
   id TEXT NOT NULL UNIQUE,
-  position INTEGER NOT NULL,      -- in the manifest, from 0
+  position INTEGER NOT NULL,      -- in the manifest, from 0; -1: the last manifest did not name it
   path TEXT NOT NULL,             -- as in the manifest, as rig and calibration; '' for none
   rig TEXT NOT NULL,
   calibration TEXT NOT NULL,

@@ -12,6 +12,7 @@
 #include "batch/sqlite.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/version.h"
+#include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
 #include "pendulum/report/json_parts.h"
 
@@ -22,7 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSchemaVersion = 1;
 constexpr int kMostOutliers = 50;
-constexpr int kMostExamples = 10;
 constexpr std::size_t kMostPoints = 2000;
 
 Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
@@ -38,86 +38,6 @@ Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
           {"manifest_sha256", TextOrNull(meta.manifest_sha256)}};
 }
 
-Json ModelsJson(SQLite::Database& database) {
-  SQLite::Statement rows(database, R"sql(
-SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) FILTER (WHERE status = 'not_converged'),
-    count(*) FILTER (WHERE status = 'not_identifiable'), count(*) FILTER (WHERE status = 'failed')
-  FROM fits GROUP BY model ORDER BY model)sql");
-  Json models = Json::array();
-  while (rows.executeStep()) {
-    models.push_back({{"model", sqlite::Text(rows, 0)},
-                      {"fits", rows.getColumn(1).getInt64()},
-                      {"converged", rows.getColumn(2).getInt64()},
-                      {"not_converged", rows.getColumn(3).getInt64()},
-                      {"not_identifiable", rows.getColumn(4).getInt64()},
-                      {"failed", rows.getColumn(5).getInt64()}});
-  }
-  return models;
-}
-
-/// Of the runs with several models, how often each is recommended.
-Json RecommendationsJson(SQLite::Database& database) {
-  SQLite::Statement rows(database, R"sql(
-SELECT recommended, count(*) FROM runs
-  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits GROUP BY run HAVING count(*) > 1)
-  GROUP BY recommended ORDER BY count(*) DESC, recommended)sql");
-  Json list = Json::array();
-  while (rows.executeStep()) {
-    const bool none = rows.getColumn(0).isNull();
-    list.push_back(
-        {{"model", none ? Json(nullptr) : Json(sqlite::Text(rows, 0))}, {"runs", rows.getColumn(1).getInt64()}});
-  }
-  return list;
-}
-
-/// A reason without what differs from run to run: the file it is about, and numbers.
-std::string ReasonKind(std::string reason, const std::string& path) {
-  if (reason.starts_with(path)) reason.erase(0, path.size());
-  const std::size_t begin = reason.find_first_not_of(":0123456789 ");
-  reason.erase(0, std::min(begin, reason.size()));
-  std::string kind;
-  for (const char c : reason) {
-    const bool digit = c >= '0' && c <= '9';
-    if (digit && kind.ends_with('#')) continue;
-    kind += digit ? '#' : c;
-  }
-  for (std::size_t at = kind.find("#.#"); at != std::string::npos; at = kind.find("#.#")) kind.erase(at, 2);
-  return kind;
-}
-
-struct Failures {
-  std::int64_t fits = 0;
-  std::vector<std::string> models, examples;
-};
-
-Json FailuresJson(SQLite::Database& database) {
-  SQLite::Statement rows(database, R"sql(
-SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
-  WHERE fits.status <> 'converged' ORDER BY position, id)sql");
-  std::map<std::tuple<std::string, int, std::string>, Failures> kinds;
-  while (rows.executeStep()) {
-    const std::string kind = ReasonKind(sqlite::Text(rows, 2), sqlite::Text(rows, 3));
-    Failures& failures = kinds[{sqlite::Text(rows, 0), rows.getColumn(1).getInt(), kind}];
-    ++failures.fits;
-    const std::string model = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
-    if (std::ranges::find(failures.models, model) == failures.models.end()) failures.models.push_back(model);
-    const bool known = std::ranges::find(failures.examples, id) != failures.examples.end();
-    if (!known && failures.examples.size() < kMostExamples) failures.examples.push_back(id);
-  }
-  std::vector<Json> list;
-  for (const auto& [kind, failures] : kinds) {
-    const auto& [status, exit_code, reason] = kind;
-    list.push_back({{"status", status},
-                    {"exit_code", exit_code},
-                    {"reason", reason},
-                    {"fits", failures.fits},
-                    {"models", failures.models},
-                    {"examples", failures.examples}});
-  }
-  std::ranges::stable_sort(list, [](const Json& a, const Json& b) { return a["fits"] > b["fits"]; });
-  return list;
-}
-
 /// One parameter or derived quantity of one model, in one unit.
 struct Quantity {
   std::string model, name, unit;
@@ -131,7 +51,8 @@ struct QuantityRuns {
 };
 
 /// Columns of a manifest that are columns of table runs.
-constexpr std::array<std::string_view, 5> kOwnColumns = {"id", "path", "rig", "calibration", "models"};
+constexpr std::array<std::string_view, 7> kOwnColumns = {"id",     "path", "rig",   "calibration",
+                                                         "from_s", "to_s", "models"};
 
 /// The value that a manifest column, named by the next parameter, has for a run.
 std::string ValueOf(const std::string& column) {
@@ -158,7 +79,8 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
     const auto [known, is_new] = groups.emplace(group, groups.size());
     if (is_new) runs.groups.push_back(group);
     runs.values.group.push_back(known->second);
-    std::optional<double> order = rows.getColumn(1).getDouble();
+    std::optional<double> order;
+    if (const double position = rows.getColumn(1).getDouble(); position >= 0) order = position;
     bool is_date = false;
     if (!options.trend_by.empty()) order = OrderOf(sqlite::Text(rows, 5), is_date);
     runs.dates = runs.dates || is_date;
@@ -167,15 +89,18 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
   return runs;
 }
 
+/// A unit behind a number; nothing for a plain one.
+std::string Spaced(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
+
 /// "repeat to 1.03 times their errors (p 0.2)", for people.
 std::string VerdictText(const Repeatability& all, const std::string& unit, std::size_t outliers) {
   std::string text = std::to_string(all.runs) + " runs scatter " + NumberText(all.ScatterRatio(), 3) +
                      " times as much as their quoted errors say (p " +
                      ProbabilityText(std::min(all.lower_p, all.upper_p)) + "): ";
   switch (all.verdict) {
-    case Repeatability::Verdict::kAgrees: text += "the error bars are true"; break;
+    case Repeatability::Verdict::kAgrees: text += "nothing is found against the error bars"; break;
     case Repeatability::Verdict::kScatterLarger:
-      text += "the runs differ by ± " + NumberText(all.between, 2) + " " + unit +
+      text += "the runs differ by ± " + NumberText(all.between, 2) + Spaced(unit) +
               " beyond their errors, or the errors are too small";
       break;
     case Repeatability::Verdict::kScatterSmaller: text += "the errors are too large, or the runs are not independent";
@@ -243,7 +168,7 @@ Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
 std::string TrendText(const Trend& trend, const std::string& unit, const std::string& per) {
   constexpr double kLevel = 0.01;
   const std::string slope =
-      NumberText(trend.slope, 3) + " ± " + NumberText(trend.std_error, 2) + " " + unit + " " + per;
+      NumberText(trend.slope, 3) + " ± " + NumberText(trend.std_error, 2) + Spaced(unit) + " " + per;
   return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 
@@ -332,12 +257,49 @@ Result<void> CheckColumn(SQLite::Database& database, const char* flag, const std
                                                  (known.empty() ? ", nor any other" : "; it has " + NameList(known)));
 }
 
-Json WarningsJson(const StoreCounts& counts, const Json& store) {
+bool NamesSeveralRigs(SQLite::Database& database) {
+  return database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> ''").getInt() > 1;
+}
+
+/// A value of a column that says nothing of the order of runs, and how many runs have such.
+std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, const std::string& column) {
+  std::pair<std::int64_t, std::string> found;
+  if (column.empty()) return found;
+  SQLite::Statement rows(database, "SELECT " + ValueOf(column) + " FROM runs");
+  sqlite::Bind(rows, column);
+  while (rows.executeStep()) {
+    bool is_date = false;
+    const std::string value = sqlite::Text(rows, 0);
+    if (OrderOf(value, is_date)) continue;
+    if (found.first++ == 0) found.second = value;
+  }
+  return found;
+}
+
+Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const Json& store,
+                  const SummaryOptions& options) {
   Json warnings = Json::array();
   const auto add = [&](const char* code, const std::string& message) {
     warnings.push_back({{"code", code}, {"message", message}});
   };
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
+  if (counts.earlier > 0) {
+    add("not_in_the_manifest", std::to_string(counts.earlier) + " runs are not named by the last manifest; their " +
+                                   "results are of earlier ones");
+  }
+  const std::int64_t same =
+      database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE exit_code < 2")
+          .getInt64();
+  if (same > 0) {
+    add("same_data", std::to_string(same) + " runs have the very data of another run: unless their windows differ, " +
+                         "one swing counts several times");
+  }
+  const auto [without, example] = WithoutOrder(database, options.trend_by);
+  if (without > 0) {
+    add("no_order", "the column " + options.trend_by + " of " + std::to_string(without) +
+                        " runs is neither a number nor a date such as 2026-03-01, as " + Quoted(example) +
+                        "; no trend has them");
+  }
   if (store["versions"].size() > 1) add("several_versions", "the fits are of several versions of the program");
   if (store["cpus"].size() > 1) {
     add("several_cpus", "the fits were made on several types of CPU, whose last bits differ");
@@ -347,16 +309,7 @@ Json WarningsJson(const StoreCounts& counts, const Json& store) {
 
 }  // namespace
 
-Result<Json> Overview(Store& store) {
-  return sqlite::Guard(store.name(), [&]() -> Result<Json> {
-    SQLite::Database& database = store.database();
-    return Json{{"models", ModelsJson(database)},
-                {"recommendations", RecommendationsJson(database)},
-                {"failures", FailuresJson(database)}};
-  });
-}
-
-Result<Json> Summarize(Store& store, const SummaryOptions& options) {
+Result<Json> Summarize(Store& store, const SummaryOptions& asked) {
   const auto meta = store.Meta();
   if (!meta) return tl::unexpected(meta.error());
   const auto counts = store.Count();
@@ -366,6 +319,8 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();
+    SummaryOptions options = asked;
+    if (options.group_by.empty() && NamesSeveralRigs(database)) options.group_by = "rig";
     for (const auto& [flag, column] :
          {std::pair{"--group_by", options.group_by}, std::pair{"--trend_by", options.trend_by}}) {
       if (auto checked = CheckColumn(database, flag, column); !checked) return tl::unexpected(checked.error());
@@ -379,7 +334,7 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
     if (!overview) return tl::unexpected(overview.error());
     json.update(*overview);
     json["parameters"] = QuantitiesJson(database, options);
-    json["warnings"] = WarningsJson(*counts, json["store"]);
+    json["warnings"] = WarningsJson(database, *counts, json["store"], options);
     return json;
   });
 }

@@ -101,18 +101,25 @@ std::vector<std::string> FlagsOfTheSame(std::span<const NamedFile> outputs, std:
   return flags;
 }
 
-Result<void> WriteStream(const Output& output) {
-  const bool standard = IsStandardOutput(output.path);
-  const int descriptor = standard ? STDOUT_FILENO : ::open(output.path.c_str(), O_WRONLY | O_CLOEXEC);
-  bool written = descriptor >= 0 && WriteAll(descriptor, output.text);
-  int error = errno;
-  if (!standard && descriptor >= 0 && ::close(descriptor) != 0 && written) {
-    written = false;
-    error = errno;
-  }
-  if (!written) return CannotWrite(standard ? "standard output" : output.path, SystemWords(error));
-  return {};
+/// Writes to a stream as the pieces come.
+Result<void> WriteStream(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run) {
+  const bool standard = IsStandardOutput(path);
+  const std::string name = standard ? "standard output" : path;
+  const int descriptor = standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) return CannotWrite(name, SystemWords(errno));
+  Result<void> written = run([&](std::string_view text) -> Result<void> {
+    if (WriteAll(descriptor, text)) return {};
+    return CannotWrite(name, SystemWords(errno));
+  });
+  if (!standard && ::close(descriptor) != 0 && written) written = CannotWrite(name, SystemWords(errno));
+  return written;
 }
+
+Result<void> WriteStream(const Output& output) {
+  return WriteStream(output.path, [&](const TakePiece& take) { return take(output.text); });
+}
+
+bool IsStreamed(const std::string& path) { return IsStandardOutput(path) || IsStream(path); }
 
 }  // namespace
 
@@ -158,7 +165,7 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
 Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability) {
   std::vector<StagedFile> files;
   for (const Output& output : outputs) {
-    if (IsStandardOutput(output.path) || IsStream(output.path)) continue;
+    if (IsStreamed(output.path)) continue;
     files.emplace_back(output.path, durability);
     if (auto opened = files.back().Open(); !opened) return opened;
     if (auto written = files.back().Write(output.text); !written) return written;
@@ -168,7 +175,7 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
     if (auto committed = file.Commit(); !committed) return committed;
   }
   for (const Output& output : outputs) {
-    if (!IsStandardOutput(output.path) && !IsStream(output.path)) continue;
+    if (!IsStreamed(output.path)) continue;
     if (auto written = WriteStream(output); !written) return written;
   }
   return {};
@@ -190,17 +197,25 @@ Result<void> WriteStreamOfPieces(const std::string& path, int count,
 
 }  // namespace
 
-Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece) {
-  if (IsStandardOutput(path) || IsStream(path)) return WriteStreamOfPieces(path, count, piece);
+Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run) {
+  if (IsStreamed(path)) return WriteStream(path, run);
   StagedFile file(path);
   if (auto opened = file.Open(); !opened) return opened;
-  for (int i = 0; i < count; ++i) {
-    const Result<std::string> text = piece(i);
-    if (!text) return tl::unexpected(text.error());
-    if (auto written = file.Write(*text); !written) return written;
-  }
+  if (auto written = run([&](std::string_view text) { return file.Write(text); }); !written) return written;
   if (auto finished = file.Finish(); !finished) return finished;
   return file.Commit();
+}
+
+Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece) {
+  if (IsStreamed(path)) return WriteStreamOfPieces(path, count, piece);
+  return WriteStreamed(path, [&](const TakePiece& take) -> Result<void> {
+    for (int i = 0; i < count; ++i) {
+      const Result<std::string> text = piece(i);
+      if (!text) return tl::unexpected(text.error());
+      if (auto written = take(*text); !written) return written;
+    }
+    return {};
+  });
 }
 
 Result<void> SynchroniseFileSystem(const std::string& path) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "pendulum/base/staged_file.h"
 #include "pendulum/base/status.h"
@@ -47,6 +48,13 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
 /// Writes piece(0) to piece(count - 1) one after the other as WriteOutputs does one text; a file is never in memory as
 /// a whole. Nothing is written where a piece is an error.
 Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece);
+
+/// Takes a text piece by piece; an error ends the writing.
+using TakePiece = std::function<Result<void>(std::string_view)>;
+
+/// Writes what `run` gives to the function it is called with: a file is there once all of it is written, a stream gets
+/// the pieces as they come. kCannotWrite; errors of `run`.
+Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run);
 
 /// Makes all that was written to the file system of the file `path` survive a loss of power. kCannotWrite.
 Result<void> SynchroniseFileSystem(const std::string& path);

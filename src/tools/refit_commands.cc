@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "pendulum/batch/compare_stores.h"
 #include "pendulum/batch/export.h"
 #include "pendulum/batch/store_lock.h"
+#include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/report/summary_page.h"
 #include "tools/output.h"
@@ -35,7 +37,12 @@ constexpr int kInterrupted = 130;
 
 /// The first asks for an orderly end; a second Ctrl-C does not wait for it, which a store survives.
 void Stop(int signal) {
+  constexpr std::string_view kWords =
+      "\nrefit_pendulums: stopping when the runs in work are done; Ctrl-C again stops at once\n";
   if (signal == SIGINT && stop_signal == SIGINT) ::_exit(kInterrupted);
+  const int error = errno;
+  if (signal == SIGINT) WriteAll(STDERR_FILENO, kWords);
+  errno = error;
   stop = true;
   stop_signal = signal;
 }
@@ -85,6 +92,7 @@ std::string AttemptName() {
 
 /// Refits into the store in its place, where this process is the only one that writes.
 Result<RefitCounts> RefitInPlace(const Source& source, const std::string& path, const RefitOptions& options) {
+  if (const auto checked = CheckFolderOf(path); !checked) return tl::unexpected(checked.error());
   const auto lock = StoreLock::Take(path);
   if (!lock) return tl::unexpected(lock.error());
   auto store = Store::Open(path, Store::Mode::kWrite);
@@ -136,26 +144,6 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   return Conclude(*counts, store, refit.force);
 }
 
-/// Writes pieces as they come, to standard output or to a file that is there once it is whole.
-template <typename Export>
-Result<int> WriteStreamed(const std::string& path, const Export& run) {
-  std::optional<StagedFile> file;
-  if (!IsStandardOutput(path)) {
-    file.emplace(path);
-    if (auto opened = file->Open(); !opened) return tl::unexpected(opened.error());
-  }
-  const auto take = [&](std::string_view text) -> Result<void> {
-    if (file) return file->Write(text);
-    if (WriteAll(STDOUT_FILENO, text)) return {};
-    return CannotWrite("standard output", SystemWords(errno));
-  };
-  Result<void> done = run(take);
-  if (done && file) done = file->Finish();
-  if (done && file) done = file->Commit();
-  if (!done) return tl::unexpected(done.error());
-  return 0;
-}
-
 Result<int> RunExport(const RefitPendulumsOptions& options) {
   const std::string& out = options.out;
   const bool lines = out.ends_with(".jsonl") || out.ends_with(".ndjson");
@@ -171,11 +159,19 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
   }
   auto store = Store::Open(options.stores.front(), Store::Mode::kRead);
   if (!store) return tl::unexpected(store.error());
-  return WriteStreamed(
+  const auto written = WriteStreamed(
       out, [&](const TakeText& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
+  if (!written) return tl::unexpected(written.error());
+  return 0;
 }
 
 Result<int> MakeReport(const RefitPendulumsOptions& options) {
+  const bool json = options.out.ends_with(".json");
+  if (!json && !options.out.ends_with(".html") && !IsStandardOutput(options.out)) {
+    return Error(StatusCode::kInvalidArgument, "--out " + options.out +
+                                                   ": its name ends with .html for a page, with .json for what it "
+                                                   "shows; - is the page on standard output");
+  }
   if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}},
                                   std::vector<NamedFile>{{"--store", options.stores.front()}});
       !checked) {
@@ -185,7 +181,7 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
   if (!store) return tl::unexpected(store.error());
   const auto summary = Summarize(*store, options.summary);
   if (!summary) return tl::unexpected(summary.error());
-  const std::string text = options.out.ends_with(".json") ? JsonText(*summary, 2) + "\n" : SummaryHtml(*summary);
+  const std::string text = json ? JsonText(*summary, 2) + "\n" : SummaryHtml(*summary);
   if (auto written = WriteOutputs(std::vector<Output>{{options.out, text}}); !written) {
     return tl::unexpected(written.error());
   }
@@ -212,7 +208,13 @@ Result<int> RunPack(const RefitPendulumsOptions& options) {
   if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}}, inputs); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (auto packed = Pack(*source, options.out); !packed) return tl::unexpected(packed.error());
+  const auto packed = Pack(*source, options.out);
+  if (!packed) return tl::unexpected(packed.error());
+  if (packed->unreadable > 0) {
+    Say(kRefitToolName,
+        std::to_string(packed->unreadable) + " of " + std::to_string(packed->files) +
+            " files could not be read, which the pack will say of them; the first: " + packed->first_reason);
+  }
   return 0;
 }
 

@@ -28,7 +28,9 @@ DEFINE_double(checkpoint_s, 60,
 DEFINE_string(shard_dir, "", "Folder of the stores shard-0.sqlite, shard-1.sqlite, ... of missing and merge.");
 DEFINE_int64(shard_count, 0, "How many shards there are.");
 DEFINE_string(out, "", "What export, report or pack writes: .csv or .jsonl, .html or .json, a packed file.");
-DEFINE_string(group_by, "", "Manifest column of the report: runs with one value are of one rig; default all are.");
+DEFINE_string(group_by, "",
+              "Manifest column of the report: runs with one value are of one rig; default rig where "
+              "several are named, else all runs are of one.");
 DEFINE_string(trend_by, "",
               "Manifest column of the report, numbers or dates, that trends are over; default the position.");
 
@@ -51,7 +53,8 @@ constexpr const char* kUsage =
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
     "What cannot be read or fitted costs its own rows, which say why. Interrupted, the same command goes on.\n"
-    "Exit codes: 0 every run has its rows, 1 compare found what moved by more than its error, 2 wrong flags, 3 file "
+    "Exit codes: 0 every run has its rows, 1 compare found what moved by more than its error, ended otherwise or is\n"
+    "gone, 2 wrong flags, 3 file "
     "or\n"
     "shards not found, 4 unreadable manifest or store, 5 no run, 70 a bug, 73 the store or an output cannot be "
     "written,\n"

@@ -11,6 +11,11 @@
 #include "pendulum/base/staged_file.h"
 
 namespace pendulum {
+namespace {
+
+constexpr std::chrono::milliseconds kRedraw{200};
+
+}  // namespace
 
 std::string DurationText(double seconds) {
   constexpr long kMinute = 60, kHour = 3600;
@@ -36,13 +41,15 @@ std::string ProgressText(const RefitCounts& counts, double seconds) {
   return text;
 }
 
-RefitProgress::RefitProgress(std::string name, int descriptor)
-    : name_(std::move(name)), descriptor_(descriptor), is_terminal_(::isatty(descriptor) == 1) {}
+RefitProgress::RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between)
+    : name_(std::move(name)),
+      descriptor_(descriptor),
+      is_terminal_(::isatty(descriptor) == 1),
+      between_(is_terminal_ ? kRedraw : between) {}
 
 void RefitProgress::Show(const RefitCounts& counts) {
-  constexpr std::chrono::milliseconds kRedraw{200}, kLine{10000};
   const Clock::time_point now = Clock::now();
-  if (now - last_ < (is_terminal_ ? kRedraw : kLine)) return;
+  if (now - last_ < between_) return;
   last_ = now;
   const std::string text = ProgressText(counts, std::chrono::duration<double>(now - begin_).count());
   if (!is_terminal_) {

@@ -18,8 +18,9 @@ std::string ProgressText(const RefitCounts& counts, double seconds);
 /// and then.
 class RefitProgress {
  public:
-  /// `name`: of the tool, begins plain lines. `descriptor`: where to write, such as STDERR_FILENO.
-  RefitProgress(std::string name, int descriptor);
+  /// `name`: of the tool, begins plain lines. `descriptor`: where to write, such as STDERR_FILENO. `between`: plain
+  /// lines.
+  RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between = std::chrono::seconds(10));
 
   void Show(const RefitCounts& counts);
 
@@ -32,6 +33,7 @@ class RefitProgress {
   std::string name_;
   int descriptor_;
   bool is_terminal_;
+  std::chrono::milliseconds between_;  // what it shows
   bool has_drawn_ = false;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
-#include "pendulum/batch/summary.h"
+#include "pendulum/batch/overview.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
 
@@ -76,6 +76,13 @@ std::string ChangedText(const StoreComparison& comparison) {
   return Heading("Ended otherwise") + AlignedTable({{"run"}, {"model"}, {"before"}, {"after"}}, rows, kTextIndent);
 }
 
+std::string GoneText(const StoreComparison& comparison) {
+  if (comparison.gone.empty()) return "";
+  std::vector<Cells> rows;
+  for (const GoneFit& fit : comparison.gone) rows.push_back({Printable(fit.id), fit.model});
+  return Heading("Gone") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
+}
+
 }  // namespace
 
 Result<std::string> StatusText(Store& store) {
@@ -83,6 +90,7 @@ Result<std::string> StatusText(Store& store) {
   if (!counts) return tl::unexpected(counts.error());
   std::string text = Heading("Runs") + Row("in the store", counts->runs) + Row("not refitted yet", counts->pending) +
                      Row("could not be fitted", counts->unfitted);
+  if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
   if (counts->fits == 0) return text;
   const auto overview = Overview(store);
   if (!overview) return tl::unexpected(overview.error());
@@ -103,7 +111,7 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
     text += Heading("Types of CPU") + Prose(before + ": " + NameList(comparison.cpus_before)) +
             Prose(after + ": " + NameList(comparison.cpus_after));
   }
-  return text + MovedText(comparison) + ChangedText(comparison);
+  return text + MovedText(comparison) + ChangedText(comparison) + GoneText(comparison);
 }
 
 }  // namespace pendulum

@@ -181,6 +181,8 @@ TEST_F(CompareStoresTest, CountsFitsThatOneOfThemHas) {
   EXPECT_EQ(comparison.fits, 1);
   EXPECT_EQ(comparison.only_before, 1);
   EXPECT_EQ(comparison.only_after, 2);
+  ASSERT_EQ(comparison.gone.size(), 1);
+  EXPECT_EQ(comparison.gone[0].id + " " + comparison.gone[0].model, "a coulomb");
   EXPECT_EQ(comparison.identical, 1);
 }
 

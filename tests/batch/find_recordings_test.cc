@@ -58,7 +58,7 @@ class FindRecordingsTest : public testing::Test {
 
 TEST_F(FindRecordingsTest, FindsTheCsvFilesOfAFolderAndBelowInOrder) {
   Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.txt", "d.CSV", "e.csv.bak", "csv"});
-  EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv"));
+  EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv", "d.CSV"));
 }
 
 TEST_F(FindRecordingsTest, FindsTheSameInAFolderWithoutASlash) {
@@ -99,6 +99,11 @@ TEST_F(FindRecordingsTest, TakesTwoAsterisksForAnyNumberOfFolders) {
   EXPECT_THAT(Find("**/b/**/p1.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv"));
   EXPECT_THAT(Find("**/**/p2.csv"), ElementsAre("a/p2.csv"));  // once
   EXPECT_THAT(Find("a/b/**"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/b/q.txt"));
+}
+
+TEST_F(FindRecordingsTest, FindsInAPatternTheLettersThatStandThere) {
+  Make({"A.CSV", "c.csv"});
+  EXPECT_THAT(Find("*.csv"), ElementsAre("c.csv"));
 }
 
 TEST_F(FindRecordingsTest, LeavesHiddenFilesAndFoldersAlone) {

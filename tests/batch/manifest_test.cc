@@ -160,6 +160,10 @@ TEST_F(ReadManifestTest, SkipsBlankLines) {
   EXPECT_EQ(entries[1].position, 1);
 }
 
+TEST_F(ReadManifestTest, ChoosesTheSeparatorOfTheHeaderAlsoBelowBlankLines) {
+  EXPECT_EQ(Entries("\n  \npath;id\na.csv;1\n")[0].id, "1");
+}
+
 TEST_F(ReadManifestTest, KnowsTheLineThatARowBeginsOn) {
   const auto entries = Entries("path,x\n\"a\n\nb.csv\",1\nc.csv,\"\n\n\"\n\nd.csv,2\n");
   ASSERT_EQ(entries.size(), 3);
@@ -249,6 +253,13 @@ TEST_F(ReadManifestTest, RefusesQuotesThatAreNotPaired) {
       ": a double quote stands inside a field; put the whole field in quotes and write its own quotes twice";
   EXPECT_EQ(FaultOf("path\na.csv\n5\" rod.csv\n"), ":3" + inside);
   EXPECT_EQ(FaultOf("path\n\"a\"b.csv\n"), ":2" + inside);
+}
+
+TEST_F(ReadManifestTest, RefusesCarriageReturnsAsLineEnds) {
+  const std::string why = ": a carriage return stands within the line; end lines with LF or CRLF";
+  EXPECT_EQ(FaultOf("path,id\ra.csv,1\r"), ":1" + why);
+  EXPECT_EQ(FaultOf("path,id\na.csv\rx\n"), ":2" + why);
+  EXPECT_EQ(FieldOf("\"a\rb\""), "a\rb");
 }
 
 TEST_F(ReadManifestTest, RefusesWhatIsNoText) {

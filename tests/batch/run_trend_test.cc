@@ -122,6 +122,10 @@ TEST(OrderOf, TakesDatesAsDays) {
                                                              {"2026-03-01", 20513},
                                                              {"2026-03-01T12:00:00", 20513.5},
                                                              {"2026-03-01 18:00", 20513.75},
+                                                             {"2026-03-01T12:00:00Z", 20513.5},
+                                                             {"2026-03-01T12:00Z", 20513.5},
+                                                             {"2026-03-01T13:30:00+01:30", 20513.5},
+                                                             {"2026-03-01T00:00:00-06:00", 20513.25},
                                                              {"2026-03-01T00:00:21.6", 20513.00025}};
   for (const auto& [text, days] : dates) {
     bool is_date = false;
@@ -142,7 +146,8 @@ TEST(OrderOf, KnowsNothingElse) {
 }
 
 TEST(OrderOf, TakesNoTextThatOnlyBeginsAsADate) {
-  for (const char* text : {"2026-03-01x", "2026-03-01 rig 7", "2026-03-01T25:00:00", "2026-03-01T12:61"}) {
+  for (const char* text : {"2026-03-01x", "2026-03-01 rig 7", "2026-03-01T25:00:00", "2026-03-01T12:61", "2026-03-01Z",
+                           "2026-03-01T12:00:00z", "2026-03-01T12:00:00+1", "2026-03-01T12:00+01:00Z"}) {
     bool is_date = false;
     EXPECT_FALSE(OrderOf(text, is_date)) << text;
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -84,6 +85,31 @@ TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamaged) {
   folder_.Write("out/shard-0.sqlite.part", "this is no store");
   EXPECT_EQ(RefitOne(0, 1, options_).refitted, kRuns + 1);
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
+}
+
+/// Writes over all pages of a store but the first two, which are what Open looks at.
+void Damage(const fs::path& store) {
+  constexpr std::size_t kPage = 4096;
+  std::fstream file(store, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(2 * kPage);
+  file << std::string(fs::file_size(store) - 2 * kPage, '\x5a');
+}
+
+TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamagedFartherBack) {
+  std::atomic<bool> stop = false;
+  RefitOne(0, 1, StoppingAfter(3, stop));
+  Damage(out_ / "shard-0.sqlite.part");
+  EXPECT_EQ(RefitOne(0, 1, options_).refitted, kRuns + 1);
+  EXPECT_EQ(AllRows(ShardPath(out_, 0)), RowsAtOnce());
+}
+
+TEST_F(ShardsTest, AreMissingAndMadeAnewWhereTheyAreDamaged) {
+  AllShards(2);
+  Damage(ShardPath(out_, 1));
+  EXPECT_THAT(MissingShards(out_, 2).value(), ElementsAre(1));
+  RefitOne(1, 2, options_);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_EQ(AllRows(store_), RowsAtOnce());
 }
 
 TEST_F(ShardsTest, AreNotWrittenAgainWhileTheyAreComplete) {

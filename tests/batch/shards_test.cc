@@ -41,22 +41,6 @@ namespace fs = std::filesystem;
 
 // ---- The parts of a batch ------------------------------------------------------------------------------------------
 
-TEST(Shard, CutsABatchIntoPartsThatDifferByOneRunAtMost) {
-  for (const std::int64_t runs : {0, 1, 7, 1000, 999999937}) {
-    for (const std::int64_t count : {1, 2, 3, 7, 64}) {
-      std::int64_t end = 0;
-      for (std::int64_t k = 0; k < count; ++k) {
-        const Shard shard{k, count};
-        EXPECT_EQ(shard.Begin(runs), end);
-        end = shard.End(runs);
-        EXPECT_GE(end - shard.Begin(runs), runs / count);
-        EXPECT_LE(end - shard.Begin(runs), runs / count + 1);
-      }
-      EXPECT_EQ(end, runs);
-    }
-  }
-}
-
 TEST(ShardPath, NamesTheStoreOfAShard) {
   EXPECT_EQ(ShardPath("out", 3), fs::path("out/shard-3.sqlite"));
   EXPECT_EQ(ShardList({3, 17}), "3,17");
@@ -120,10 +104,20 @@ TEST_F(ShardsTest, ReplaceTheirRunsInAStoreAndKeepTheOthers) {
   EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
 }
 
+TEST_F(ShardsTest, AreNotMergedIntoOneOfThemselves) {
+  AllShards(2);
+  const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));
+  ASSERT_FALSE(merged);
+  EXPECT_EQ(merged.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(merged.error().message,
+            ShardPath(out_, 1).string() + ": this is one of the shards; name another store to merge them into");
+  EXPECT_EQ(MissingShards(out_, 2).value().size(), 0);
+}
+
 TEST_F(ShardsTest, LeaveNothingElseBehindOnceTheyAreMerged) {
   AllShards(2);
-  for (const char* name :
-       {"shard-0.sqlite.part", "shard-1.sqlite.attempt-9-0-node-4", "shard-1.sqlite.attempt-9-0-node-4-journal"}) {
+  for (const char* name : {".pendulum.4.0.tmp", "shard-0.sqlite.part", "shard-1.sqlite.attempt-9-0-node-4",
+                           "shard-1.sqlite.attempt-9-0-node-4-journal"}) {
     folder_.Write(std::string("out/") + name, "of a dead attempt");
   }
   folder_.Write("out/notes.txt", "mine");

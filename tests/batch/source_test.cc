@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -11,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "pendulum/batch/store_lock.h"
 
 namespace pendulum::source_test {
 namespace {
@@ -87,7 +90,7 @@ TEST_F(SourceTest, NamesFilesAsTheManifestDoes) {
   EXPECT_EQ(source.read("runs/none.csv").error().code, StatusCode::kNotFound);
   EXPECT_EQ(source.read("runs/none.csv").error().message, "runs/none.csv: there is no such file; check the path");
   EXPECT_EQ(source.read("runs").error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(source.read("runs").error().message, "runs: this is a directory; name a CSV file in it");
+  EXPECT_EQ(source.read("runs").error().message, "runs: this is a directory; name a file in it");
 }
 
 // Whoever opens a pipe that nobody writes to waits for ever.
@@ -241,6 +244,36 @@ TEST_F(SourceTest, PacksOverNothingButPacks) {
     EXPECT_THAT(packed.error().message, StartsWith(other.string() + ": this file is there and is no packed file"));
     EXPECT_EQ(fs::file_size(other), before);
   }
+}
+
+TEST_F(SourceTest, PacksIntoNoPipe) {
+  ASSERT_EQ(::mkfifo(pack_.c_str(), 0600), 0);
+  const auto packed = Pack(Manifest(), pack_);
+  ASSERT_FALSE(packed);
+  EXPECT_EQ(packed.error().code, StatusCode::kCannotWrite);
+  EXPECT_TRUE(fs::is_fifo(pack_));
+}
+
+TEST_F(SourceTest, PacksForOneProcessAtATime) {
+  const auto other = StoreLock::Take(pack_);
+  EXPECT_EQ(Pack(Manifest(), pack_).error().code, StatusCode::kTryAgain);
+  EXPECT_FALSE(fs::exists(pack_));
+}
+
+TEST_F(SourceTest, CountsWhatCouldNotBePacked) {
+  const auto packed = Pack(Manifest(), pack_);
+  ASSERT_TRUE(packed);
+  EXPECT_EQ(packed->files, 5);
+  EXPECT_EQ(packed->unreadable, 1);
+  EXPECT_EQ(packed->first_reason, "runs/none.csv: there is no such file; check the path");
+}
+
+TEST_F(SourceTest, ReadsAManifestFromANamedPipe) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << "path\nruns/a.csv\n"; });
+  EXPECT_THAT(IdsOf(OpenSource(pipe).value()), ElementsAre("runs/a.csv"));
+  writer.join();
 }
 
 TEST_F(SourceTest, PacksToWhereALinkLeads) {

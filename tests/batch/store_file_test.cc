@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The store as a file: what is in it after a process, beside others, and what is none.
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -66,11 +69,12 @@ TEST_F(StoreFileTest, ShowsReadersWhatWasCommitted) {
   EXPECT_EQ(reader.Count()->pending, 0);
 }
 
-// After the ten seconds of SQLite's patience.
 TEST_F(StoreFileTest, LetsOneWriterIn) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   Store other = Reopen(Store::Mode::kWrite);
+  const std::atomic<bool> stop = true;  // else it would wait for ten minutes
+  other.HurryOn(&stop);
   const auto put = other.Put("a", UnfittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
@@ -78,6 +82,76 @@ TEST_F(StoreFileTest, LetsOneWriterIn) {
   ASSERT_TRUE(store.Commit());
   ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same later
   EXPECT_EQ(Reopen().Count()->unfitted, 1);
+}
+
+// A writer needs the file for itself while it commits; a reader that is on its way goes first.
+TEST_F(StoreFileTest, WaitsForAReaderToEnd) {
+  Store store = Make({"a", "b"});
+  ASSERT_TRUE(store.Commit());
+  Store reader = Reopen();
+  SQLite::Statement rows(reader.database(), "SELECT id FROM runs");
+  ASSERT_TRUE(rows.executeStep());
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()));
+  std::atomic<bool> stop = true;
+  store.HurryOn(&stop);
+  EXPECT_EQ(store.Commit().error().code, StatusCode::kTryAgain);
+  stop = false;
+  std::atomic<bool> ended = false;
+  std::thread end([&] {
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // longer than a stopped writer waits
+    ended = true;
+    rows.reset();
+  });
+  const auto committed = store.Commit();  // of what was put before
+  EXPECT_TRUE(ended);
+  end.join();
+  ASSERT_TRUE(committed) << committed.error().message;
+  EXPECT_EQ(Reopen().Count()->pending, 1);
+}
+
+// A page of zeros where a table's was: the first pages, which Open looks at, are as they were.
+TEST_F(StoreFileTest, ChecksAllPages) {
+  constexpr int kPages = 12, kPage = 4096;
+  Store store = Make({"a", "b"});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", RefittedOutcome()) && store.Commit());
+  EXPECT_TRUE(Reopen().Check());
+  ASSERT_GT(fs::file_size(path_), (kPages + 1) * kPage);
+  {
+    std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(2 * kPage);
+    file << std::string(kPages * kPage, '\x5a');
+  }
+  const auto checked = Reopen().Check();
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(checked.error().message, StartsWith(path_ + ": the file is damaged ("));
+}
+
+TEST_F(StoreFileTest, KnowsRunsThatTheLastManifestDoesNotName) {
+  Store store = Make({"a", "b"});
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", RefittedOutcome()) && store.Commit());
+  ASSERT_TRUE(store.Begin(SourceOfIds({"b", "c"}), std::nullopt, "{}"));
+  EXPECT_EQ(store.Count()->earlier, 1);
+  EXPECT_EQ(store.database().execAndGet("SELECT position FROM runs WHERE id = 'a'").getInt(), -1);
+  ASSERT_TRUE(store.Begin(SourceOfIds({"b", "a"}), std::nullopt, "{}"));
+  EXPECT_EQ(store.Count()->earlier, 0);
+}
+
+TEST_F(StoreFileTest, SaysThatAStoreMayNotBeRead) {
+  Make({"a"});
+  fs::permissions(folder_, fs::perms::all);
+  fs::permissions(path_, fs::perms::none);
+  const uid_t self = ::geteuid();
+  constexpr uid_t kNobody = 65534;  // root reads everything
+  if (self == 0) {
+    ASSERT_EQ(::seteuid(kNobody), 0);
+  }
+  const Status fault = FaultOf(Store::Mode::kRead);
+  if (self == 0) {
+    ASSERT_EQ(::seteuid(self), 0);
+  }
+  EXPECT_EQ(fault.code, StatusCode::kDataLoss);
+  EXPECT_EQ(fault.message, path_ + ": the file cannot be read; check its permissions");
 }
 
 // ---- Open ----------------------------------------------------------------------------------------------------------

@@ -154,7 +154,7 @@ TEST_F(StoreTest, ReplacesEntriesByTheirIdsAndKeepsOthers) {
   added.path = "c.csv";
   Store store = StoreOf(path_, SourceOf({entry, added}));
   EXPECT_THAT(TextsOf(store, "SELECT id || ' ' || position || ' ' || columns FROM runs ORDER BY id"),
-              ElementsAre("a 0 {}", R"(b 0 {"rig_no":"7"})", "c 1 {}"));
+              ElementsAre("a -1 {}", R"(b 0 {"rig_no":"7"})", "c 1 {}"));
   const auto runs = store.Next(0, 10).value();  // of the batch
   ASSERT_EQ(runs.size(), 2);
   EXPECT_THAT(runs[0].exit_code, Optional(0));

@@ -15,9 +15,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/batch/overview.h"
 #include "tests/batch/made_outcomes.h"
+#include "tests/batch/made_store.h"
 #include "tests/batch/schema_check.h"
-#include "tests/batch/small_batch.h"
 
 namespace pendulum::summary_test {
 namespace {
@@ -25,8 +26,9 @@ namespace {
 using made_outcomes::FailureOf;
 using made_outcomes::FitOf;
 using made_outcomes::OutcomeOf;
+using made_store::ManifestOf;
+using made_store::PlainManifest;
 using schema_check::SchemaCheck;
-using small_batch::Folder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -37,33 +39,14 @@ using Json = nlohmann::ordered_json;
 
 namespace fs = std::filesystem;
 
-/// A store whose runs are made by hand.
-class SummaryTest : public testing::Test {
+class SummaryTest : public made_store::MadeStoreTest {
  protected:
-  /// Begins a batch of that manifest, and gives each run, by its position, what is made of it; none: nothing.
-  Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
-    folder_.Write("runs.csv", manifest);
-    const auto source = OpenSource(folder_ / "runs.csv");
-    auto store = Store::Open(folder_ / "store.sqlite", Store::Mode::kWrite);
-    const auto begun = store->Begin(*source, std::nullopt, "{}");
-    EXPECT_TRUE(begun) << begun.error().message;
-    const auto runs = store->Next(0, 100000);
-    for (std::size_t i = 0; i < runs->size(); ++i) {
-      const auto outcome = make(i);
-      EXPECT_TRUE(!outcome || store->Put((*runs)[i].entry.id, *outcome));
-    }
-    EXPECT_TRUE(store->Commit());
-    return *std::move(store);
-  }
-
   static Json SummaryOf(Store& store, const SummaryOptions& options = {}) {
     auto summary = Summarize(store, options);
     if (summary) return *std::move(summary);
     ADD_FAILURE() << summary.error().message;
     return nullptr;
   }
-
-  Folder folder_{"summary_test"};
 };
 
 const Json& ParameterOf(const Json& summary, const std::string& model, const std::string& name) {
@@ -73,18 +56,6 @@ const Json& ParameterOf(const Json& summary, const std::string& model, const std
   }
   ADD_FAILURE() << model << " " << name;
   return nothing;
-}
-
-/// A manifest of so many runs with columns of their own.
-std::string ManifestOf(std::size_t runs, const std::string& columns,
-                       const std::function<std::string(std::size_t)>& values) {
-  std::string text = "path" + columns + "\n";
-  for (std::size_t i = 0; i < runs; ++i) text += "run" + std::to_string(i) + ".csv" + values(i) + "\n";
-  return text;
-}
-
-std::string PlainManifest(std::size_t runs) {
-  return ManifestOf(runs, "", [](std::size_t) { return ""; });
 }
 
 // ---- Counts --------------------------------------------------------------------------------------------------------
@@ -125,28 +96,6 @@ TEST_F(SummaryTest, CountsFitsByModelAndStatusAndWhatIsRecommended) {
   EXPECT_THAT(summary["warnings"], SizeIs(testing::Ge(1U)));         // one is pending
 }
 
-TEST_F(SummaryTest, GroupsFailuresByTheirReasonsWithoutFileNamesAndNumbers) {
-  Store store = StoreOf(PlainManifest(14), [](std::size_t i) -> std::optional<RunOutcome> {
-    const std::string path = "run" + std::to_string(i) + ".csv";
-    const std::string line = std::to_string(3 + i);
-    if (i < 12) return FailureOf(path + ":" + line + ":7: time " + line + ".25 s does not follow 9 s", 4);
-    return FailureOf(path + ": there is no such file; check the path", 3);
-  });
-  const Json failures = SummaryOf(store)["failures"];
-  ASSERT_THAT(failures, SizeIs(2));
-  EXPECT_EQ(failures[0]["fits"], 12);
-  EXPECT_EQ(failures[0]["status"], "failed");
-  EXPECT_EQ(failures[0]["exit_code"], 4);
-  EXPECT_EQ(failures[0]["reason"], "time # s does not follow # s");
-  EXPECT_THAT(failures[0]["models"], ElementsAre("viscous"));
-  EXPECT_THAT(failures[0]["examples"], SizeIs(10));
-  EXPECT_EQ(failures[0]["examples"][0], "run0.csv");
-  EXPECT_EQ(failures[1]["fits"], 2);
-  EXPECT_EQ(failures[1]["exit_code"], 3);
-  EXPECT_EQ(failures[1]["reason"], "there is no such file; check the path");
-  EXPECT_THAT(failures[1]["examples"], ElementsAre("run12.csv", "run13.csv"));
-}
-
 TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
   Store store = StoreOf(PlainManifest(3), [](std::size_t) {
     RunOutcome outcome = OutcomeOf({FitOf("viscous", 10, "not_converged")});
@@ -157,7 +106,7 @@ TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
   ASSERT_THAT(summary["failures"], SizeIs(1));
   EXPECT_EQ(summary["failures"][0]["status"], "not_converged");
   EXPECT_EQ(summary["failures"][0]["exit_code"], 1);
-  EXPECT_EQ(summary["failures"][0]["reason"], "after # iterations");
+  EXPECT_EQ(summary["failures"][0]["reason"], "after 100 iterations");
   EXPECT_THAT(summary["parameters"], IsEmpty());
 }
 
@@ -310,6 +259,49 @@ TEST_F(SummaryTest, ThinsThePointsOfManyRuns) {
   const Json trend = ParameterOf(SummaryOf(store), "viscous", "inertia")["trend"];
   EXPECT_THAT(trend["points"], SizeIs(1500));
   EXPECT_EQ(trend["points_total"], 4500);
+}
+
+TEST_F(SummaryTest, TellsApartTheRigsThatTheManifestNames) {
+  const auto make = [](std::size_t i) { return OutcomeOf({FitOf("viscous", i % 2 == 0 ? 10 : 90)}); };
+  Store several =
+      StoreOf(ManifestOf(8, ",rig", [](std::size_t i) { return i % 2 == 0 ? ",a.json" : ",b.json"; }), make);
+  EXPECT_EQ(SummaryOf(several)["group_by"], "rig");
+  EXPECT_EQ(ParameterOf(SummaryOf(several), "viscous", "inertia")["repeatability"]["groups"], 2);
+  EXPECT_EQ(SummaryOf(several, {"path", ""})["group_by"], "path");
+  Store one = StoreOf(ManifestOf(8, ",rig", [](std::size_t) { return ",a.json"; }), make);
+  EXPECT_EQ(SummaryOf(one)["group_by"], nullptr);
+}
+
+std::vector<std::string> WarningsOf(const Json& summary) {
+  std::vector<std::string> codes;
+  for (const Json& warning : summary["warnings"]) codes.push_back(warning["code"]);
+  return codes;
+}
+
+TEST_F(SummaryTest, WarnsOfAColumnThatOrdersNothing) {
+  const char* const dates[] = {"2026-03-01", "2026-03-02T12:00Z", "03.03.2026", ""};
+  Store store = StoreOf(ManifestOf(4, ",date", [&](std::size_t i) { return std::string(",") + dates[i]; }),
+                        [](std::size_t) { return OutcomeOf({FitOf("viscous", 10)}); });
+  const Json summary = SummaryOf(store, {"", "date"});
+  const Json& warnings = summary["warnings"];
+  const auto found = std::ranges::find(warnings, "no_order", [](const Json& warning) { return warning["code"]; });
+  ASSERT_NE(found, warnings.end());
+  EXPECT_EQ((*found)["message"],
+            "the column date of 2 runs is neither a number nor a date such as 2026-03-01, as "
+            "\"03.03.2026\"; no trend has them");
+  EXPECT_THAT(WarningsOf(SummaryOf(store)), testing::Not(testing::Contains("no_order")));
+}
+
+TEST_F(SummaryTest, WarnsOfRunsOfEarlierManifestsAndOfOneSwingUnderTwoNames) {
+  const auto make = [](std::size_t i) {
+    RunOutcome outcome = OutcomeOf({FitOf("viscous", 10)});
+    outcome.provenance.data_sha256 = i < 2 ? "same" : "other " + std::to_string(i);
+    return outcome;
+  };
+  Store store = StoreOf(PlainManifest(4), make);
+  EXPECT_THAT(WarningsOf(SummaryOf(store)), ElementsAre("same_data"));
+  Store shorter = StoreOf(PlainManifest(3), make);  // into the same file
+  EXPECT_THAT(WarningsOf(SummaryOf(shorter)), ElementsAre("not_in_the_manifest", "same_data"));
 }
 
 // ---- Refusals ------------------------------------------------------------------------------------------------------

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "pendulum/batch/store_lock.h"
@@ -95,6 +97,19 @@ TEST_F(RefitCommandsTest, ExportsByTheNameOfTheOutput) {
   EXPECT_EQ(Run(options), 2);
 }
 
+TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  RefitPendulumsOptions options = Options(RefitCommand::kExport);
+  options.out = folder_ / "pipe.csv";
+  ASSERT_EQ(::mkfifo(options.out.c_str(), 0600), 0);
+  std::string line;
+  std::thread reader([&] { std::getline(std::ifstream(options.out), line); });
+  EXPECT_EQ(Run(options), 0) << said_;
+  reader.join();
+  EXPECT_THAT(line, HasSubstr("id,path,rig"));
+  EXPECT_TRUE(fs::is_fifo(options.out));
+}
+
 TEST_F(RefitCommandsTest, TellsByItsExitCodeWhetherSomethingMoved) {
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions other = Options(RefitCommand::kRefit);
@@ -160,6 +175,10 @@ TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
   std::string line;
   std::getline(std::ifstream(options.out) >> std::ws, line);
   EXPECT_THAT(line, HasSubstr("<!"));
+  options.out = folder_ / "summary.pdf";
+  EXPECT_EQ(Run(options), 2);
+  EXPECT_THAT(said_, HasSubstr("its name ends with .html for a page"));
+  options.out = folder_ / "summary.html";
   options.summary.group_by = "room";
   EXPECT_EQ(Run(options), 2);
   EXPECT_THAT(said_, HasSubstr("--group_by: the manifest has no column 'room'"));

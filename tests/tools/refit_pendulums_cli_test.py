@@ -348,11 +348,11 @@ class Reading(Lab):
     def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(self):
         manifest = self.manifest(self.simulate(60))
         reader, writer = pty.openpty()
-        process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "a.sqlite")
-        process.communicate(timeout=TIMEOUT_S)
+        _, said = self.refit(manifest, "a.sqlite")
+        self.assertNotIn("\x1b", said)
         done = subprocess.Popen([TOOL, "--manifest", manifest, "--store", "b.sqlite", "--model", "viscous,coulomb"],
                                 cwd=self.folder, stdout=subprocess.DEVNULL, stderr=writer)
-        done.wait(timeout=TIMEOUT_S)
+        self.assertEqual(done.wait(timeout=TIMEOUT_S), 0)
         os.close(writer)
         shown = b""
         try:

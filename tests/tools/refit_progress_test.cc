@@ -17,6 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::StartsWith;
 
 TEST(DurationText, IsInTheUnitsThatPeopleUse) {
@@ -68,6 +69,25 @@ TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
   EXPECT_EQ(ReadFrom(leader), "\r\x1b[K");
   ::close(leader);
   ::close(follower);
+}
+
+TEST(RefitProgress, WritesPlainLinesNowAndThenElsewhere) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  RefitProgress progress("refit_pendulums", ends[1], std::chrono::milliseconds(100));
+  RefitCounts counts;
+  counts.runs = 4;
+  for (counts.refitted = 1; counts.refitted <= 2; ++counts.refitted) {
+    progress.Show(counts);  // too soon
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    progress.Show(counts);
+  }
+  progress.Finish();
+  ::close(ends[1]);
+  EXPECT_THAT(ReadFrom(ends[0]),
+              MatchesRegex("refit_pendulums: 1 of 4 runs \\(25 %\\), [0-9.]+ a second, [0-9]+ s left\n"
+                           "refit_pendulums: 2 of 4 runs \\(50 %\\), [0-9.]+ a second, [0-9]+ s left\n"));
+  ::close(ends[0]);
 }
 
 TEST(RefitProgress, DrawsNothingOnAPipeWithinSeconds) {

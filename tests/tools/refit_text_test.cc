@@ -91,7 +91,7 @@ TEST(StatusText, CountsRunsFitsAndReasons) {
     EXPECT_THAT(*text, HasSubstr("    could not be fitted             2\n"));
     EXPECT_THAT(*text, HasSubstr("    viscous     2          0              0                 0       2\n"));
     EXPECT_THAT(*text, HasSubstr("    2 x failed: no swing (run1.csv)\n"));
-    EXPECT_THAT(*text, HasSubstr(" of # fields (run0.csv)\n"));
+    EXPECT_THAT(*text, HasSubstr(" of 3 fields (run0.csv)\n"));
     EXPECT_THAT(*text, Not(HasSubstr("\x1b")));
     EXPECT_THAT(*text, Not(HasSubstr("Recommended")));
   }

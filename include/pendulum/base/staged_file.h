@@ -36,6 +36,9 @@ class StagedFile {
   StagedFile& operator=(StagedFile&&) = delete;
   ~StagedFile();
 
+  /// Whether a file of that name is such a temporary one, of a process that lives or was killed.
+  static bool IsTemporary(std::string_view name) { return name.starts_with(kPrefix) && name.ends_with(kSuffix); }
+
   Result<void> Open();
 
   /// Appends to the open file; may be called often.
@@ -48,6 +51,8 @@ class StagedFile {
   Result<void> Commit();
 
  private:
+  static constexpr std::string_view kPrefix = ".pendulum.", kSuffix = ".tmp";
+
   void KeepPermissions() const;
 
   std::string path_;

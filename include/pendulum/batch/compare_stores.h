@@ -22,6 +22,11 @@ struct ChangedStatus {
   std::string id, model, before, after;
 };
 
+/// A fit that only the store before has.
+struct GoneFit {
+  std::string id, model;
+};
+
 /// What two stores say of the same runs. Both rest on the same recordings, so a difference is no matter of chance.
 struct StoreComparison {
   std::int64_t only_before = 0, only_after = 0;  ///< Fits of (run, model) that one of them has.
@@ -35,6 +40,7 @@ struct StoreComparison {
   std::int64_t changed_status = 0;
   std::vector<MovedParameter> most_moved;     ///< kMostListed of them at most, the largest first.
   std::vector<ChangedStatus> status_changes;  ///< kMostListed of them at most.
+  std::vector<GoneFit> gone;                  ///< Likewise.
   std::vector<std::string> cpus_before, cpus_after;
 
   static constexpr double kRounding = 1e-9;

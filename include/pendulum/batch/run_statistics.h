@@ -79,8 +79,8 @@ struct Trend {
 /// None where the groups leave no degree of freedom, or one order only. Outliers are left out.
 std::optional<Trend> FitTrend(const RunValues& values, const std::vector<Outlier>& outliers);
 
-/// Days since 1970-01-01 of an ISO 8601 date, "2026-03-01" or "2026-03-01T12:30:00" (UTC), or the number that a text
-/// is; none of another text. `is_date` says which.
+/// Days since 1970-01-01 of an ISO 8601 date, "2026-03-01", "2026-03-01T12:30:00Z" or "2026-03-01 13:30+01:00" (UTC
+/// unless it says otherwise), or the number that a text is; none of another text. `is_date` says which.
 std::optional<double> OrderOf(const std::string& text, bool& is_date);
 
 }  // namespace pendulum

@@ -32,15 +32,15 @@ std::filesystem::path ShardPath(const std::filesystem::path& folder, std::int64_
 /// "3,17"
 std::string ShardList(const std::vector<std::int64_t>& shards);
 
-/// The shards of so many that are not complete in the folder, increasing. kDataLoss: one is no store, or belongs to
-/// another number of shards. kNotFound: no such folder.
+/// The shards of so many that are not complete in the folder, or damaged, increasing. kDataLoss: one is no store, or
+/// belongs to another number of shards. kNotFound: no such folder.
 Result<std::vector<std::int64_t>> MissingShards(const std::filesystem::path& folder, std::int64_t count);
 
 /// Puts all shards into a store, replacing what that has of their runs; the store is replaced as a whole at the end, so
 /// that this may be done again at any time. Removes checkpoints and the files of attempts from the folder: an attempt
 /// that is still alive, which nobody needs any more, fails. Gives the number of runs that were merged. kNotFound:
-/// shards are missing; the message names them. kDataLoss: shards of different batches. kTryAgain: another process
-/// writes to the store.
+/// shards are missing; the message names them. kDataLoss: shards of different batches. kInvalidArgument: the store is
+/// a shard itself. kTryAgain: another process writes to the store.
 Result<std::int64_t> MergeShards(const std::filesystem::path& folder, std::int64_t count,
                                  const std::filesystem::path& store);
 

@@ -30,14 +30,20 @@ inline constexpr std::uintmax_t kMostRecordingBytes = std::uintmax_t{1} << 29;
 /// The source that a path names: a packed file if it is one, else a manifest. kNotFound: no such file.
 Result<Source> OpenSource(const std::filesystem::path& path);
 
-/// The recordings of folders and patterns (FindRecordings), whose ids are their paths. kNotFound: one of them stands
-/// for nothing.
+/// The recordings of folders and patterns (FindRecordings), whose ids are their paths without "./", "//" and "x/../".
+/// kNotFound: one of them stands for nothing.
 Result<Source> FindSource(const std::vector<std::string>& patterns);
+
+/// What a pack was made of: files, those of them that could not be read, and why the first could not.
+struct PackCounts {
+  std::int64_t files = 0, unreadable = 0;
+  std::string first_reason;
+};
 
 /// Writes entries and files of a source, as they are now, into one SQLite file that is a source itself: table `entries`
 /// (columns as ManifestEntry), table `files` (path, bytes, or why there are none). An existing file is replaced at the
-/// end. kCannotWrite: the file cannot be written. Other errors: of the source; a file that is missing is none, for the
-/// batch will say so.
-Result<void> Pack(const Source& source, const std::filesystem::path& path);
+/// end. kCannotWrite: the file cannot be written. kTryAgain: another process packs into it. Other errors: of the
+/// source; a file that is missing is none, for the batch will say so.
+Result<PackCounts> Pack(const Source& source, const std::filesystem::path& path);
 
 }  // namespace pendulum

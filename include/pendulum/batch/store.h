@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -62,14 +63,15 @@ struct StoreMeta {
 /// Runs of a store, counted.
 struct StoreCounts {
   std::int64_t runs = 0, pending = 0, unfitted = 0;  ///< All; not refitted yet; those that could not be fitted.
+  std::int64_t earlier = 0;                          ///< Those that the last manifest did not name.
   std::int64_t fits = 0, failed = 0;                 ///< Rows of (run, model); those of them with status failed.
 };
 
 /// The results of a batch in an SQLite file, whose tables explain themselves (store_schema.h). What is put in is
 /// durable from the next Commit on; a process that dies in between, or a machine without power, loses what came after
-/// the last one, and no more. Any number of processes may read meanwhile, one may write. Not for several threads at a
-/// time. Errors of all functions: kCannotWrite, no room or no permission; kTryAgain, another process has the file;
-/// kDataLoss, it is damaged.
+/// the last one, and no more. Any number of processes may read meanwhile, one may write, for whose commits a reader has
+/// to end within ten minutes. Not for several threads at a time. Errors of all functions: kCannotWrite, no room or no
+/// permission; kTryAgain, another process has the file; kDataLoss, it is damaged.
 class Store {
  public:
   enum class Mode { kRead, kWrite };
@@ -99,6 +101,12 @@ class Store {
 
   /// Commits that every run of the batch has its rows.
   Result<void> Complete();
+
+  /// Reads all pages and indices. kDataLoss: they do not fit together.
+  Result<void> Check();
+
+  /// Once it is set, which must outlive the store, readers have two seconds instead of ten minutes.
+  void HurryOn(const std::atomic<bool>* stop);
 
   Result<StoreMeta> Meta();
   Result<StoreCounts> Count();

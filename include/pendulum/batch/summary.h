@@ -10,12 +10,10 @@
 
 namespace pendulum {
 
-/// The part of a summary that counts: members "models", "recommendations" and "failures". Errors as the store.
-Result<nlohmann::ordered_json> Overview(Store& store);
-
 /// How the runs of a store are looked at.
 struct SummaryOptions {
-  std::string group_by;  ///< A column of the manifest: runs of one value are of one rig; empty: all are.
+  std::string group_by;  ///< A column of the manifest: runs of one value are of one rig; empty: by `rig` where several
+                         ///< are named, else all are.
   std::string trend_by;  ///< A column of the manifest, numbers or ISO 8601 dates; empty: the position in it.
 };
 

@@ -40,7 +40,7 @@ export function trendSection(one: ParameterSummary): HTMLElement {
   const { trend } = one;
   const title = 'Trend';
   if (!trend || trend.points.length === 0)
-    return section('trend', title, absent('There is no trend to show: the runs are too few.'));
+    return section('trend', title, absent('There is no trend to show: too few runs, or too few of them with a number or a date to order them by.'));
   const slope =
     trend.slope === null
       ? '–'

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pendulum/batch/source.h"
+#include "pendulum/batch/store.h"
+#include "tests/batch/small_batch.h"
+
+namespace pendulum::made_store {
+
+/// A manifest of so many runs with columns of their own.
+inline std::string ManifestOf(std::size_t runs, const std::string& columns,
+                              const std::function<std::string(std::size_t)>& values) {
+  std::string text = "path" + columns + "\n";
+  for (std::size_t i = 0; i < runs; ++i) text += "run" + std::to_string(i) + ".csv" + values(i) + "\n";
+  return text;
+}
+
+inline std::string PlainManifest(std::size_t runs) {
+  return ManifestOf(runs, "", [](std::size_t) { return ""; });
+}
+
+/// A store whose runs are made by hand.
+class MadeStoreTest : public testing::Test {
+ protected:
+  /// Begins a batch of that manifest, and gives each run, by its position, what is made of it; none: nothing.
+  Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
+    folder_.Write("runs.csv", manifest);
+    const auto source = OpenSource(folder_ / "runs.csv");
+    auto store = Store::Open(folder_ / "store.sqlite", Store::Mode::kWrite);
+    const auto begun = store->Begin(*source, std::nullopt, "{}");
+    EXPECT_TRUE(begun) << begun.error().message;
+    const auto runs = store->Next(0, 100000);
+    for (std::size_t i = 0; i < runs->size(); ++i) {
+      const auto outcome = make(i);
+      EXPECT_TRUE(!outcome || store->Put((*runs)[i].entry.id, *outcome));
+    }
+    EXPECT_TRUE(store->Commit());
+    return *std::move(store);
+  }
+
+  small_batch::Folder folder_{"made_store"};
+};
+
+}  // namespace pendulum::made_store
