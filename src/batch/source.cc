@@ -266,7 +266,7 @@ Result<PackCounts> Pack(const Source& source, const fs::path& path) {
   const auto lock = StoreLock::Take(path);
   if (!lock) return tl::unexpected(lock.error());
   const TemporaryStore unfinished(WithSuffix(path, ".unfinished"));
-  const auto packed = sqlite::Guard(path.string(), [&]() -> Result<PackCounts> {
+  auto packed = sqlite::Guard(path.string(), [&]() -> Result<PackCounts> {
     Packer packer(unfinished.path().string(), source);
     const auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
     if (!taken) return tl::unexpected(taken.error());

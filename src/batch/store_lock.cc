@@ -43,7 +43,7 @@ Result<StoreLock> StoreLock::Take(const std::filesystem::path& store) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       ::close(descriptor);
       return Error(StatusCode::kTryAgain,
-                   store.string() + ": another process writes to this store; try again when it is done");
+                   store.string() + ": another process writes to this file; try again when it is done");
     }
     if (IsStillThere(path, descriptor)) return StoreLock(path, descriptor);
     ::close(descriptor);

@@ -309,7 +309,7 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
 
 }  // namespace
 
-Result<Json> Summarize(Store& store, const SummaryOptions& asked) {
+Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   const auto meta = store.Meta();
   if (!meta) return tl::unexpected(meta.error());
   const auto counts = store.Count();
@@ -319,22 +319,22 @@ Result<Json> Summarize(Store& store, const SummaryOptions& asked) {
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();
-    SummaryOptions options = asked;
-    if (options.group_by.empty() && NamesSeveralRigs(database)) options.group_by = "rig";
+    SummaryOptions chosen = options;
+    if (chosen.group_by.empty() && NamesSeveralRigs(database)) chosen.group_by = "rig";
     for (const auto& [flag, column] :
-         {std::pair{"--group_by", options.group_by}, std::pair{"--trend_by", options.trend_by}}) {
+         {std::pair{"--group_by", chosen.group_by}, std::pair{"--trend_by", chosen.trend_by}}) {
       if (auto checked = CheckColumn(database, flag, column); !checked) return tl::unexpected(checked.error());
     }
     Json json = {{"schema_version", kSchemaVersion},
                  {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},
                  {"store", StoreJson(store, *meta, *counts)},
-                 {"group_by", TextOrNull(options.group_by)},
-                 {"trend_by", TextOrNull(options.trend_by)}};
+                 {"group_by", TextOrNull(chosen.group_by)},
+                 {"trend_by", TextOrNull(chosen.trend_by)}};
     const auto overview = Overview(store);
     if (!overview) return tl::unexpected(overview.error());
     json.update(*overview);
-    json["parameters"] = QuantitiesJson(database, options);
-    json["warnings"] = WarningsJson(database, *counts, json["store"], options);
+    json["parameters"] = QuantitiesJson(database, chosen);
+    json["warnings"] = WarningsJson(database, *counts, json["store"], chosen);
     return json;
   });
 }

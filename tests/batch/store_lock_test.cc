@@ -75,7 +75,7 @@ TEST_F(StoreLockTest, HasOneHolderAtATime) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kTryAgain);
   EXPECT_EQ(other.error().message,
-            store_.string() + ": another process writes to this store; try again when it is done");
+            store_.string() + ": another process writes to this file; try again when it is done");
   lock.reset();
   EXPECT_FALSE(fs::exists(file_));
   EXPECT_TRUE(IsFree());

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -102,11 +103,11 @@ TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(options.out.c_str(), 0600), 0);
-  std::string line;
-  std::thread reader([&] { std::getline(std::ifstream(options.out), line); });
+  std::ostringstream text;
+  std::thread reader([&] { text << std::ifstream(options.out).rdbuf(); });
   EXPECT_EQ(Run(options), 0) << said_;
   reader.join();
-  EXPECT_THAT(line, HasSubstr("id,path,rig"));
+  EXPECT_THAT(text.str(), HasSubstr("id,path,rig"));
   EXPECT_TRUE(fs::is_fifo(options.out));
 }
 
@@ -213,7 +214,7 @@ TEST_F(RefitCommandsTest, RefitsNothingIntoAStoreThatIsInUse) {
   const auto lock = StoreLock::Take(folder_ / "a.sqlite");
   ASSERT_TRUE(lock);
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 75);
-  EXPECT_THAT(said_, HasSubstr("another process writes to this store"));
+  EXPECT_THAT(said_, HasSubstr("another process writes to this file"));
 }
 
 /// Refits twice, the second time after a signal, which only that process gets.

@@ -198,7 +198,7 @@ class Survival(Lab):
         process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "a.sqlite")
         self.wait_for("a.sqlite.lock")
         _, said = self.refit(manifest, "a.sqlite", code=75)
-        self.assertIn("another process writes to this store", said)
+        self.assertIn("another process writes to this file", said)
         self.assertIn("[[Runs]]", self.run_tool("status", "--store", "a.sqlite")[0])
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 0)
