@@ -83,8 +83,9 @@ class RefusalTest(ScriptCase):
             self.refuse(2, "--shards is '0'; it is a whole number from 1.", *REQUEST, "--shards=0", script=script)
             self.refuse(2, "--cpus is 'many'; it is a whole number from 1.", *REQUEST, "--cpus", "many", script=script)
             self.refuse(2, "--all takes no value.", *REQUEST, "--all=yes", script=script)
-            self.refuse(2, "-force stands behind --, but is not for you to give there.", *REQUEST, "--", "-force")
-        self.refuse(2, "--store=x stands behind --, but is not for you to give there.", *REQUEST, "--", "--store=x",
+            self.refuse(2, "-force stands behind --, but is not for you to give there.", *REQUEST, "--", "-force",
+                        script=script)
+            self.refuse(2, "--store=x stands behind --, but is not for you to give there.", *REQUEST, "--", "--store=x",
                         script=script)
             for position, name in ((0, "--manifest"), (2, "--models"), (4, "--store"), (6, "--shards")):
                 self.refuse(2, f"{name} is missing.", *REQUEST[:position], *REQUEST[position + 2:], script=script)
