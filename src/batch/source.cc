@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "batch/entry_row.h"
 #include "batch/sqlite.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
@@ -119,20 +120,6 @@ class PackedFile {
         columns.is_object() && std::ranges::all_of(columns, [](const auto& value) { return value.is_string(); });
     if (texts && !entry.id.empty() && !entry.path.empty()) return {};
     return Fault(name_, "the entry " + Quoted(entry.id) + " is none of a manifest; pack it anew");
-  }
-
-  static ManifestEntry EntryOf(const SQLite::Statement& row) {
-    ManifestEntry entry;
-    entry.position = row.getColumn(0).getInt64();
-    entry.id = sqlite::Text(row, 1);
-    entry.path = sqlite::Text(row, 2);
-    entry.rig = sqlite::Text(row, 3);
-    entry.calibration = sqlite::Text(row, 4);
-    if (!row.getColumn(5).isNull()) entry.from = row.getColumn(5).getDouble();
-    if (!row.getColumn(6).isNull()) entry.to = row.getColumn(6).getDouble();
-    entry.models = sqlite::Text(row, 7);
-    entry.columns = sqlite::Text(row, 8);
-    return entry;
   }
 
   std::string name_;

@@ -80,8 +80,10 @@ SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
   return statement;
 }
 
+/// The text of a column of the row a statement is at; empty for NULL.
 inline std::string Text(const SQLite::Statement& statement, int column) {
-  return statement.getColumn(column).getString();
+  const SQLite::Column value = statement.getColumn(column);
+  return value.isNull() ? "" : value.getString();
 }
 
 /// The first column of all rows of a query.

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "batch/entry_row.h"
 #include "batch/result_rows.h"
 #include "batch/sqlite.h"
 #include "batch/store_schema.h"
@@ -53,28 +54,12 @@ std::optional<std::string> NullIfEmpty(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(text);
 }
 
-std::string TextOf(const SQLite::Statement& row, int column) {
-  return row.getColumn(column).isNull() ? "" : sqlite::Text(row, column);
-}
-
-std::optional<double> NumberOf(const SQLite::Statement& row, int column) {
-  return row.getColumn(column).isNull() ? std::nullopt : std::optional(row.getColumn(column).getDouble());
-}
-
 StoredRun RunOf(const SQLite::Statement& row) {
   StoredRun run;
-  ManifestEntry& entry = run.entry;
-  entry.position = row.getColumn(0).getInt64();
-  entry.id = TextOf(row, 1);
-  entry.path = TextOf(row, 2);
-  entry.rig = TextOf(row, 3);
-  entry.calibration = TextOf(row, 4);
-  entry.from = NumberOf(row, 5);
-  entry.to = NumberOf(row, 6);
-  entry.models = TextOf(row, 7);
-  entry.columns = TextOf(row, 8);
+  run.entry = EntryOf(row);
   if (!row.getColumn(9).isNull()) run.exit_code = row.getColumn(9).getInt();
-  run.provenance = {TextOf(row, 10), TextOf(row, 11), TextOf(row, 12), TextOf(row, 13), TextOf(row, 14), ""};
+  const auto text = [&](int column) { return sqlite::Text(row, column); };
+  run.provenance = {text(10), text(11), text(12), text(13), text(14), ""};
   return run;
 }
 

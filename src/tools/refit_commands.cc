@@ -144,6 +144,14 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   return Conclude(*counts, store, refit.force);
 }
 
+/// The store, for reading, once --out is known to be a file that can be written and not the store.
+Result<Store> OpenToWriteOut(const RefitPendulumsOptions& options) {
+  const std::string& store = options.stores.front();
+  const std::vector<NamedFile> outputs = {{"--out", options.out}}, inputs = {{"--store", store}};
+  if (const auto checked = CheckOutputs(outputs, inputs); !checked) return tl::unexpected(checked.error());
+  return Store::Open(store, Store::Mode::kRead);
+}
+
 Result<int> RunExport(const RefitPendulumsOptions& options) {
   const std::string& out = options.out;
   const bool lines = out.ends_with(".jsonl") || out.ends_with(".ndjson");
@@ -152,12 +160,7 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
                                                    ": its name ends with .csv for a table, with .jsonl for "
                                                    "JSON lines; - is the table on standard output");
   }
-  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", out}},
-                                  std::vector<NamedFile>{{"--store", options.stores.front()}});
-      !checked) {
-    return tl::unexpected(checked.error());
-  }
-  auto store = Store::Open(options.stores.front(), Store::Mode::kRead);
+  auto store = OpenToWriteOut(options);
   if (!store) return tl::unexpected(store.error());
   const auto written = WriteStreamed(
       out, [&](const TakeText& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
@@ -172,12 +175,7 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
                                                    ": its name ends with .html for a page, with .json for what it "
                                                    "shows; - is the page on standard output");
   }
-  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}},
-                                  std::vector<NamedFile>{{"--store", options.stores.front()}});
-      !checked) {
-    return tl::unexpected(checked.error());
-  }
-  auto store = Store::Open(options.stores.front(), Store::Mode::kRead);
+  auto store = OpenToWriteOut(options);
   if (!store) return tl::unexpected(store.error());
   const auto summary = Summarize(*store, options.summary);
   if (!summary) return tl::unexpected(summary.error());
