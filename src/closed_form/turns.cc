@@ -71,12 +71,14 @@ Slip SlipOf(const TurnTable& table, std::size_t i) {
 }
 
 /// Whether time slips in half swing i: samples were lost, or the pendulum was touched. A turning point that is found a
-/// little late makes the next half swing as much shorter, and is none.
+/// little late makes the next half swing as much shorter, and is none. After the last one there is none to tell; before
+/// a rest it hardly stands out, and when it was is a guess.
 bool Slips(const TurnTable& table, std::size_t i) {
   const Slip slip = SlipOf(table, i);
   const auto stays = [&](double neighbour) { return std::abs(slip.deviation + neighbour) > slip.limit; };
-  return stays(0) && (i == 0 || stays(SlipOf(table, i - 1).deviation)) &&
-         (i + 1 == table.half_swings() || stays(SlipOf(table, i + 1).deviation));
+  if (!stays(0) || (i > 0 && !stays(SlipOf(table, i - 1).deviation))) return false;
+  if (i + 1 == table.half_swings()) return table.amplitude.back() > table.threshold;
+  return stays(SlipOf(table, i + 1).deviation);
 }
 
 /// Whether the amplitude grows in half swing i and stays so: one turning point alone may be an outlier, and at the
