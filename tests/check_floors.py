@@ -21,11 +21,12 @@ STANDS_ON = {
     "model": ["base"],
     "trajectory": ["model", "recording"],
     "closed_form": ["recording", "model"],
+    "acquisition": ["recording"],
     "fitting": ["trajectory", "closed_form"],
     "analysis": ["fitting"],
     "report": ["analysis"],
     "batch": ["report"],
-    "tools": ["batch"],
+    "tools": ["acquisition", "batch"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
@@ -35,6 +36,7 @@ LIBRARY_FLOORS = {
     "csv.h": {"batch"},
     "gflags": {"tools", "service"},
     "glog": {"tools", "service"},
+    "pendulum_logger": {"acquisition", "tools"},
     "nlohmann": {"base", "recording", "model", "report", "batch", "tools"},
     "openssl": {"base", "recording"},
     "sqlite3.h": {"batch"},
@@ -44,7 +46,7 @@ LIBRARY_FLOORS = {
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer", "fuzz", "packages"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "packages"}
 
 # What only the floors that talk to people may do.
 TALKING_FLOORS = {"tools", "service"}

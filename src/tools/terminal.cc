@@ -17,9 +17,11 @@ std::string_view Environment(const char* name) {
 
 }  // namespace
 
-bool WantsColour(int descriptor) {
+bool CanRedraw(int descriptor) {
   const std::string_view terminal = Environment("TERM");
-  return ::isatty(descriptor) == 1 && Environment("NO_COLOR").empty() && !terminal.empty() && terminal != "dumb";
+  return ::isatty(descriptor) == 1 && !terminal.empty() && terminal != "dumb";
 }
+
+bool WantsColour(int descriptor) { return CanRedraw(descriptor) && Environment("NO_COLOR").empty(); }
 
 }  // namespace pendulum

@@ -7,4 +7,7 @@ namespace pendulum {
 /// "dumb"), and the user has not said otherwise (NO_COLOR is absent or empty, https://no-color.org).
 bool WantsColour(int descriptor);
 
+/// Whether lines drawn on a file descriptor can be drawn over: it is a terminal that knows how.
+bool CanRedraw(int descriptor);
+
 }  // namespace pendulum

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "pendulum/fitting/fit_swing.h"
 #include "pendulum/recording/read_recording.h"
 #include "tests/fitting/fit_support.h"
 
@@ -36,6 +37,31 @@ TEST_P(Datasets, TruthIsRecoveredWithinFourStandardErrors) {
     EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, tolerance)) << parameter.info.name;
   }
   EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));  // + q²/12
+}
+
+/// What came from the logger, with calibration, clock and rig of limited accuracy: the errors to be counted are both.
+TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
+  const Recording recording = Must(ReadRecording("datasets/recorded.csv"));
+  FitOptions options = ModelOptions("coulomb");
+  options.rig = Must(ReadRig("datasets/recorded_rig.json"));
+  const FitReport report = Fit(recording, options);
+  ASSERT_EQ(report.termination, Termination::kConverged) << report.reason;
+  nlohmann::json truth = nlohmann::json::parse(std::ifstream("datasets/recorded_truth.json"));
+  const double clock_scale = truth.at("clock_scale").get<double>();
+  EXPECT_THAT(recording.clock_scale, testing::DoubleNear(clock_scale, 4 * recording.clock_scale_std_dev));
+  truth["release_time"] = truth.at("release_time").get<double>() / clock_scale;  // on the logger's clock
+  for (const ParameterEstimate& parameter : report.parameters) {
+    const double error = std::hypot(parameter.std_error.value(), parameter.systematic_std_error.value());
+    const double expected = truth.at(std::string(parameter.info.name)).get<double>();
+    EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, 4 * error)) << parameter.info.name;
+  }
+}
+
+/// It was recorded until the pendulum had rested for five seconds. Its last turning points are a few counts high.
+TEST(RecordedRun, EndsAtRest) {
+  const ChosenSwings swings = Must(ChooseSwings(Must(ReadRecording("datasets/recorded.csv")), {}));
+  ASSERT_THAT(swings.found, testing::SizeIs(1));
+  EXPECT_THAT(swings.found.front().ends, testing::StartsWith("at rest from about 4"));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Datasets,

@@ -44,7 +44,7 @@ class TarballTest(unittest.TestCase):
 
     def test_has_the_tools_that_were_built(self):
         names = [path.rsplit("/", 1)[1] for path in self.tools]
-        self.assertLessEqual({"calibrate_sensor", "coverage_study", "fit_pendulum", "simulate_pendulum"}, set(names))
+        self.assertLessEqual({"calibrate_sensor", "coverage_study", "fit_pendulum", "record_pendulum", "simulate_pendulum"}, set(names))
         for name in names:
             self.assertTrue((BIN / name).exists(), name)
 

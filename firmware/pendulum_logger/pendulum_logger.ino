@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Records a potentiometer at exact intervals, for record_pendulum: firmware/README.md has the wiring. Timer 1 starts
+// each conversion in hardware, and its count is the sample's time stamp, so that no delay of the program is in either.
+//
+// analogRead(), Servo and PWM on the pins of Timers 1 and 2 cannot be used beside it.
+#include <Arduino.h>
+#include <avr/eeprom.h>
+
+#include "frame.h"
+
+// ---- What you may change -----------------------------------------------------------------------------------------
+
+#ifndef LOGGER_BAUD
+#define LOGGER_BAUD 115200  // 500000 and 1000000 carry more; then say record_pendulum --baud
+#endif
+#ifndef LOGGER_CHANNEL
+#define LOGGER_CHANNEL 0  // the wiper is on A0
+#endif
+#ifndef LOGGER_REFERENCE
+#define LOGGER_REFERENCE DEFAULT  // DEFAULT (the supply), EXTERNAL (AREF), INTERNAL; Mega: INTERNAL1V1, INTERNAL2V56
+#endif
+
+// ------------------------------------------------------------------------------------------------------------------
+
+#if defined(__AVR_ATmega328P__)
+#define LOGGER_BOARD pendulum_logger::kUno
+#elif defined(__AVR_ATmega2560__)
+#define LOGGER_BOARD pendulum_logger::kMega2560
+#else
+#error "pendulum_logger needs an ATmega328P (Uno, Nano) or an ATmega2560 (Mega): Timer 1 and the converter of these."
+#endif
+#if F_CPU != 16000000UL
+#error "pendulum_logger needs a clock of 16 MHz: ticks and the time of a conversion are counted from it."
+#endif
+
+using namespace pendulum_logger;
+
+// What a simulator may skip: nothing is to be done until the next interrupt. The processor must not sleep here, for
+// falling asleep with the converter on starts a conversion that nobody asked for.
+extern "C" __attribute__((noinline, used, externally_visible)) void logger_idle() { __asm__ __volatile__(""); }
+
+// ---- Between the interrupts and the rest -------------------------------------------------------------------------
+
+struct Sample {
+  uint32_t tick;
+  uint16_t sum;
+};
+
+static const uint8_t kRoom = 64;  // samples, a power of 2
+static Sample ring[kRoom];
+static volatile uint8_t ring_head = 0, ring_tail = 0;  // the next to be written and to be read
+
+static uint16_t period = 10000;  // ticks between conversions: 200 Hz
+static uint8_t oversample = 1;
+static bool is_running = false;
+
+static uint32_t next_tick;        // when Timer 1 starts the next conversion
+static uint32_t conversion_tick;  // when it started the one under way
+static uint32_t sample_tick;      // when it started the first of this sample
+static bool is_converting, is_spoilt;
+static uint8_t conversions;  // in this sample so far
+static uint16_t sum;
+static volatile uint32_t dropped, late;
+
+static const uint8_t kConverterOn = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
+
+// How far Timer 1 is before next_tick: more than a period once it has passed it.
+static inline uint16_t TicksAhead() { return static_cast<uint16_t>(static_cast<uint16_t>(next_tick) - TCNT1); }
+
+// The compare match has started a conversion already; this is told when, and says when the next one is due.
+ISR(TIMER1_COMPB_vect) {
+  if (is_converting) {  // the one before is not finished, so this one did not begin
+    ++late;
+    is_spoilt = true;
+  } else {
+    conversion_tick = next_tick;
+    is_converting = true;
+  }
+  next_tick += period;
+  OCR1B = static_cast<uint16_t>(next_tick);
+  while (TicksAhead() > period && !(TIFR1 & _BV(OCF1B))) {  // too late for it: the match would be a turn later
+    ++late;
+    is_spoilt = true;
+    next_tick += period;
+    OCR1B = static_cast<uint16_t>(next_tick);
+  }
+}
+
+ISR(ADC_vect) {
+  const uint16_t code = ADC;
+  if (!is_converting) return;  // after the end
+  is_converting = false;
+  if (is_spoilt) {  // a sample is conversions without a gap
+    is_spoilt = false;
+    conversions = 0;
+    return;
+  }
+  if (conversions == 0) {
+    sample_tick = conversion_tick;
+    sum = 0;
+  }
+  sum += code;
+  if (++conversions < oversample) return;
+  conversions = 0;
+  const uint8_t next = (ring_head + 1) & (kRoom - 1);
+  if (next == ring_tail) {
+    ++dropped;
+    return;
+  }
+  ring[ring_head].tick = sample_tick;
+  ring[ring_head].sum = sum;
+  ring_head = next;
+}
+
+// ---- The converter -----------------------------------------------------------------------------------------------
+
+static uint16_t ConvertOnce() {
+  ADCSRA = kConverterOn | _BV(ADSC);
+  while (ADCSRA & _BV(ADSC)) {
+  }
+  return ADC;
+}
+
+static void SetUpConverter() {
+  TCCR2A = TCCR2B = 0;  // the core's PWM
+#if defined(TCCR3A)
+  TCCR3A = TCCR3B = TCCR4A = TCCR4B = TCCR5A = TCCR5B = 0;
+#endif
+  TCCR1A = 0;
+  TCCR1B = _BV(CS11);  // normal mode, 16 MHz / 8
+  ADMUX = static_cast<uint8_t>(LOGGER_REFERENCE << 6 | LOGGER_CHANNEL);
+  ADCSRB = 0;
+  DIDR0 = static_cast<uint8_t>(1 << LOGGER_CHANNEL);
+  ConvertOnce();
+}
+
+static void StartSampling() {
+  ring_head = ring_tail = 0;
+  conversions = 0;
+  dropped = late = 0;
+  is_converting = is_spoilt = false;
+  is_running = true;
+  ConvertOnce();                     // the first one after the converter is switched on takes twice as long
+  ADCSRB = _BV(ADTS2) | _BV(ADTS0);  // started by compare match B of Timer 1
+  noInterrupts();
+  next_tick = static_cast<uint32_t>(TCNT1) + 1000;
+  OCR1B = static_cast<uint16_t>(next_tick);
+  TIFR1 = _BV(OCF1B);
+  TIMSK1 = _BV(OCIE1B);
+  ADCSRA = kConverterOn | _BV(ADATE) | _BV(ADIF) | _BV(ADIE);
+  interrupts();
+}
+
+static void StopSampling() {
+  TIMSK1 = 0;
+  delayMicroseconds(150);  // for the conversion under way
+  ADCSRA = kConverterOn;
+  ADCSRB = 0;
+}
+
+// ---- EEPROM ------------------------------------------------------------------------------------------------------
+
+static uint16_t* const kRunAddress = reinterpret_cast<uint16_t*>(0);
+static uint8_t* const kCalibrationAddress = reinterpret_cast<uint8_t*>(16);
+static const size_t kCalibrationBytes = 20;
+
+static uint16_t CountedRuns() {
+  const uint16_t runs = eeprom_read_word(kRunAddress);
+  return runs == 0xFFFF ? 0 : runs;  // a new EEPROM
+}
+
+static bool ReadCalibration(StraightLine& line) {
+  uint8_t bytes[kCalibrationBytes + 2];
+  eeprom_read_block(bytes, kCalibrationAddress, sizeof bytes);
+  Reader reader(bytes, kCalibrationBytes);
+  line.Fields(reader);
+  return Crc16(bytes, kCalibrationBytes) ==
+         static_cast<uint16_t>(bytes[kCalibrationBytes] | bytes[kCalibrationBytes + 1] << 8);
+}
+
+static void WriteCalibration(StraightLine& line) {
+  uint8_t bytes[kCalibrationBytes + 2];
+  Writer writer(bytes);
+  line.Fields(writer);
+  writer(Crc16(bytes, kCalibrationBytes));
+  eeprom_update_block(bytes, kCalibrationAddress, sizeof bytes);
+}
+
+// ---- What is sent ------------------------------------------------------------------------------------------------
+
+static Data block;          // the next frame of samples
+static uint8_t block_size;  // samples it is sent with
+static uint32_t sent_samples;
+
+static void Send(const Frame& frame) { Serial.write(frame.bytes, frame.size); }
+
+static void SendInfo() {
+  Info info;
+  info.protocol = kProtocol;
+  info.firmware = kFirmware;
+  info.board = LOGGER_BOARD;
+  info.reference = LOGGER_REFERENCE;
+  info.adc_bits = kAdcBits;
+  info.tick_hz = kTickHz;
+  info.baud = LOGGER_BAUD;
+  info.period = period;
+  info.oversample = oversample;
+  info.is_running = is_running;
+  info.run = CountedRuns();
+  info.has_calibration = ReadCalibration(info.calibration);
+  Send(Frame(info));
+}
+
+static void SendAck(uint8_t command, AckStatus status) {
+  Ack ack;
+  ack.command = command;
+  ack.status = status;
+  Send(Frame(ack));
+}
+
+static uint16_t Saturated(uint32_t count) { return count > 0xFFFF ? 0xFFFF : static_cast<uint16_t>(count); }
+
+static void SendBlock() {
+  noInterrupts();
+  block.dropped = Saturated(dropped);
+  block.late = Saturated(late);
+  interrupts();
+  Send(Frame(block));
+  sent_samples += block.count;
+  ++block.sequence;
+  block.count = 0;
+}
+
+// Whether a sample of that tick belongs into the block: there is room, and it comes one step after the last one there.
+static bool Continues(uint32_t tick) {
+  const uint32_t step = static_cast<uint32_t>(period) * oversample;
+  return block.count == 0 || (block.count < block_size && tick == block.tick + step * block.count);
+}
+
+// One step of passing samples on, which never waits for the line; false where there is nothing to do yet.
+static bool PassOn() {
+  const uint8_t tail = ring_tail;
+  const bool is_waiting = tail != ring_head;
+  if (is_waiting && Continues(ring[tail].tick)) {
+    if (block.count == 0) block.tick = ring[tail].tick;
+    block.sums[block.count++] = ring[tail].sum;
+    ring_tail = (tail + 1) & (kRoom - 1);
+    return true;
+  }
+  if (!is_waiting && block.count < block_size) return false;
+  if (Serial.availableForWrite() < DataFrameSize(block.count)) return false;
+  SendBlock();
+  return true;
+}
+
+// ---- Commands ----------------------------------------------------------------------------------------------------
+
+static void Start() {
+  if (is_running) return SendAck(kStart, kRunning);
+  eeprom_update_word(kRunAddress, CountedRuns() + 1);
+  eeprom_busy_wait();
+  block_size = static_cast<uint8_t>(BlockSize(static_cast<uint32_t>(period) * oversample));
+  block.sequence = 0;
+  block.count = 0;
+  sent_samples = 0;
+  SendAck(kStart, kDone);
+  StartSampling();
+}
+
+static void Stop() {
+  if (is_running) {
+    StopSampling();
+    while (PassOn() || ring_tail != ring_head) {
+    }
+    if (block.count > 0) SendBlock();
+    is_running = false;
+    End end;
+    end.samples = sent_samples;
+    end.dropped = dropped;
+    end.late = late;
+    Send(Frame(end));
+  }
+  SendAck(kStop, kDone);
+}
+
+static AckStatus TakeRate(const SetRate& rate) {
+  if (is_running) return kRunning;
+  if (rate.period < kLeastPeriod || rate.period > kMostPeriod) return kOutOfRange;
+  if (rate.oversample < 1 || rate.oversample > kMostOversample) return kOutOfRange;
+  period = rate.period;
+  oversample = rate.oversample;
+  return kDone;
+}
+
+static AckStatus TakeCalibration(StoreCalibration& store) {
+  if (is_running) return kRunning;
+  const StraightLine& line = store.calibration;
+  const bool is_number = line.offset_deg - line.offset_deg == 0 && line.deg_per_count - line.deg_per_count == 0;
+  if (!is_number || line.deg_per_count == 0) return kOutOfRange;
+  WriteCalibration(store.calibration);
+  return kDone;
+}
+
+static void Obey(const Receiver& receiver) {
+  SetRate rate;
+  StoreCalibration store;
+  const uint8_t kind = receiver.payload()[0];
+  if (receiver.size() == 1 && kind == kAskInfo) return SendInfo();
+  if (receiver.size() == 1 && kind == kStart) return Start();
+  if (receiver.size() == 1 && kind == kStop) return Stop();
+  if (receiver.Read(rate)) return SendAck(kind, TakeRate(rate));
+  if (receiver.Read(store)) return SendAck(kind, TakeCalibration(store));
+  SendAck(kind, kUnknown);
+}
+
+// Behind text for people, so that it is not taken for the beginning of a frame.
+static void EndText() { Serial.write(static_cast<uint8_t>(0)); }
+
+// The answer to ? in the Serial Monitor.
+static void TellReading() {
+  if (is_running) return;  // it would cut a frame in two
+  const uint16_t counts = ConvertOnce();
+  StraightLine line;
+  Serial.print(F("pendulum_logger 1.0: A"));
+  Serial.print(LOGGER_CHANNEL);
+  Serial.print(F(" = "));
+  Serial.print(counts);
+  Serial.print(F(" of 1023 counts"));
+  if (ReadCalibration(line)) {
+    Serial.print(F(", "));
+    Serial.print(line.offset_deg + line.deg_per_count * counts);
+    Serial.print(F(" deg"));
+  }
+  Serial.print(F("; "));
+  Serial.print(static_cast<float>(kTickHz) / (static_cast<uint32_t>(period) * oversample));
+  Serial.print(F(" Hz, runs so far: "));
+  Serial.println(CountedRuns());
+  EndText();
+}
+
+static void TakeCommands() {
+  static Receiver receiver;
+  while (Serial.available() > 0) {
+    const uint8_t byte = static_cast<uint8_t>(Serial.read());
+    if (byte == '?' && receiver.IsAtLineStart()) {  // no command begins with it: it would be 62 bytes long
+      receiver.Take(0);
+      TellReading();
+    } else if (receiver.Take(byte) == Receiver::kFrame) {
+      Obey(receiver);
+    }
+  }
+}
+
+void setup() {
+  Serial.begin(LOGGER_BAUD);
+  SetUpConverter();
+  Serial.println(F("pendulum_logger: send ? for a reading"));
+  EndText();
+  SendInfo();
+}
+
+void loop() {
+  TakeCommands();
+  if (is_running && PassOn()) return;
+  logger_idle();
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/device_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <sys/timex.h>
+
+#include "pendulum/base/median.h"
+
+namespace pendulum {
+namespace {
+
+constexpr std::size_t kLeastArrivals = 120, kArrivalsInStretch = 15;
+constexpr std::size_t kLeastStretches = 8, kMostStretches = 32;
+constexpr double kLeastSeconds = 5;
+
+/// host = offset + scale device, about the middle of the points.
+struct Line {
+  double scale = 1, std_dev = 0;
+  double middle = 0, offset = 0;  // device time, and the host's there
+
+  double Lateness(const Arrival& arrival) const {
+    return arrival.host_time - offset - scale * (arrival.device_time - middle);
+  }
+};
+
+Line LeastSquares(const std::vector<Arrival>& points) {
+  const auto count = static_cast<double>(points.size());
+  Line line;
+  double host = 0;
+  for (const Arrival& point : points) {
+    line.middle += point.device_time / count;
+    host += point.host_time / count;
+  }
+  double sxx = 0, sxy = 0;
+  for (const Arrival& point : points) {
+    const double x = point.device_time - line.middle;
+    sxx += x * x;
+    sxy += x * (point.host_time - host);
+  }
+  line.offset = host;
+  line.scale = sxy / sxx;
+  double rss = 0;
+  for (const Arrival& point : points) rss += std::pow(line.Lateness(point), 2);
+  line.std_dev = std::sqrt(rss / (count - 2) / sxx);
+  return line;
+}
+
+/// The least late arrival of each stretch of equal duration.
+std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t stretches, double scale) {
+  const double begin = arrivals.front().device_time;
+  const double duration = (arrivals.back().device_time - begin) / static_cast<double>(stretches);
+  std::vector<std::optional<Arrival>> earliest(stretches);
+  const auto lateness = [scale](const Arrival& each) { return each.host_time - scale * each.device_time; };
+  for (const Arrival& arrival : arrivals) {
+    const auto at = static_cast<std::size_t>((arrival.device_time - begin) / duration);
+    std::optional<Arrival>& best = earliest[std::min(at, stretches - 1)];
+    if (!best || lateness(arrival) < lateness(*best)) best = arrival;
+  }
+  std::vector<Arrival> points;
+  for (const auto& each : earliest) {
+    if (each) points.push_back(*each);
+  }
+  return points;
+}
+
+/// The points without those that lie late by more than three standard deviations of the others, by their median.
+std::vector<Arrival> Punctual(const std::vector<Arrival>& points, const Line& line) {
+  constexpr double kDeviations = 3, kStdDevOfMedian = 1.4826;
+  std::vector<double> sizes;
+  for (const Arrival& point : points) sizes.push_back(std::abs(line.Lateness(point)));
+  const double most = kDeviations * kStdDevOfMedian * Median(sizes);
+  std::vector<Arrival> punctual;
+  std::ranges::copy_if(points, std::back_inserter(punctual),
+                       [&](const Arrival& p) { return line.Lateness(p) <= most; });
+  return punctual;
+}
+
+std::optional<Line> FitLine(std::span<const Arrival> arrivals) {
+  constexpr int kMostRounds = 20;
+  constexpr double kSettled = 1e-9;
+  const std::size_t stretches = std::clamp(arrivals.size() / kArrivalsInStretch, kLeastStretches, kMostStretches);
+  Line line;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double before = line.scale;
+    std::vector<Arrival> points = Earliest(arrivals, stretches, line.scale);
+    if (points.size() < kLeastStretches / 2) return std::nullopt;
+    line = LeastSquares(points);
+    if (std::vector<Arrival> punctual = Punctual(points, line); punctual.size() >= kLeastStretches / 2) {
+      line = LeastSquares(punctual);
+    }
+    if (std::abs(line.scale - before) < kSettled) break;
+  }
+  return line;
+}
+
+}  // namespace
+
+DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double host_std_dev) {
+  DeviceClock clock;
+  if (arrivals.size() < kLeastArrivals) return clock;
+  if (arrivals.back().device_time - arrivals.front().device_time < kLeastSeconds) return clock;
+  const std::optional<Line> line = FitLine(arrivals);
+  if (!line) return clock;
+  clock.is_implausible = !(std::abs(line->scale - 1) <= kMostDeviation);
+  const double std_dev = std::hypot(line->std_dev, host_std_dev * line->scale);
+  if (clock.is_implausible || !(std_dev < kResonatorStdDev)) return clock;
+  clock.scale = line->scale;
+  clock.std_dev = std_dev;
+  clock.is_measured = true;
+  return clock;
+}
+
+double HostClockStdDev() {
+  constexpr double kQuartz = 30e-6, kDisciplined = 1e-6;
+  timex state{};
+  const int status = ::adjtimex(&state);
+  return status == -1 || status == TIME_ERROR ? kQuartz : kDisciplined;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/logger.h"
+
+#include <chrono>
+#include <cstring>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+namespace wire = pendulum_logger;
+
+constexpr double kRepeatSeconds = 0.5;  // a command that was not answered is sent again
+constexpr int kTries = 4;
+
+tl::unexpected<Status> Interrupted() {
+  return Error(StatusCode::kTryAgain, "interrupted before anything was recorded");
+}
+
+bool AreEqual(const wire::StraightLine& a, const wire::StraightLine& b) {
+  return a.offset_deg == b.offset_deg && a.deg_per_count == b.deg_per_count && a.offset_variance == b.offset_variance &&
+         a.covariance == b.covariance && a.slope_variance == b.slope_variance;
+}
+
+std::string Refusal(std::uint8_t status) {
+  if (status == wire::kOutOfRange) return "a value is out of its range";
+  if (status == wire::kRunning) return "it is recording";
+  return "it does not know the command";
+}
+
+}  // namespace
+
+double HostTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Result<void> Logger::Send(const std::vector<std::uint8_t>& command) { return port_.Write(command); }
+
+Result<std::optional<TimedMessage>> Logger::Receive(double seconds) {
+  const double until = HostTime() + seconds;
+  while (pending_.empty()) {
+    const auto bytes = port_.Read(until - HostTime());
+    if (!bytes) return tl::unexpected(bytes.error());
+    const double now = HostTime();
+    bytes_ += bytes->size();
+    for (const LoggerMessage& message : decoder_.Take(*bytes)) pending_.push_back({message, now});
+    if (pending_.empty() && (stop_ || now >= until)) return std::nullopt;
+  }
+  const TimedMessage next = pending_.front();
+  pending_.pop_front();
+  return next;
+}
+
+tl::unexpected<Status> Logger::NoAnswer(double seconds) const {
+  if (stop_) return Interrupted();
+  const std::string waited = " within " + NumberText(seconds, 2) + " s";
+  if (bytes_ == 0) {
+    return Error(StatusCode::kDataLoss, "nothing on " + port_.path() + " answers" + waited +
+                                            "; is firmware/pendulum_logger on the board, and this its port?");
+  }
+  return Error(StatusCode::kDataLoss, "what comes from " + port_.path() + " is no pendulum_logger's (" +
+                                          std::to_string(bytes_) + " bytes" + waited +
+                                          ", no answer among them); is the sketch firmware/pendulum_logger on the "
+                                          "board, with the baud rate that --baud says?");
+}
+
+Result<wire::Info> Logger::Connect(double patience_seconds) {
+  const double begin = HostTime();
+  while (!stop_ && HostTime() - begin < patience_seconds) {
+    if (auto sent = Send(CommandBytes(wire::Command<wire::kStop>{})); !sent) return tl::unexpected(sent.error());
+    if (auto sent = Send(CommandBytes(wire::Command<wire::kAskInfo>{})); !sent) return tl::unexpected(sent.error());
+    const double repeat = HostTime() + kRepeatSeconds;
+    while (HostTime() < repeat) {
+      const auto received = Receive(repeat - HostTime());
+      if (!received) return tl::unexpected(received.error());
+      if (!*received) break;
+      if (const auto* other = std::get_if<OtherProtocol>(&(*received)->message)) {
+        return Error(StatusCode::kDataLoss,
+                     "the logger on " + port_.path() + " speaks version " + std::to_string(other->version) +
+                         " of the protocol, and this record_pendulum version " + std::to_string(wire::kProtocol) +
+                         "; put the firmware/pendulum_logger of the same release on the board");
+      }
+      const auto* info = std::get_if<wire::Info>(&(*received)->message);
+      if (info != nullptr && info->is_running == 0) return Checked(*info);
+    }
+  }
+  return NoAnswer(patience_seconds);
+}
+
+/// What the host takes for granted, for it reads times and counts by it.
+Result<wire::Info> Logger::Checked(const wire::Info& info) const {
+  const auto differs = [&](const std::string& what, std::uint32_t its, std::uint32_t ours) {
+    return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " has " + std::to_string(its) + " " + what +
+                                            ", and this record_pendulum reads " + std::to_string(ours) +
+                                            "; put the firmware/pendulum_logger of the same release on the board");
+  };
+  if (info.tick_hz != wire::kTickHz) return differs("ticks a second", info.tick_hz, wire::kTickHz);
+  if (info.adc_bits != wire::kAdcBits) return differs("bits in its converter", info.adc_bits, wire::kAdcBits);
+  return info;
+}
+
+Result<wire::Ack> Logger::Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind) {
+  for (int tries = 0; tries < kTries && !stop_; ++tries) {
+    if (auto sent = Send(command); !sent) return tl::unexpected(sent.error());
+    const double repeat = HostTime() + kRepeatSeconds;
+    while (HostTime() < repeat) {
+      const auto received = Receive(repeat - HostTime());
+      if (!received) return tl::unexpected(received.error());
+      if (!*received) break;
+      const auto* ack = std::get_if<wire::Ack>(&(*received)->message);
+      if (ack != nullptr && ack->command == kind) return *ack;
+    }
+  }
+  if (stop_) return Interrupted();
+  return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " said what it is, and now does not answer '" +
+                                          static_cast<char>(kind) + "' within " +
+                                          NumberText(kTries * kRepeatSeconds, 2) +
+                                          " s; unplug the board, plug it in and try again");
+}
+
+Result<void> Logger::AskAndCheck(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what) {
+  const auto ack = Ask(command, kind);
+  if (!ack) return tl::unexpected(ack.error());
+  if (ack->status == wire::kDone) return {};
+  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + Refusal(ack->status));
+}
+
+Result<void> Logger::SetRate(const SamplingRate& rate) {
+  return AskAndCheck(CommandBytes(wire::SetRate{rate.period, rate.oversample}), wire::kSetRate,
+                     NumberText(rate.Hz(), 6) + " Hz");
+}
+
+Result<wire::Info> Logger::StoreCalibration(const wire::StraightLine& line) {
+  auto stored = AskAndCheck(CommandBytes(wire::StoreCalibration{line}), wire::kStoreCalibration, "the calibration");
+  if (!stored) return tl::unexpected(stored.error());
+  auto info = Connect();
+  if (info && (info->has_calibration == 0 || !AreEqual(info->calibration, line))) {
+    return Error(StatusCode::kDataLoss,
+                 "the logger does not give back the calibration that was stored; its EEPROM may be worn out");
+  }
+  return info;
+}
+
+Result<void> Logger::Start() {
+  rejected_before_ = decoder_.rejected();
+  const auto ack = Ask(CommandBytes(wire::Command<wire::kStart>{}), wire::kStart);
+  if (!ack) {
+    RequestStop();  // it may have started, and only its answers were lost
+    return tl::unexpected(ack.error());
+  }
+  // Already running: it was the answer to the first of several tries that was lost.
+  if (ack->status == wire::kDone || ack->status == wire::kRunning) return {};
+  return Error(StatusCode::kDataLoss, "the logger refuses to start: " + Refusal(ack->status));
+}
+
+Result<void> Logger::RequestStop() { return Send(CommandBytes(wire::Command<wire::kStop>{})); }
+
+}  // namespace pendulum

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/received_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace pendulum {
+namespace {
+
+namespace wire = pendulum_logger;
+
+std::span<const std::uint16_t> Sums(const wire::Data& frame) { return {frame.sums, frame.count}; }
+
+/// Beyond half its range a 32-bit count of ticks cannot be told from one that went back: 18 minutes.
+constexpr std::uint32_t kLongestGap = std::uint32_t{1} << 31;
+
+}  // namespace
+
+std::optional<SamplingRate> NearestRate(double hz, int oversample) {
+  if (oversample < 1 || oversample > wire::kMostOversample || !(hz > 0)) return std::nullopt;
+  const double period = std::round(wire::kTickHz / (hz * oversample));
+  if (!(period >= wire::kLeastPeriod && period <= wire::kMostPeriod)) return std::nullopt;
+  return SamplingRate{static_cast<std::uint16_t>(period), static_cast<std::uint8_t>(oversample)};
+}
+
+bool ReceivedRun::Fits(const wire::Data& frame) const {
+  if (frame.count == 0 || std::ranges::any_of(Sums(frame), [&](int sum) { return sum > LargestSum(); })) return false;
+  if (ticks_.empty()) return true;
+  const std::uint32_t step = frame.tick - last_tick_;
+  return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0;
+}
+
+/// What is missing before a frame that fits: of the beginning whole frames, later as many samples as its tick says.
+/// They were lost on the line if the frames are not numbered on, but for those that the logger says it dropped.
+void ReceivedRun::NoteGap(const wire::Data& frame) {
+  const auto frames = static_cast<std::uint16_t>(frame.sequence - next_sequence_);
+  std::int64_t missing = std::int64_t{frames} * wire::BlockSize(static_cast<std::uint32_t>(rate_.Ticks()));
+  if (!ticks_.empty()) {
+    const std::uint32_t step = frame.tick - last_tick_;
+    missing = std::max<std::int64_t>(0, (step + rate_.Ticks() / 2) / rate_.Ticks() - 1);
+  }
+  if (missing == 0) return;
+  const std::int64_t dropped = std::clamp<std::int64_t>(frame.dropped - found_dropped_, 0, missing);
+  gaps_.push_back({size(), missing, frames == 0 ? 0 : missing - dropped});
+  found_dropped_ += dropped;
+}
+
+bool ReceivedRun::Take(const wire::Data& frame, double host_time) {
+  if (!Fits(frame)) {
+    ++contradicting_;
+    return false;
+  }
+  NoteGap(frame);
+  std::int64_t tick = ticks_.empty() ? 0 : ticks_.back() + std::int64_t{frame.tick - last_tick_};
+  for (const std::uint16_t sum : Sums(frame)) {
+    ticks_.push_back(tick);
+    sums_.push_back(sum);
+    tick += rate_.Ticks();
+  }
+  last_tick_ = static_cast<std::uint32_t>(frame.tick + (frame.count - 1) * rate_.Ticks());
+  next_sequence_ = static_cast<std::uint16_t>(frame.sequence + 1);
+  dropped_ = std::max<std::uint32_t>(dropped_, frame.dropped);
+  late_ = std::max<std::uint32_t>(late_, frame.late);
+  arrivals_.push_back({Time(size() - 1), host_time});
+  return true;
+}
+
+double ReceivedRun::Time(std::size_t sample) const { return static_cast<double>(ticks_[sample]) / wire::kTickHz; }
+
+double ReceivedRun::Counts(std::size_t sample) const { return static_cast<double>(sums_[sample]) / rate_.oversample; }
+
+bool ReceivedRun::IsSaturated(std::size_t sample) const {
+  return sums_[sample] < rate_.oversample || sums_[sample] > LargestSum() - rate_.oversample;
+}
+
+void ReceivedRun::KeepFirst(std::size_t samples) {
+  if (samples >= size()) return;
+  ticks_.resize(samples);
+  sums_.resize(samples);
+  std::erase_if(gaps_, [samples](const Gap& gap) { return gap.sample >= samples; });
+  is_trimmed_ = true;
+}
+
+RunLosses ReceivedRun::Losses() const {
+  RunLosses losses{0, 0, late_, 0, contradicting_, end_.has_value()};
+  for (const Gap& gap : gaps_) {
+    losses.samples += gap.missing;
+    losses.on_line += gap.on_line;
+  }
+  losses.dropped = static_cast<std::uint32_t>(std::min<std::int64_t>(dropped_, losses.samples - losses.on_line));
+  if (is_trimmed_) return losses;
+  losses.dropped = dropped_;
+  if (end_) {
+    losses.dropped = end_->dropped;
+    losses.late = end_->late;
+    losses.on_line = std::max<std::int64_t>(0, std::int64_t{end_->samples} - static_cast<std::int64_t>(size()));
+  }
+  losses.samples = std::max(losses.samples, losses.dropped + losses.on_line);
+  return losses;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records a run of pendulum_logger into a CSV file, and fits it when asked to: flags, signals, files and exit codes.
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gflags/gflags.h>
+#include <unistd.h>
+
+#include "pendulum/acquisition/logger.h"
+#include "pendulum/acquisition/serial_port.h"
+#include "pendulum/base/format.h"
+#include "pendulum/report/text.h"
+#include "tools/fit_runs.h"
+#include "tools/output.h"
+#include "tools/part_file.h"
+#include "tools/record_pendulum_options.h"
+#include "tools/record_run.h"
+#include "tools/record_text.h"
+#include "tools/run_tool.h"
+#include "tools/terminal.h"
+
+DEFINE_string(port, "", "Serial port of the logger, such as /dev/ttyACM0; default the only one there is.");
+DEFINE_string(out, "", "Where the recording goes (CSV); - is standard output.");
+DEFINE_string(seconds, "", "How long to record, s; default until it is stopped (Ctrl-C).");
+DEFINE_bool(until_rest, false, "Stop when the pendulum has swung and come to rest. Default off.");
+DEFINE_bool(overwrite, false, "Replace a recording that is there. Default off.");
+DEFINE_double(rate_hz, 200, "Samples per second; default 200.");
+DEFINE_int32(oversample, 1, "Conversions a sample is the mean of, 1 to 64; default 1.");
+DEFINE_int32(baud, 115200, "Baud rate of the sketch; default 115200.");
+DEFINE_string(calibration, "", "Calibration file (JSON) to put into the recording; default the one in the logger.");
+DEFINE_string(store_calibration, "", "Stores this calibration file in the logger instead of recording.");
+DEFINE_bool(counts, false,
+            "Prints the mean reading of a second, counts, instead of recording: for a calibration table. Default off.");
+DEFINE_bool(info, false, "Shows what the logger says of itself instead of recording. Default off.");
+DEFINE_bool(list, false, "Lists the serial ports instead of recording. Default off.");
+DEFINE_bool(fit, false, "Fits the recording, as fit_pendulum does. Default off.");
+DEFINE_string(rig, "", "Of --fit: rig file (JSON, SI units); default none.");
+DEFINE_string(model, "", "Of --fit: model of the motion, several between commas to compare, or all; default coulomb.");
+
+namespace pendulum {
+namespace {
+
+constexpr const char* kUsage =
+    "Records a swing from an Arduino with the sketch firmware/pendulum_logger into a CSV file.\n"
+    "\n"
+    "  record_pendulum --list\n"
+    "  record_pendulum --port /dev/ttyACM0 --counts\n"
+    "  record_pendulum --port /dev/ttyACM0 --store_calibration cal.json\n"
+    "  record_pendulum --port /dev/ttyACM0 --out run.csv --seconds 60\n"
+    "  record_pendulum --port /dev/ttyACM0 --out run.csv --until_rest --fit --rig rig.json --model coulomb\n"
+    "\n"
+    "Ctrl-C ends a recording in good order. Meanwhile what has come is in run.csv.part, which can be fitted as it is.\n"
+    "Exit codes: 0 recorded (with --fit those of fit_pendulum), 1 recorded, but samples are missing or the logger was\n"
+    "lost, 2 wrong flags, 3 no such port or file, 4 no logger answers, or a file cannot be read, 70 a bug, 73 an "
+    "output\n"
+    "cannot be written, 75 the port is in use, 130 interrupted before the time asked for.\n"
+    "\n";
+
+constexpr int kIncomplete = 1, kInterrupted = 130;
+
+std::atomic<bool> stop = false;
+
+void Stop(int) { stop = true; }
+
+/// Also when the terminal is closed: what was recorded must be written.
+void StopOnSignals() {
+  struct sigaction action {};
+  action.sa_handler = Stop;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+RecordPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
+  RecordPendulumFlags flags;
+  flags.port = FLAGS_port;
+  flags.out = FLAGS_out;
+  flags.seconds = FLAGS_seconds;
+  flags.until_rest = FLAGS_until_rest;
+  flags.overwrite = FLAGS_overwrite;
+  flags.rate_hz = FLAGS_rate_hz;
+  flags.oversample = FLAGS_oversample;
+  flags.baud = FLAGS_baud;
+  flags.calibration = FLAGS_calibration;
+  flags.store_calibration = FLAGS_store_calibration;
+  flags.counts = FLAGS_counts;
+  flags.info = FLAGS_info;
+  flags.list = FLAGS_list;
+  flags.fit = FLAGS_fit;
+  flags.rig = FLAGS_rig;
+  flags.model = FLAGS_model;
+  flags.positional = positional;
+  return flags;
+}
+
+/// The port asked for, or the only one there is.
+Result<std::string> ChoosePort(const std::string& asked) {
+  if (!asked.empty()) return asked;
+  std::vector<PortName> ports = ListSerialPorts();
+  if (std::ranges::any_of(ports, &PortName::is_arduino)) std::erase_if(ports, std::not_fn(&PortName::is_arduino));
+  if (ports.size() == 1) return ports.front().path;
+  if (ports.empty()) {
+    return Error(StatusCode::kNotFound, "there is no USB serial port; is the board plugged in? --port names another");
+  }
+  return Error(StatusCode::kInvalidArgument,
+               "there are several ports, and --port says which: " + ports.front().path + " to " + ports.back().path);
+}
+
+/// A recording is not made again, so it does not replace one by accident.
+Result<void> CheckOut(const RecordPendulumOptions& options) {
+  if (auto checked = CheckOutputs(options.Outputs(), options.Inputs()); !checked) return checked;
+  const PartFile part(options.out);
+  if (options.overwrite || part.path().empty()) return {};
+  if (part.Exists()) {
+    return Error(StatusCode::kCannotWrite, part.path() +
+                                               " holds a recording that was interrupted, and can be fitted as "
+                                               "it is; rename it, or say --overwrite");
+  }
+  if (::access(options.out.c_str(), F_OK) == 0) {
+    return Error(StatusCode::kCannotWrite, options.out + " is there already; name another file, or say --overwrite");
+  }
+  return {};
+}
+
+Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOptions& options) {
+  if (options.calibration.empty()) return std::nullopt;
+  auto calibration = ReadCalibration(options.calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (calibration->input != "counts") {
+    return Error(StatusCode::kDataLoss, options.calibration + " is of " + calibration->input +
+                                            ", and a logger gives counts; calibrate by counts");
+  }
+  return *std::move(calibration);
+}
+
+/// 1 where something is missing, 130 where a recording of a given length was stopped before.
+int CodeOf(const RecordPendulumOptions& options, const RecordedRun& recorded) {
+  if (!IsComplete(recorded)) return kIncomplete;
+  const bool has_end = options.seconds.has_value() || options.until_rest;
+  return has_end && recorded.end == RunEnd::kStopped ? kInterrupted : 0;
+}
+
+/// Fits what was recorded and prints the table; the exit code is the fit's.
+Result<int> Fit(FitPendulumOptions options) {
+  auto setup = ReadSetup(options);
+  if (!setup) return tl::unexpected(setup.error());
+  const auto runs = FitAll(options, *setup);
+  if (!runs) return tl::unexpected(runs.error());
+  const Result<FitRun>& run = runs->front();
+  if (!run) return tl::unexpected(run.error());
+  const std::string text = "\n" + ToText(run->report, {.colour = WantsColour(STDOUT_FILENO)});
+  return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCodeOf(*run); });
+}
+
+/// Where what came can be found although the recording could not be written.
+std::string PartRemark(const RecordPendulumOptions& options, const RecordedRun& recorded) {
+  const PartFile part(options.out);
+  if (!part.Exists()) return "";
+  return recorded.part_trouble.empty() ? "; it is in " + part.path() : "; its beginning is in " + part.path();
+}
+
+/// Writes the recording, removes its part, and says what it is.
+Result<void> Keep(const RecordPendulumOptions& options, const RecordedRun& recorded) {
+  if (auto written = WriteOutputs(std::vector<Output>{{options.out, recorded.Csv()}}); !written) {
+    return Error(written.error().code, written.error().message + PartRemark(options, recorded));
+  }
+  PartFile(options.out).Remove();
+  const std::string text = RecordText(recorded, options.out);
+  if (!IsStandardOutput(options.out)) return WriteOutputs(std::vector<Output>{{"-", text}});
+  std::cerr << text;
+  return {};
+}
+
+void WarnOfSlowLine(const RecordPendulumOptions& options) {
+  const double capacity = LineCapacityHz(options.rate, options.baud);
+  if (options.rate.Hz() <= capacity) return;
+  Say(kRecordToolName, "warning: " + NumberText(options.rate.Hz(), 4) + " samples a second are more than the " +
+                           NumberText(capacity, 3) + " that a line of " + std::to_string(options.baud) +
+                           " baud carries; the rest will be lost");
+}
+
+Result<int> Record(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
+                   const pendulum_logger::Info& info, Logger& logger) {
+  WarnOfSlowLine(options);
+  if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
+  const auto recorded = RecordRun(options, info, given ? given : StoredCalibration(info), stop, logger);
+  if (!recorded) return tl::unexpected(recorded.error());
+  if (auto kept = Keep(options, *recorded); !kept) return tl::unexpected(kept.error());
+  const int code = CodeOf(options, *recorded);
+  if (!options.fit) return code;
+  return Fit(*options.fit).map([code](int fit) { return fit != 0 ? fit : code; });
+}
+
+/// The mean of a second's readings; of less than all of them none.
+Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_logger::Info& info, Logger& logger) {
+  constexpr int kDigits = 6;
+  if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
+  const auto recorded = RecordRun(options, info, std::nullopt, stop, logger);
+  if (!recorded) return tl::unexpected(recorded.error());
+  if (const int code = CodeOf(options, *recorded); code != 0) {
+    Say(kRecordToolName, "the second's readings are not complete; once more");
+    return code;
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < recorded->run.size(); ++i) sum += recorded->run.Counts(i);
+  const std::string mean = NumberText(sum / static_cast<double>(recorded->run.size()), kDigits) + "\n";
+  return WriteOutputs(std::vector<Output>{{"-", mean}}).map([] { return 0; });
+}
+
+/// What is done with a logger that has answered.
+Result<int> WorkWith(const RecordPendulumOptions& options, const std::string& port,
+                     const std::optional<Calibration>& given, Logger& logger) {
+  auto info = logger.Connect();
+  if (!info) return tl::unexpected(info.error());
+  if (options.task == RecordTask::kRecord) return Record(options, given, *info, logger);
+  if (options.task == RecordTask::kCounts) return PrintCounts(options, *info, logger);
+  if (options.task == RecordTask::kStoreCalibration) {
+    const auto line = StraightLineOf(*given);
+    if (!line) return Error(line.error().code, "--store_calibration: " + line.error().message);
+    info = logger.StoreCalibration(*line);
+    if (!info) return tl::unexpected(info.error());
+  }
+  return WriteOutputs(std::vector<Output>{{"-", LoggerText(*info, port)}}).map([] { return 0; });
+}
+
+Result<int> Work(const std::vector<std::string>& positional) {
+  const auto options = MakeRecordPendulumOptions(CurrentFlags(positional));
+  if (!options) return tl::unexpected(options.error());
+  if (options->task == RecordTask::kList) {
+    return WriteOutputs(std::vector<Output>{{"-", PortsText(ListSerialPorts())}}).map([] { return 0; });
+  }
+  const auto given = ReadGivenCalibration(*options);
+  if (!given) return tl::unexpected(given.error());
+  if (options->fit) {  // a rig that cannot be read is to be known before the pendulum swings
+    FitPendulumOptions fit = *options->fit;
+    if (const auto setup = ReadSetup(fit); !setup) return tl::unexpected(setup.error());
+  }
+  if (auto checked = CheckOut(*options); !checked) return tl::unexpected(checked.error());
+  const auto port = ChoosePort(options->port);
+  if (!port) return tl::unexpected(port.error());
+  StopOnSignals();
+  auto opened = SerialPort::Open(*port, options->baud);
+  if (!opened) return tl::unexpected(opened.error());
+  Logger logger(*std::move(opened), stop);
+  auto code = WorkWith(*options, *port, *given, logger);
+  if (!code && code.error().code == StatusCode::kTryAgain && stop) {
+    Say(kRecordToolName, code.error().message);
+    return kInterrupted;
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace pendulum
+
+int main(int argc, char** argv) {
+  return pendulum::RunTool({pendulum::kRecordToolName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+}

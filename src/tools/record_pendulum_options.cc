@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/record_pendulum_options.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "tools/command_line.h"
+
+namespace pendulum {
+namespace {
+
+namespace wire = pendulum_logger;
+
+constexpr double kLongestRun = 1e6;   // s, eleven days
+constexpr double kCountsSeconds = 1;  // that --counts takes the mean of
+
+Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
+  using Asked = std::pair<bool, RecordTask>;
+  const std::array<Asked, 5> asked = {{{!flags.out.empty(), RecordTask::kRecord},
+                                       {flags.counts, RecordTask::kCounts},
+                                       {!flags.store_calibration.empty(), RecordTask::kStoreCalibration},
+                                       {flags.info, RecordTask::kInfo},
+                                       {flags.list, RecordTask::kList}}};
+  const auto count = std::ranges::count(asked, true, &Asked::first);
+  if (count == 0) {
+    return BadFlag(
+        "--out is missing: where the recording goes; --counts, --store_calibration, --info and --list need "
+        "none");
+  }
+  if (count > 1) {
+    return BadFlag("of --out, --counts, --store_calibration, --info and --list only one can be done at a time");
+  }
+  return std::ranges::find(asked, true, &Asked::first)->second;
+}
+
+/// Flags of a recording that were given where none is made.
+Result<void> CheckBelongs(const RecordPendulumFlags& flags) {
+  const RecordPendulumFlags unset;
+  const std::array<std::pair<bool, const char*>, 9> of_a_recording = {{{!flags.seconds.empty(), "--seconds"},
+                                                                       {flags.until_rest, "--until_rest"},
+                                                                       {flags.overwrite, "--overwrite"},
+                                                                       {flags.fit, "--fit"},
+                                                                       {!flags.calibration.empty(), "--calibration"},
+                                                                       {!flags.rig.empty(), "--rig"},
+                                                                       {!flags.model.empty(), "--model"},
+                                                                       {flags.rate_hz != unset.rate_hz, "--rate_hz"},
+                                                                       {flags.oversample != 1, "--oversample"}}};
+  for (const auto& [is_given, flag] : of_a_recording) {
+    if (is_given) return BadFlag(std::string(flag) + " belongs to a recording; add --out, or leave it out");
+  }
+  return {};
+}
+
+Result<SamplingRate> ChooseRate(const RecordPendulumFlags& flags) {
+  if (flags.oversample < 1 || flags.oversample > wire::kMostOversample) {
+    return BadFlag("--oversample is " + std::to_string(flags.oversample) + "; it must be 1 to " +
+                   std::to_string(wire::kMostOversample));
+  }
+  if (const auto rate = NearestRate(flags.rate_hz, flags.oversample)) return *rate;
+  const auto ends = [&](std::uint16_t period) {
+    return NumberText(static_cast<double>(wire::kTickHz) / period / flags.oversample, 4);
+  };
+  return BadFlag("--rate_hz is " + NumberText(flags.rate_hz) + "; with --oversample " +
+                 std::to_string(flags.oversample) + " it must be " + ends(wire::kMostPeriod) + " to " +
+                 ends(wire::kLeastPeriod));
+}
+
+Result<void> ChooseEnd(const RecordPendulumFlags& flags, RecordPendulumOptions& options) {
+  options.until_rest = flags.until_rest;
+  if (flags.seconds.empty()) return {};
+  const auto seconds = ParseNumber("--seconds", flags.seconds, "a number of seconds");
+  if (!seconds) return tl::unexpected(seconds.error());
+  if (!(*seconds > 0 && *seconds <= kLongestRun)) {
+    return BadFlag("--seconds is " + flags.seconds + "; it must be positive, at most " + NumberText(kLongestRun));
+  }
+  if (*seconds * options.rate.Hz() < 1) return BadFlag("--seconds is " + flags.seconds + ", less than a sample takes");
+  options.seconds = *seconds;
+  return {};
+}
+
+Result<void> ChooseFit(const RecordPendulumFlags& flags, RecordPendulumOptions& options) {
+  if (!flags.fit) {
+    if (!flags.rig.empty()) return BadFlag("--rig belongs to a fit; add --fit, or leave it out");
+    if (!flags.model.empty()) return BadFlag("--model belongs to a fit; add --fit, or leave it out");
+    return {};
+  }
+  if (IsStandardOutput(flags.out)) return BadFlag("--fit needs a recording in a file; give --out one");
+  FitPendulumFlags fit;
+  fit.data = "-";
+  fit.rig = flags.rig;
+  if (!flags.model.empty()) fit.model = flags.model;
+  auto made = MakeFitPendulumOptions(fit);
+  if (!made) return tl::unexpected(made.error());
+  made->data = {flags.out};  // one path, whatever commas are in it
+  options.fit = *std::move(made);
+  return {};
+}
+
+}  // namespace
+
+std::vector<NamedFile> RecordPendulumOptions::Outputs() const {
+  if (task != RecordTask::kRecord) return {};
+  return {{"--out", out}};
+}
+
+std::vector<NamedFile> RecordPendulumOptions::Inputs() const {
+  std::vector<NamedFile> inputs;
+  const std::string flag = task == RecordTask::kStoreCalibration ? "--store_calibration" : "--calibration";
+  if (!calibration.empty()) inputs.push_back({flag, calibration});
+  if (fit && !fit->rig.empty()) inputs.push_back({"--rig", fit->rig});
+  return inputs;
+}
+
+Result<RecordPendulumOptions> MakeRecordPendulumOptions(const RecordPendulumFlags& flags) {
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  const auto task = ChooseTask(flags);
+  if (!task) return tl::unexpected(task.error());
+  RecordPendulumOptions options;
+  options.task = *task;
+  options.port = flags.port;
+  if (flags.baud < 1200 || flags.baud > 2000000) {
+    return BadFlag("--baud is " + std::to_string(flags.baud) + "; it must be what the sketch has, 1200 to 2000000");
+  }
+  options.baud = static_cast<unsigned>(flags.baud);
+  if (*task != RecordTask::kRecord) {
+    options.calibration = flags.store_calibration;
+    options.seconds = kCountsSeconds;
+    if (auto checked = CheckBelongs(flags); !checked) return tl::unexpected(checked.error());
+    return options;
+  }
+  options.out = flags.out;
+  options.calibration = flags.calibration;
+  options.overwrite = flags.overwrite;
+  const auto rate = ChooseRate(flags);
+  if (!rate) return tl::unexpected(rate.error());
+  options.rate = *rate;
+  if (auto chosen = ChooseEnd(flags, options); !chosen) return tl::unexpected(chosen.error());
+  if (auto chosen = ChooseFit(flags, options); !chosen) return tl::unexpected(chosen.error());
+  return options;
+}
+
+double LineCapacityHz(const SamplingRate& rate, unsigned baud) {
+  constexpr double kBitsPerByte = 10;  // with start and stop bit
+  const int block = wire::BlockSize(static_cast<std::uint32_t>(rate.Ticks()));
+  return baud / kBitsPerByte * block / wire::DataFrameSize(block);
+}
+
+}  // namespace pendulum

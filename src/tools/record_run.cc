@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/record_run.h"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <unistd.h>
+
+#include "pendulum/acquisition/rest.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "tools/live_trace.h"
+#include "tools/part_file.h"
+#include "tools/run_tool.h"
+#include "tools/terminal.h"
+
+namespace pendulum {
+namespace {
+
+namespace wire = pendulum_logger;
+
+constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kSaySeconds = 10;
+constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // whichever is longer
+constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
+
+std::string Now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::string text(32, '\0');
+  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
+  return text;
+}
+
+/// Whether so many seconds have gone by since the last time it was asked and they had.
+class Every {
+ public:
+  explicit Every(double seconds) : seconds_(seconds) {}
+
+  bool IsDue(double now) {
+    if (now - last_ < seconds_) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  double seconds_, last_ = HostTime();
+};
+
+/// One recording in progress.
+class RunInProgress {
+ public:
+  RunInProgress(const RecordPendulumOptions& options, const std::atomic<bool>& stop, Logger& logger,
+                RecordedRun& recorded)
+      : options_(options),
+        stop_(stop),
+        logger_(logger),
+        recorded_(recorded),
+        part_(options.out),
+        trace_(recorded.description.calibration ? "deg" : "counts"),
+        lines_(STDERR_FILENO),
+        is_live_(options.task == RecordTask::kRecord && CanRedraw(STDERR_FILENO)) {}
+
+  Result<void> Record();
+
+ private:
+  Result<void> Begin();
+  std::size_t SamplesAskedFor() const;
+  void Go();
+  void Take(const TimedMessage& received);
+  void TakeData(const wire::Data& data, double host_time);
+  void Lose(const std::string& why);
+  double LongestSilence() const;
+  void StopWhenDue(double now);
+  void KeepPart(double now);
+  void Show(double now);
+  std::string LossText() const;
+
+  const RecordPendulumOptions& options_;
+  const std::atomic<bool>& stop_;
+  Logger& logger_;
+  RecordedRun& recorded_;
+  PartFile part_;
+  LiveTrace trace_;
+  RedrawnLines lines_;
+  bool is_live_;
+  RestDetector rest_;
+  std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not
+  Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
+  std::size_t shown_ = 0;  // samples that are in the trace and in the part
+  double last_data_ = 0, stop_asked_ = 0;
+  bool is_stopping_ = false, is_over_ = false;
+};
+
+Result<void> RunInProgress::Record() {
+  if (auto begun = Begin(); !begun) return begun;
+  Go();
+  recorded_.run.KeepFirst(SamplesAskedFor());
+  recorded_.description.losses = recorded_.run.Losses();
+  recorded_.description.clock = FitDeviceClock(recorded_.run.arrivals(), HostClockStdDev());
+  if (recorded_.run.size() > 0) return {};
+  part_.Remove();
+  if (recorded_.end == RunEnd::kStopped) {
+    return Error(StatusCode::kTryAgain, "interrupted before anything was recorded");
+  }
+  return Error(StatusCode::kDataLoss, "nothing was recorded: " + recorded_.why_lost);
+}
+
+/// Those that came after the end that was asked for do not belong to the recording.
+std::size_t RunInProgress::SamplesAskedFor() const {
+  const ReceivedRun& run = recorded_.run;
+  if (recorded_.end == RunEnd::kRest) return rest_samples_;
+  std::size_t samples = run.size();
+  if (!options_.seconds) return samples;
+  const double end = *options_.seconds - 0.5 / run.rate().Hz();
+  while (samples > 0 && run.Time(samples - 1) > end) --samples;
+  return samples;
+}
+
+/// Nothing on the disk is touched before the logger has started.
+Result<void> RunInProgress::Begin() {
+  if (auto started = logger_.Start(); !started) return started;
+  recorded_.description.begun = Now();
+  last_data_ = HostTime();
+  auto opened = part_.Open();
+  if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
+  if (!opened) recorded_.part_trouble = opened.error().message;
+  return {};
+}
+
+void RunInProgress::Go() {
+  while (!is_over_) {
+    const auto received = logger_.Receive(kPollSeconds);
+    const double now = HostTime();
+    if (!received) {
+      Lose(received.error().message);
+    } else if (*received) {
+      Take(**received);
+    }
+    StopWhenDue(now);
+    KeepPart(now);
+    Show(now);
+  }
+}
+
+void RunInProgress::Take(const TimedMessage& received) {
+  if (const auto* data = std::get_if<wire::Data>(&received.message)) {
+    TakeData(*data, received.host_time);
+  } else if (const auto* end = std::get_if<wire::End>(&received.message)) {
+    recorded_.run.TakeEnd(*end);
+    if (!is_stopping_) Lose("the logger ended the run by itself");
+    is_over_ = true;
+  } else if (std::holds_alternative<wire::Info>(received.message)) {
+    Lose("the logger started again: was its power or reset line touched?");
+  }
+}
+
+void RunInProgress::TakeData(const wire::Data& data, double host_time) {
+  ReceivedRun& run = recorded_.run;
+  const std::size_t first = run.size();
+  if (!run.Take(data, host_time)) return;
+  last_data_ = host_time;
+  const auto& calibration = recorded_.description.calibration;
+  for (std::size_t i = first; i < run.size(); ++i) {
+    const double counts = run.Counts(i);
+    rest_.Take(run.Time(i), counts);
+    if (rest_samples_ == 0 && rest_.IsAtRest()) rest_samples_ = i + 1;
+    trace_.Take(run.Time(i), calibration ? calibration->Angle(counts) / kRadFromDeg : counts, counts, kFullScaleCounts);
+  }
+}
+
+void RunInProgress::Lose(const std::string& why) {
+  is_over_ = true;
+  recorded_.end = RunEnd::kLost;
+  recorded_.why_lost = why;
+}
+
+double RunInProgress::LongestSilence() const {
+  const auto step = static_cast<std::uint32_t>(options_.rate.Ticks());
+  return std::max(kSilenceSeconds, kSilenceFrames * wire::BlockSize(step) / options_.rate.Hz());
+}
+
+void RunInProgress::StopWhenDue(double now) {
+  if (is_over_) return;
+  if (!is_stopping_) {
+    const ReceivedRun& run = recorded_.run;
+    const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
+    const bool is_at_rest = options_.until_rest && rest_samples_ > 0;
+    if (now - last_data_ > LongestSilence()) return Lose("the logger has fallen silent");
+    if (!stop_ && !is_long_enough && !is_at_rest) return;
+    recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;
+    is_stopping_ = true;
+    stop_asked_ = now;
+  } else if (now - stop_asked_ > kStopSeconds) {
+    is_over_ = true;  // without its End: the description says so
+    return;
+  } else if (!repeat_.IsDue(now)) {
+    return;
+  }
+  if (auto sent = logger_.RequestStop(); !sent) Lose(sent.error().message);
+}
+
+/// What has come since, as rows.
+void RunInProgress::KeepPart(double now) {
+  if (!recorded_.part_trouble.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
+  std::string rows;
+  for (; shown_ < recorded_.run.size(); ++shown_) rows += RunRow(recorded_.run, shown_);
+  auto kept = part_.Append(rows);
+  if (kept) kept = part_.Synchronise();
+  if (!kept) recorded_.part_trouble = kept.error().message;
+}
+
+std::string RunInProgress::LossText() const {
+  const RunLosses losses = recorded_.run.Losses();
+  return losses.samples == 0 ? "none lost" : std::to_string(losses.samples) + " LOST";
+}
+
+void RunInProgress::Show(double now) {
+  const ReceivedRun& run = recorded_.run;
+  if (is_live_ && (is_over_ || draw_.IsDue(now))) {
+    std::vector<std::string> lines = trace_.Plot();
+    lines.push_back(trace_.StatusLine(LossText()));
+    lines_.Draw(lines);
+  } else if (!is_live_ && say_.IsDue(now) && run.size() > 0) {
+    Say(kRecordToolName,
+        NumberText(run.Time(run.size() - 1), 4) + " s, " + std::to_string(run.size()) + " samples, " + LossText());
+  }
+}
+
+}  // namespace
+
+std::string RecordedRun::Csv() const {
+  std::string csv = RunHead(description, run.rate());
+  for (std::size_t i = 0; i < run.size(); ++i) csv += RunRow(run, i);
+  return csv;
+}
+
+Result<RecordedRun> RecordRun(const RecordPendulumOptions& options, const wire::Info& info,
+                              const std::optional<Calibration>& calibration, const std::atomic<bool>& stop,
+                              Logger& logger) {
+  RecordedRun recorded(options.rate);
+  recorded.description.logger = info;
+  recorded.description.run = info.run + 1;
+  recorded.description.calibration = calibration;
+  if (auto done = RunInProgress(options, stop, logger, recorded).Record(); !done) return tl::unexpected(done.error());
+  return recorded;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/record_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pendulum/acquisition/messages.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/report/layout.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+/// The readings of a recording, counts.
+struct Readings {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  int saturated = 0;
+};
+
+Readings ReadingsOf(const RecordedRun& recorded) {
+  Readings readings;
+  for (std::size_t i = 0; i < recorded.run.size(); ++i) {
+    readings.low = std::min(readings.low, recorded.run.Counts(i));
+    readings.high = std::max(readings.high, recorded.run.Counts(i));
+    readings.saturated += recorded.run.IsSaturated(i) ? 1 : 0;
+  }
+  return readings;
+}
+
+std::string Row(const std::string& name, const std::string& text) {
+  constexpr std::size_t kNames = 11;
+  return Paragraph(text, "    " + name + std::string(kNames - name.size(), ' '), kTextWidth);
+}
+
+std::string SamplesText(const RecordedRun& recorded) {
+  const RunLosses& losses = recorded.description.losses;
+  const double seconds = static_cast<double>(recorded.run.size()) / recorded.run.rate().Hz();
+  std::string text = std::to_string(recorded.run.size()) + " at " + NumberText(recorded.run.rate().Hz(), kTextDigits) +
+                     " Hz, " + NumberText(seconds, kTextDigits) + " s";
+  if (recorded.run.rate().oversample > 1) {
+    text += ", each the mean of " + std::to_string(recorded.run.rate().oversample) + " conversions";
+  }
+  return text + "; " + (losses.samples == 0 ? "none lost" : std::to_string(losses.samples) + " lost");
+}
+
+std::string ReadingsText(const RecordedRun& recorded) {
+  const Readings readings = ReadingsOf(recorded);
+  std::string text = NumberText(readings.low, kTextDigits) + " to " + NumberText(readings.high, kTextDigits) +
+                     " of 0 to " + std::to_string(kFullScaleCounts) + " counts";
+  if (const auto& calibration = recorded.description.calibration) {
+    const auto deg = [&](double counts) { return NumberText(calibration->Angle(counts) / kRadFromDeg, 4); };
+    text += ", " + deg(readings.low) + " to " + deg(readings.high) + " deg";
+  }
+  return text;
+}
+
+std::string ClockText(const DeviceClock& clock) {
+  constexpr double kMillion = 1e6;
+  if (!clock.is_measured) {
+    return "not measured against this computer's (that takes a minute): ± " + NumberText(100 * clock.std_dev, 2) +
+           " %, as any resonator";
+  }
+  const double ppm = (1 / clock.scale - 1) * kMillion;
+  return std::to_string(std::lround(std::abs(ppm))) + " ± " + NumberText(clock.std_dev * kMillion, 2) + " ppm " +
+         (ppm < 0 ? "slow" : "fast") + " by this computer's, to be counted in by # clock_scale";
+}
+
+std::string EndText(const RecordedRun& recorded) {
+  switch (recorded.end) {
+    case RunEnd::kSeconds: return "after the time asked for";
+    case RunEnd::kRest: return "at rest";
+    case RunEnd::kStopped: return "by hand";
+    case RunEnd::kLost: return "too early: " + recorded.why_lost;
+  }
+  return "";
+}
+
+/// "1 sample is", "2 samples are"; the verb in both numbers.
+std::string Counted(std::int64_t count, const std::string& one, const std::string& is, const std::string& are) {
+  return std::to_string(count) + " " + one + (count == 1 ? " " + is : "s " + are);
+}
+
+std::string LossWarning(const RunLosses& losses) {
+  std::string text = Counted(losses.samples, "sample", "is", "are") + " missing";
+  if (losses.dropped > 0) {
+    text += "; " + std::to_string(losses.dropped) +
+            " found no room in the logger, for the line is too slow for this rate: lower --rate_hz";
+  }
+  if (losses.on_line > 0) text += "; " + std::to_string(losses.on_line) + " were damaged or lost on the line";
+  if (losses.late > 0) text += "; " + std::to_string(losses.late) + " conversions could not begin in time";
+  return text + ". Their rows are not in the file, and all others have the right times";
+}
+
+}  // namespace
+
+bool IsComplete(const RecordedRun& recorded) {
+  const RunLosses& losses = recorded.description.losses;
+  return recorded.end != RunEnd::kLost && losses.samples == 0 && losses.is_end_known;
+}
+
+std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
+  const RunLosses& losses = recorded.description.losses;
+  std::vector<Warning> warnings;
+  if (recorded.end == RunEnd::kLost)
+    warnings.push_back({"cut_short", recorded.why_lost + "; what came before is kept"});
+  if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses)});
+  if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
+    warnings.push_back({"no_end",
+                        "the logger did not say how many samples it had sent, so that the last ones may be "
+                        "missing"});
+  }
+  if (losses.contradicting_frames > 0) {
+    warnings.push_back(
+        {"contradicting_frames", Counted(losses.contradicting_frames, "frame", "contradicted", "contradicted") +
+                                     " the run and left no trace in it"});
+  }
+  if (const int saturated = ReadingsOf(recorded).saturated; saturated > 0) {
+    warnings.push_back({"saturated", Counted(saturated, "reading", "is", "are") +
+                                         " at an end of the converter's range; turn the potentiometer, or "
+                                         "choose another reference"});
+  }
+  if (recorded.description.clock.is_implausible) {
+    warnings.push_back({"clock_implausible",
+                        "the logger's clock and this computer's differ by more than any resonator does, so the times' "
+                        "scale was not measured; is one of them stopped at times, as in a virtual machine?"});
+  }
+  if (!recorded.part_trouble.empty()) {
+    warnings.push_back({"no_part", recorded.part_trouble + "; while it lasted, the recording was in memory only"});
+  }
+  return warnings;
+}
+
+std::string RecordText(const RecordedRun& recorded, const std::string& path) {
+  const pendulum_logger::Info& logger = recorded.description.logger;
+  std::string text = Heading("Recording") + Row("file", Printable(path)) +
+                     Row("logger", "pendulum_logger " + FirmwareVersion(logger) + ", " + BoardName(logger) + ", run " +
+                                       std::to_string(recorded.description.run)) +
+                     Row("samples", SamplesText(recorded));
+  text += Row("readings", ReadingsText(recorded)) + Row("clock", ClockText(recorded.description.clock)) +
+          Row("ended", EndText(recorded));
+  const std::vector<Warning> warnings = RecordWarnings(recorded);
+  if (!warnings.empty()) text += Heading("Warnings");
+  for (const Warning& warning : warnings) text += Paragraph(Printable(warning.message), "  - ", kTextWidth);
+  return text;
+}
+
+std::string LoggerText(const pendulum_logger::Info& info, const std::string& port) {
+  std::string text = Heading("Logger") + Row("port", Printable(port)) +
+                     Row("firmware", "pendulum_logger " + FirmwareVersion(info)) + Row("board", BoardName(info)) +
+                     Row("reference", ReferenceName(info)) + Row("runs", std::to_string(info.run) + " so far");
+  const auto calibration = StoredCalibration(info);
+  if (!calibration) return text + Row("stored", "no calibration; calibrate_sensor makes one for --store_calibration");
+  const double offset = calibration->coefficients[0], slope = calibration->coefficients[1];
+  return text +
+         Row("stored", "angle = " + NumberText(offset) + (slope < 0 ? " - " : " + ") + NumberText(std::abs(slope)) +
+                           " x deg, x in counts" + (calibration->covariance.size() > 0 ? ", with its covariance" : ""));
+}
+
+std::string PortsText(const std::vector<PortName>& ports) {
+  if (ports.empty()) return "There is no USB serial port; is the board plugged in, with a cable that carries data?\n";
+  std::string text;
+  for (const PortName& port : ports) {
+    text += port.path + (port.what.empty() ? "" : "  " + Printable(port.what)) +
+            (port.is_arduino ? "  (a board's, by its USB vendor)" : "") + "\n";
+  }
+  return text;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/device_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::device_clock_test {
+namespace {
+
+using Random = std::mt19937_64;
+using Delay = std::function<double(Random&)>;  // s, never negative
+
+constexpr double kTrueScale = 0.997009;  // a resonator that is 3000 ppm too fast
+constexpr double kFrames = 25;           // a second
+
+double Exponential(Random& random, double mean) { return std::exponential_distribution<double>(1 / mean)(random); }
+
+double Uniform(Random& random, double most) { return std::uniform_real_distribution<double>(0, most)(random); }
+
+/// A program that waits for bytes and is woken within some hundred microseconds.
+double Wakeup(Random& random) { return 50e-6 + Exponential(random, 200e-6); }
+
+/// USB polls every millisecond, a latency timer adds up to 16 (FTDI's default).
+double UsbBridge(Random& random) { return 1e-3 + Uniform(random, 16e-3); }
+
+/// A machine that is busy: a tenth of the frames wait for tens of milliseconds.
+double Busy(Random& random) { return Wakeup(random) + (Uniform(random, 1) < 0.1 ? Exponential(random, 40e-3) : 0); }
+
+std::vector<Arrival> Arrivals(double seconds, const Delay& delay, Random& random) {
+  std::vector<Arrival> arrivals;
+  double latest = 0;
+  for (double device = 0; device < seconds; device += 1 / kFrames) {
+    latest = std::max(latest, 1000 + kTrueScale * device + delay(random));  // frames do not overtake each other
+    arrivals.push_back({device, latest});
+  }
+  return arrivals;
+}
+
+/// Of many runs, the share whose scale is within 1.96 of its standard errors, and the rms of those multiples.
+struct Coverage {
+  double share = 0, rms = 0;
+};
+
+Coverage CoverageOf(double seconds, const Delay& delay) {
+  constexpr int kRuns = 1000;
+  Coverage coverage;
+  for (int i = 0; i < kRuns; ++i) {
+    Random random(static_cast<std::uint64_t>(i) + 1);
+    const DeviceClock clock = FitDeviceClock(Arrivals(seconds, delay, random), 0);
+    const double z = (clock.scale - kTrueScale) / clock.std_dev;
+    coverage.share += std::abs(z) < 1.96 ? 1.0 / kRuns : 0;
+    coverage.rms += z * z / kRuns;
+  }
+  coverage.rms = std::sqrt(coverage.rms);
+  return coverage;
+}
+
+TEST(FitDeviceClock, FindsAScaleExactlyWhereNothingIsLate) {
+  Random random(1);
+  const DeviceClock clock = FitDeviceClock(Arrivals(
+                                               60, [](Random&) { return 0.004; }, random),
+                                           1e-6);
+  EXPECT_TRUE(clock.is_measured);
+  EXPECT_NEAR(clock.scale, kTrueScale, 1e-10);
+  EXPECT_NEAR(clock.std_dev, 1e-6, 1e-8);  // the host's
+}
+
+/// The error it states is the error it has: of a thousand seeded runs for each kind of lateness.
+TEST(FitDeviceClock, ErrorIsTrue) {
+  const std::vector<std::pair<std::string, Delay>> delays = {{"wakeup", Wakeup}, {"usb", UsbBridge}, {"busy", Busy}};
+  for (const auto& [name, delay] : delays) {
+    for (const double seconds : {20.0, 60.0, 600.0}) {
+      const Coverage coverage = CoverageOf(seconds, delay);
+      // Student's t of some 20 degrees of freedom has 94 % there; binomial scatter of 1000 runs is 0.7 %.
+      EXPECT_GT(coverage.share, 0.91) << name << ' ' << seconds;
+      EXPECT_LT(coverage.rms, 1.3) << name << ' ' << seconds;
+      EXPECT_GT(coverage.rms, 0.6) << name << ' ' << seconds;
+    }
+  }
+}
+
+TEST(FitDeviceClock, BeatsAStraightLineThroughAllArrivals) {
+  Random random(3);
+  const std::vector<Arrival> arrivals = Arrivals(60, UsbBridge, random);
+  const DeviceClock clock = FitDeviceClock(arrivals, 0);
+  // Least squares through N delays of standard deviation 16 ms / √12: σ √12 / (T √N).
+  const double straight = 16e-3 / (60 * std::sqrt(60 * kFrames));
+  EXPECT_LT(clock.std_dev, straight / 2);
+}
+
+/// For two seconds nobody read the port: all frames of a stretch and more are late.
+TEST(FitDeviceClock, LeavesAStallOut) {
+  Random random(4);
+  std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
+  for (Arrival& each : arrivals) {
+    if (each.device_time > 20 && each.device_time < 24)
+      each.host_time = std::max(each.host_time, 1000 + 24 * kTrueScale);
+  }
+  const DeviceClock clock = FitDeviceClock(arrivals, 0);
+  EXPECT_LT(std::abs(clock.scale - kTrueScale), 4 * clock.std_dev);
+  EXPECT_LT(clock.std_dev, 5e-6);
+}
+
+TEST(FitDeviceClock, DoesNotMeasureWhatItCannot) {
+  Random random(5);
+  for (const double seconds : {0.0, 1.0, 4.0}) {
+    const DeviceClock clock = FitDeviceClock(Arrivals(seconds, Wakeup, random), 0);
+    EXPECT_FALSE(clock.is_measured);
+    EXPECT_EQ(clock.scale, 1);
+    EXPECT_EQ(clock.std_dev, kResonatorStdDev);
+  }
+  // Half a second of jitter tells less of a resonator than the kind of it does.
+  const Delay jitter = [](Random& any) { return Uniform(any, 0.5); };
+  EXPECT_FALSE(FitDeviceClock(Arrivals(6, jitter, random), 0).is_measured);
+}
+
+TEST(FitDeviceClock, RefusesAClockThatNoResonatorHas) {
+  Random random(6);
+  std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
+  for (Arrival& each : arrivals) each.host_time /= 20;  // played back twenty times as fast
+  const DeviceClock clock = FitDeviceClock(arrivals, 0);
+  EXPECT_TRUE(clock.is_implausible);
+  EXPECT_FALSE(clock.is_measured);
+  EXPECT_EQ(clock.scale, 1);
+}
+
+TEST(FitDeviceClock, TakesArrivalsAtOneInstant) {
+  std::vector<Arrival> arrivals;
+  for (int i = 0; i < 1000; ++i) arrivals.push_back({0.04 * i, 5.0});  // all read at once, in the end
+  EXPECT_FALSE(FitDeviceClock(arrivals, 0).is_measured);
+}
+
+TEST(HostClockStdDev, IsThatOfAQuartzOrBetter) {
+  EXPECT_GT(HostClockStdDev(), 0);
+  EXPECT_LE(HostClockStdDev(), 30e-6);
+}
+
+}  // namespace
+}  // namespace pendulum::device_clock_test

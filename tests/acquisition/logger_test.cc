@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/logger.h"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/acquisition/scripted_logger.h"
+
+namespace pendulum::logger_test {
+namespace {
+
+namespace wire = pendulum_logger;
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr wire::StraightLine kLine = {-135, 0.25F, 0.04F, -6e-5F, 1.25e-7F};
+
+SerialPort PortTo(const ScriptedLogger& board) {
+  auto port = SerialPort::Open(board.path(), 115200);
+  EXPECT_TRUE(port) << port.error().message;
+  return *std::move(port);
+}
+
+/// A scripted logger, and a Logger that talks to it.
+struct Connection {
+  explicit Connection(LoggerScript script = {}) : board(std::move(script)), logger(PortTo(board), stop) {}
+
+  ScriptedLogger board;
+  std::atomic<bool> stop = false;
+  Logger logger;
+};
+
+std::vector<std::uint8_t> Bytes(std::string_view text) { return {text.begin(), text.end()}; }
+
+/// The message of an error of kind kDataLoss.
+template <class T>
+std::string FaultOf(const Result<T>& result) {
+  EXPECT_FALSE(result);
+  if (result) return "";
+  EXPECT_EQ(result.error().code, StatusCode::kDataLoss) << result.error().message;
+  return result.error().message;
+}
+
+// ---- Connect -----------------------------------------------------------------------------------------------------
+
+TEST(Logger, ConnectsWithOneThatAnswersAtOnce) {
+  LoggerScript script;
+  script.info.firmware = 0x0102;
+  script.info.has_calibration = 1;
+  script.info.calibration = kLine;
+  Connection connection(script);
+  const double begin = HostTime();
+  const auto info = connection.logger.Connect();
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_LT(HostTime() - begin, 0.5);
+  EXPECT_EQ(info->firmware, 0x0102);
+  EXPECT_EQ(info->run, 41);
+  EXPECT_EQ(info->calibration.deg_per_count, 0.25);
+  EXPECT_EQ(connection.board.Heard(), "XI");
+}
+
+TEST(Logger, ConnectsBehindGarbage) {
+  LoggerScript script;
+  script.greeting = Bytes("\xFF\x80 half a fra");
+  const std::string_view hello("me\r\npendulum_logger: send ? for a reading\r\n\0", 44);
+  script.greeting.insert(script.greeting.end(), hello.begin(), hello.end());
+  Connection connection(script);
+  EXPECT_TRUE(connection.logger.Connect(2));
+}
+
+TEST(Logger, WaitsForABootLoader) {
+  LoggerScript script;
+  script.deaf_seconds = 1.2;
+  Connection connection(script);
+  const double begin = HostTime();
+  const auto info = connection.logger.Connect();
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_GT(HostTime() - begin, 1);
+  EXPECT_LT(HostTime() - begin, 3);
+}
+
+TEST(Logger, StopsARunOfAnEarlierProgram) {
+  LoggerScript script;
+  script.begins_running = true;
+  Connection connection(script);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // data are on their way
+  const auto info = connection.logger.Connect(2);
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_EQ(info->is_running, 0);
+}
+
+TEST(Logger, TakesNoneThatGoesOnRunning) {
+  LoggerScript script;
+  script.begins_running = true;
+  script.refused = {{'X', wire::kUnknown}};
+  Connection connection(script);
+  FaultOf(connection.logger.Connect(0.6));
+}
+
+TEST(Logger, AsksAgainWhereTheAnswerIsLost) {
+  LoggerScript script;
+  script.lost_answers['I'] = 1;
+  Connection connection(script);
+  EXPECT_TRUE(connection.logger.Connect(3));
+  EXPECT_EQ(connection.board.Heard(), "XIXI");
+}
+
+TEST(Logger, TellsAnotherProtocol) {
+  LoggerScript script;
+  script.info.protocol = 3;
+  Connection connection(script);
+  EXPECT_THAT(FaultOf(connection.logger.Connect(2)), AllOf(HasSubstr("version 3 of the protocol"),
+                                                           HasSubstr("version 1"), HasSubstr(connection.board.path())));
+}
+
+// Times and counts are read by the ticks and bits of protocol 1.
+TEST(Logger, TellsAnotherClockOrConverter) {
+  LoggerScript other_clock, other_converter;
+  other_clock.info.tick_hz = 1000000;
+  other_converter.info.adc_bits = 12;
+  Connection first(other_clock), second(other_converter);
+  EXPECT_THAT(FaultOf(first.logger.Connect(2)), AllOf(HasSubstr("1000000"), HasSubstr("2000000")));
+  EXPECT_THAT(FaultOf(second.logger.Connect(2)), AllOf(HasSubstr("12 bits"), HasSubstr("10")));
+}
+
+TEST(Logger, TellsSilence) {
+  LoggerScript script;
+  script.is_mute = true;
+  Connection connection(script);
+  const double begin = HostTime();
+  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), StartsWith("nothing on " + connection.board.path()));
+  EXPECT_GE(HostTime() - begin, 0.6);
+  EXPECT_LT(HostTime() - begin, 2);
+}
+
+TEST(Logger, TellsSomethingElse) {
+  LoggerScript script;
+  script.is_mute = true;
+  script.chatter = Bytes("$GPGGA,123519,4807.038,N,01131.000,E,1,08*47\r\n");
+  Connection connection(script);
+  const double begin = HostTime();
+  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), HasSubstr("is no pendulum_logger's"));
+  EXPECT_LT(HostTime() - begin, 2);
+}
+
+TEST(Logger, GivesUpWhenItIsStopped) {
+  LoggerScript script;
+  script.is_mute = true;
+  Connection connection(script);
+  std::thread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    connection.stop = true;
+  });
+  const double begin = HostTime();
+  const auto info = connection.logger.Connect(60);
+  user.join();
+  ASSERT_FALSE(info);
+  EXPECT_EQ(info.error().code, StatusCode::kTryAgain);
+  EXPECT_LT(HostTime() - begin, 2);
+}
+
+// ---- Commands ----------------------------------------------------------------------------------------------------
+
+TEST(Logger, SetsTheRate) {
+  Connection connection;
+  ASSERT_TRUE(connection.logger.SetRate({1250, 16}));
+  const auto info = connection.logger.Connect();
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_EQ(info->period, 1250);
+  EXPECT_EQ(info->oversample, 16);
+}
+
+TEST(Logger, RepeatsACommandWhoseAnswerIsLost) {
+  LoggerScript script;
+  script.lost_answers['R'] = 1;
+  Connection connection(script);
+  EXPECT_TRUE(connection.logger.SetRate({10000, 1}));
+  EXPECT_EQ(connection.board.Heard(), "RR");
+}
+
+// Such as one to a command of an earlier program.
+TEST(Logger, TakesNoAnswerToAnotherCommand) {
+  LoggerScript script;
+  script.greeting.resize(wire::kMostEncoded + 1);
+  script.greeting.resize(wire::MakeFrame(wire::Ack{'X', wire::kUnknown}, script.greeting.data()));
+  Connection connection(script);
+  const auto set = connection.logger.SetRate({10000, 1});
+  EXPECT_TRUE(set) << set.error().message;
+}
+
+TEST(Logger, TellsWhereACommandIsNotAnswered) {
+  LoggerScript script;
+  script.is_mute = true;
+  Connection connection(script);
+  EXPECT_THAT(FaultOf(connection.logger.SetRate({10000, 1})), HasSubstr("now does not answer 'R'"));
+}
+
+TEST(Logger, TellsRefusals) {
+  LoggerScript script;
+  script.refused = {{'R', wire::kOutOfRange}, {'W', wire::kRunning}, {'S', wire::kUnknown}};
+  Connection connection(script);
+  EXPECT_THAT(FaultOf(connection.logger.SetRate({10000, 1})),
+              AllOf(HasSubstr("200 Hz"), HasSubstr("out of its range")));
+  EXPECT_THAT(FaultOf(connection.logger.StoreCalibration(kLine)),
+              AllOf(HasSubstr("calibration"), HasSubstr("it is recording")));
+  EXPECT_THAT(FaultOf(connection.logger.Start()), HasSubstr("does not know the command"));
+  EXPECT_EQ(connection.board.Heard(), "RWS");  // a refusal is an answer
+}
+
+TEST(Logger, StoresACalibrationAndReadsItBack) {
+  Connection connection;
+  const auto info = connection.logger.StoreCalibration(kLine);
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_EQ(info->has_calibration, 1);
+  EXPECT_EQ(info->calibration.offset_deg, -135);
+  EXPECT_EQ(info->calibration.slope_variance, 1.25e-7F);
+}
+
+TEST(Logger, TellsAnEepromThatKeepsNothing) {
+  LoggerScript script;
+  script.forgets_calibration = true;
+  Connection empty(script);
+  EXPECT_THAT(FaultOf(empty.logger.StoreCalibration(kLine)), HasSubstr("EEPROM"));
+  script.info.has_calibration = 1;
+  script.info.calibration = kLine;
+  script.info.calibration.covariance = 0;
+  Connection other(script);
+  EXPECT_THAT(FaultOf(other.logger.StoreCalibration(kLine)), HasSubstr("EEPROM"));
+}
+
+// ---- A run -------------------------------------------------------------------------------------------------------
+
+/// The next message of a kind within a second; others are passed over.
+template <class Message>
+std::optional<Message> Next(Logger& logger) {
+  for (int i = 0; i < 200; ++i) {
+    const auto received = logger.Receive(1);
+    EXPECT_TRUE(received) << received.error().message;
+    if (!received || !*received) return std::nullopt;
+    if (const auto* message = std::get_if<Message>(&(*received)->message)) return *message;
+  }
+  return std::nullopt;
+}
+
+TEST(Logger, GivesTheDataOfARunInTheirOrder) {
+  LoggerScript script;
+  script.counts = [](double time) { return 100 + static_cast<int>(time * 200 + 0.5); };
+  Connection connection(script);
+  ASSERT_TRUE(connection.logger.Start());
+  for (int i = 0; i < 20; ++i) {
+    const auto data = Next<wire::Data>(connection.logger);
+    ASSERT_TRUE(data);
+    EXPECT_EQ(data->sequence, i);
+    EXPECT_EQ(data->sums[0], 100 + 8 * i);
+  }
+  ASSERT_TRUE(connection.logger.RequestStop());
+  const auto end = Next<wire::End>(connection.logger);
+  ASSERT_TRUE(end);
+  EXPECT_GE(end->samples, 160);
+  EXPECT_EQ(connection.logger.RejectedFrames(), 0);
+}
+
+TEST(Logger, TellsWhenAMessageCame) {
+  Connection connection;
+  const double begin = HostTime();
+  ASSERT_TRUE(connection.logger.Start());
+  const auto received = connection.logger.Receive(2);
+  ASSERT_TRUE(received && *received);
+  EXPECT_GE((*received)->host_time, begin);
+  EXPECT_LE((*received)->host_time, HostTime());
+}
+
+// The logger runs already when it hears the command again, and says so.
+TEST(Logger, StartsThoughTheFirstAnswerIsLost) {
+  LoggerScript script;
+  script.lost_answers['S'] = 1;
+  Connection connection(script);
+  const auto started = connection.logger.Start();
+  ASSERT_TRUE(started) << started.error().message;
+  EXPECT_TRUE(Next<wire::Data>(connection.logger));
+  EXPECT_EQ(connection.board.Heard(), "SS");
+}
+
+TEST(Logger, CountsDamageOfTheRunAlone) {
+  LoggerScript script;
+  script.greeting = Bytes(std::string_view("no frame\0nor this\0", 18));
+  Connection connection(script);
+  ASSERT_TRUE(connection.logger.Connect());
+  ASSERT_TRUE(connection.logger.Start());
+  EXPECT_TRUE(Next<wire::Data>(connection.logger));
+  EXPECT_EQ(connection.logger.RejectedFrames(), 0);
+}
+
+TEST(Logger, GivesNothingWhereNothingCame) {
+  Connection connection;
+  const double begin = HostTime();
+  const auto received = connection.logger.Receive(0.1);
+  ASSERT_TRUE(received) << received.error().message;
+  EXPECT_FALSE(*received);
+  EXPECT_GE(HostTime() - begin, 0.09);
+}
+
+TEST(Logger, TellsThatThePortIsGone) {
+  LoggerScript script;
+  script.frames = 3;
+  script.then = LoggerScript::Then::kUnplugged;
+  Connection connection(script);
+  ASSERT_TRUE(connection.logger.Start());
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(Next<wire::Data>(connection.logger));
+  EXPECT_THAT(FaultOf(connection.logger.Receive(5)), HasSubstr("is gone"));
+  EXPECT_THAT(FaultOf(connection.logger.RequestStop()), HasSubstr("is gone"));
+}
+
+}  // namespace
+}  // namespace pendulum::logger_test

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/acquisition/rest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace pendulum::rest_test {
+namespace {
+
+constexpr double kRadPerSecond = 2 * std::numbers::pi / 1.5;  // of the swings: a period of 1.5 s
+constexpr double kMiddle = 512.3;                             // counts
+
+/// A reading over time [s], counts, before noise and rounding.
+using Motion = std::function<double(double time)>;
+
+/// How a logger sees it.
+struct Reading {
+  double rate_hz = 200;
+  double noise = 0.3;  // standard deviation, counts
+  std::uint32_t seed = 1;
+};
+
+/// When rest is told first within so many seconds.
+std::optional<double> RestOf(const Motion& motion, double seconds, const Reading& reading = {}) {
+  std::mt19937 random(reading.seed);
+  std::normal_distribution<double> noise(0, reading.noise > 0 ? reading.noise : 1);
+  RestDetector detector;
+  for (int i = 0; i < seconds * reading.rate_hz; ++i) {
+    const double time = i / reading.rate_hz;
+    detector.Take(time, std::round(motion(time) + (reading.noise > 0 ? noise(random) : 0)));
+    if (detector.IsAtRest()) return time;
+  }
+  return std::nullopt;
+}
+
+/// A swing by viscous friction: its amplitude falls by 1/e in tau.
+Motion Decaying(double amplitude, double tau) {
+  return [=](double time) { return kMiddle + amplitude * std::exp(-time / tau) * std::cos(kRadPerSecond * time); };
+}
+
+/// A swing by dry friction: every half-swing goes about an angle that lies `band` to the side it comes from, and it
+/// rests at the first turning point within the band.
+Motion DryFriction(double amplitude, double band) {
+  return [=](double time) {
+    const double half = std::numbers::pi / kRadPerSecond;
+    double turn = amplitude;
+    while (time > half && std::abs(turn) > band) {
+      turn = -(turn - std::copysign(2 * band, turn));
+      time -= half;
+    }
+    if (std::abs(turn) <= band) return kMiddle + turn;
+    const double centre = std::copysign(band, turn);
+    return kMiddle + centre + (turn - centre) * std::cos(kRadPerSecond * time);
+  };
+}
+
+/// Held at one angle, and let go at that time.
+Motion HeldUntil(double release, const Motion& swing) {
+  return [=](double time) { return swing(std::max(0.0, time - release)); };
+}
+
+/// When the amplitude of Decaying is so many counts.
+double WhenAmplitudeIs(double counts, double amplitude, double tau) { return tau * std::log(amplitude / counts); }
+
+// ---- Rest is told ------------------------------------------------------------------------------------------------
+
+// With half a count of amplitude a swing is within rounding; the five seconds come on top.
+TEST(RestDetector, TellsTheRestOfADecayingSwing) {
+  for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
+    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+      const auto rest = RestOf(Decaying(300, 6), 120, {200, noise, seed});
+      ASSERT_TRUE(rest) << noise;
+      EXPECT_LT(*rest, WhenAmplitudeIs(0.5, 300, 6) + RestDetector::kRestSeconds + 3) << noise;
+    }
+  }
+}
+
+TEST(RestDetector, TellsTheRestOfDryFriction) {
+  for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at other places of the band
+    const auto rest = RestOf(DryFriction(amplitude, 10), 60);
+    ASSERT_TRUE(rest) << amplitude;
+    const double stop = 0.75 * std::ceil((amplitude - 10) / 20);  // half-swings of 0.75 s, each takes 20 counts
+    EXPECT_GT(*rest, stop + RestDetector::kRestSeconds - 1) << amplitude;
+    EXPECT_LT(*rest, stop + RestDetector::kRestSeconds + 3) << amplitude;
+  }
+}
+
+TEST(RestDetector, TellsItAtOtherRates) {
+  for (const double rate : {50.0, 100.0, 1000.0, 3700.0}) {
+    const auto rest = RestOf(Decaying(300, 6), 120, {rate, 0.5, 5});
+    ASSERT_TRUE(rest) << rate;
+    EXPECT_LT(*rest, WhenAmplitudeIs(0.5, 300, 6) + RestDetector::kRestSeconds + 3) << rate;
+  }
+}
+
+TEST(RestDetector, TellsItAfterAGapInTheSamples) {
+  RestDetector detector;
+  const Motion swing = Decaying(300, 3);
+  for (int i = 0; i < 200 * 60; ++i) {
+    const double time = i / 200.0;
+    if (time < 4 || time > 4.8) detector.Take(time, std::round(swing(time)));
+  }
+  EXPECT_TRUE(detector.IsAtRest());
+}
+
+TEST(RestDetector, TellsThatItHasSwung) {
+  RestDetector detector;
+  const Motion swing = Decaying(300, 60);
+  EXPECT_FALSE(detector.HasSwung());
+  for (int i = 0; i < 200 * 10; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0)));
+  EXPECT_TRUE(detector.HasSwung());
+  EXPECT_FALSE(detector.IsAtRest());
+}
+
+TEST(RestDetector, TakesItBackWhenItIsPushedAgain) {
+  RestDetector detector;
+  const Motion swing = Decaying(300, 3);
+  for (int i = 0; i < 200 * 40; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0)));
+  EXPECT_TRUE(detector.IsAtRest());
+  for (int i = 200 * 40; i < 200 * 42; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0 - 40)));
+  EXPECT_FALSE(detector.IsAtRest());
+}
+
+// ---- It is not told too early ------------------------------------------------------------------------------------
+
+TEST(RestDetector, KeepsQuietBeforeTheAmplitudeIsTwoCounts) {
+  for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
+    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+      const auto rest = RestOf(Decaying(100, 40), WhenAmplitudeIs(2, 100, 40), {200, noise, seed});
+      EXPECT_FALSE(rest) << "noise " << noise << ", rest at " << rest.value_or(0);
+    }
+  }
+}
+
+// Friction that is nearly none: a minute with 2 counts of amplitude after a larger swing.
+TEST(RestDetector, KeepsQuietWhileASmallSwingGoesOn) {
+  const Motion swing = [](double time) { return kMiddle + (time < 20 ? 100 : 2) * std::cos(kRadPerSecond * time); };
+  for (const double noise : {0.0, 0.5, 2.0}) {
+    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+      const auto rest = RestOf(swing, 80, {200, noise, seed});
+      EXPECT_FALSE(rest) << "noise " << noise << ", rest at " << rest.value_or(0);
+    }
+  }
+}
+
+TEST(RestDetector, KeepsQuietWhileItIsHeldBeforeTheRelease) {
+  for (const double rate : {50.0, 200.0, 1000.0}) {
+    for (const double noise : {0.0, 0.5, 2.0}) {
+      const auto rest = RestOf(HeldUntil(20, Decaying(300, 60)), 40, {rate, noise, 3});
+      EXPECT_FALSE(rest) << rate << " Hz, noise " << noise << ", rest at " << rest.value_or(0);
+    }
+  }
+}
+
+// The slowest rate of a logger without oversampling, 32 Hz, has three or four samples in a tenth of a second.
+TEST(RestDetector, TakesNoNoiseForASwing) {
+  for (const double rate : {32.0, 40.0}) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      const auto rest = RestOf([](double) { return kMiddle; }, 60, {rate, 2, seed});
+      EXPECT_FALSE(rest) << rate << " Hz, seed " << seed << ", rest at " << rest.value_or(0);
+    }
+  }
+}
+
+TEST(RestDetector, KeepsQuietWhereNothingEverMoves) {
+  EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 0, 1}));
+  EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 2, 1}));
+}
+
+// To and fro to the angle of the release, as one finds it, and held there.
+TEST(RestDetector, KeepsQuietWhileAHandMovesIt) {
+  const Motion hand = [](double time) {
+    const double there = std::clamp((time - 10) / 2, 0.0, 1.0), back = std::clamp((time - 20) / 3, 0.0, 1.0);
+    return kMiddle + 280 * there - 60 * back;
+  };
+  for (const double noise : {0.0, 0.5, 2.0}) EXPECT_FALSE(RestOf(hand, 60, {200, noise, 9})) << noise;
+}
+
+// The hand stops a swing on the way, beyond where it turned last: nobody has seen it come to rest.
+TEST(RestDetector, KeepsQuietWhereASwingIsCaughtAndHeld) {
+  const Motion caught = [](double time) { return time < 15.2 ? Decaying(100, 60)(time) : kMiddle + 200; };
+  EXPECT_FALSE(RestOf(caught, 60));
+}
+
+TEST(RestDetector, WaitsForFiveSeconds) {
+  const auto rest = RestOf([](double time) { return time < 15 ? Decaying(300, 60)(time) : kMiddle; }, 60);
+  ASSERT_TRUE(rest);
+  EXPECT_GT(*rest, 15 + RestDetector::kRestSeconds - 0.3);
+  EXPECT_LT(*rest, 15 + RestDetector::kRestSeconds + 0.5);
+}
+
+}  // namespace
+}  // namespace pendulum::rest_test

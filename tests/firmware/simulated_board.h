@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct avr_t;
+struct avr_irq_t;
+
+namespace pendulum {
+
+/// A board to be simulated, and what its converter sees.
+struct BoardOptions {
+  std::string mcu = "atmega328p";        ///< Or atmega2560.
+  std::string firmware;                  ///< Path of the ELF file.
+  double clock_error = 0;                ///< Relative: of a resonator that is 0.3 % too fast 0.003.
+  std::function<int(double)> counts;     ///< What the converter makes of its input at that time since power-on [s].
+  std::function<void(double)> on_start;  ///< Told when the first conversion of a run is sampled [s].
+  std::vector<std::uint8_t> eeprom;      ///< From address 0; what is not given is erased.
+  bool keeps_log = true;                 ///< Of every conversion: 16 bytes each.
+};
+
+/// A conversion as the hardware made it.
+struct Conversion {
+  std::uint64_t cycle;  ///< Of the CPU, when it was triggered.
+  int counts;
+};
+
+/// A byte on the line from board to host.
+struct LineByte {
+  double time;  ///< s since power-on, when its stop bit has passed.
+  std::uint8_t byte;
+};
+
+/// What must not happen on a board although the simulator would let it pass.
+struct BoardFaults {
+  int sleeps_with_converter_on = 0;  ///< Falling asleep starts a conversion.
+  int swallowed_triggers = 0;        ///< The converter was busy.
+  int overrun_bytes = 0;             ///< Written to the UART while two were on their way.
+  int crashes = 0;
+};
+
+/// An Uno or Mega 2560 in simavr, running a firmware file as it would be flashed. What simavr 1.6 lacks is done here:
+/// compare match B of Timer 1 starts the converter, whose readings come from `counts`; the line carries bytes at the
+/// baud rate the UART was set to; and empty turns of the loop (logger_idle) are skipped up to the next event.
+class SimulatedBoard {
+ public:
+  /// Powers it on. Throws std::runtime_error when there is no such firmware or processor.
+  explicit SimulatedBoard(BoardOptions options);
+  SimulatedBoard(const SimulatedBoard&) = delete;
+  SimulatedBoard& operator=(const SimulatedBoard&) = delete;
+  ~SimulatedBoard();
+
+  /// Goes on until that time since power-on [s].
+  void RunUntil(double time);
+
+  /// Holds all interrupts back for so long from now on [s], as a library that disables them would.
+  void HoldInterrupts(double seconds);
+
+  /// Queues bytes for the board; they go over the line one after the other.
+  void Send(const std::vector<std::uint8_t>& bytes);
+
+  /// The bytes that have come over the line since the last call.
+  std::vector<LineByte> TakeBytes();
+
+  double time() const;
+  const std::optional<double>& start() const { return start_; }  ///< Of the run it is in, when sampled first [s].
+  double ClockHz() const { return 16e6 * (1 + options_.clock_error); }
+  /// Those that the timer triggered.
+  const std::vector<Conversion>& conversions() const { return conversions_; }
+  const BoardFaults& faults() const { return faults_; }
+
+  /// CPU cycles since the last call, and those of them that were no idle turns of the loop.
+  double TakeLoad();
+
+  /// Bytes of RAM between the heap's end and the deepest that the stack has been.
+  int LeastFreeStack() const { return least_stack_ - data_end_; }
+
+  /// The EEPROM as it is now.
+  std::vector<std::uint8_t> Eeprom() const;
+
+ private:
+  void LoadFirmware();
+  void ConnectConverter();
+  void ConnectLine();
+  void OnTimerMatch(bool is_pending);
+  void OnConversion();
+  void OnByte(std::uint8_t byte);
+  std::uint64_t CyclesPerByte() const;
+  void Step(std::uint64_t end);
+  void SkipIdle(std::uint64_t end);
+  void DeliverByte();
+
+  BoardOptions options_;
+  avr_t* avr_ = nullptr;
+  avr_irq_t* converter_ = nullptr;  // its input of channel 0
+  avr_irq_t* trigger_ = nullptr;    // its auto trigger
+  avr_irq_t* input_ = nullptr;      // of the UART
+  std::uint32_t idle_address_ = 0;
+  int data_end_ = 0, least_stack_ = 0;
+  bool is_match_pending_ = false;
+  std::optional<double> start_;
+  std::uint64_t first_ = 0;                       // cycle of the first trigger of the run
+  std::uint64_t line_free_ = 0, next_input_ = 0;  // cycles: the line to the host is free, the next byte may come
+  std::deque<std::uint8_t> to_board_;
+  std::vector<LineByte> to_host_;
+  std::vector<Conversion> conversions_;
+  BoardFaults faults_;
+  std::uint64_t idle_cycles_ = 0, load_start_ = 0;
+};
+
+}  // namespace pendulum

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes on the line are frames or rejected, and what a run makes of them is a recording with rising times.
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "pendulum/acquisition/messages.h"
+#include "pendulum/acquisition/received_run.h"
+#include "pendulum/acquisition/rest.h"
+#include "tests/fuzz/require.h"
+
+namespace pendulum {
+namespace {
+
+/// Message to bytes to message: nothing that was accepted is changed by being sent again.
+template <class Message>
+void RequireSame(const Message& message) {
+  std::vector<std::uint8_t> bytes = CommandBytes(message);
+  MessageDecoder decoder;
+  const std::vector<LoggerMessage> again = decoder.Take(bytes);
+  Require(again.size() == 1 && std::holds_alternative<Message>(again.front()) && decoder.rejected() == 0);
+  Require(CommandBytes(std::get<Message>(again.front())) == bytes);
+}
+
+void RequireSame(const OtherProtocol& other) { Require(other.version != pendulum_logger::kProtocol); }
+
+void Check(std::span<const std::uint8_t> bytes) {
+  MessageDecoder decoder;
+  ReceivedRun run(SamplingRate{10000, 1});
+  RestDetector rest;
+  for (const LoggerMessage& message : decoder.Take(bytes)) {
+    std::visit([](const auto& each) { RequireSame(each); }, message);
+    if (const auto* data = std::get_if<pendulum_logger::Data>(&message)) run.Take(*data, 0);
+    if (const auto* end = std::get_if<pendulum_logger::End>(&message)) run.TakeEnd(*end);
+  }
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    Require(i == 0 || run.Time(i) > run.Time(i - 1));
+    Require(run.Counts(i) >= 0 && run.Counts(i) <= kFullScaleCounts);
+    rest.Take(run.Time(i), run.Counts(i));
+    rest.IsAtRest();
+  }
+  Require(run.Losses().samples >= 0 && run.Losses().on_line >= 0);
+}
+
+/// The input with frames made right: a piece between two zeros gets the code and the CRC it would need, so that what
+/// lies behind these is reached too.
+std::vector<std::uint8_t> Mended(std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> mended, piece;
+  for (const std::uint8_t byte : bytes) {
+    if (byte != 0 || piece.empty()) {
+      piece.push_back(byte);
+      if (piece.size() < pendulum_logger::kMostPayload) continue;
+    }
+    const std::uint16_t crc = pendulum_logger::Crc16(piece.data(), piece.size());
+    piece.push_back(static_cast<std::uint8_t>(crc));
+    piece.push_back(static_cast<std::uint8_t>(crc >> 8));
+    std::vector<std::uint8_t> frame(piece.size() + 1);
+    pendulum_logger::CobsEncode(piece.data(), piece.size(), frame.data());
+    mended.insert(mended.end(), frame.begin(), frame.end());
+    mended.push_back(0);
+    piece.clear();
+  }
+  return mended;
+}
+
+}  // namespace
+}  // namespace pendulum
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span<const std::uint8_t> bytes(data, size);
+  pendulum::Check(bytes);
+  pendulum::Check(pendulum::Mended(bytes));
+  return 0;
+}

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/record_run.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/recording/read_recording.h"
+#include "tests/acquisition/scripted_logger.h"
+#include "tests/tools/temporary_folder.h"
+#include "tools/record_text.h"
+
+namespace pendulum::record_run_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+using Then = LoggerScript::Then;
+
+SerialPort PortTo(const ScriptedLogger& board) {
+  auto port = SerialPort::Open(board.path(), 115200);
+  EXPECT_TRUE(port) << port.error().message;
+  return *std::move(port);
+}
+
+/// A scripted logger of 200 Hz, and a recording of it into run.csv of a folder of its own.
+struct Laboratory {
+  explicit Laboratory(LoggerScript script = {}) : board(std::move(script)), logger(PortTo(board), stop) {
+    options.out = folder.Path("run.csv");
+  }
+
+  Result<RecordedRun> Record() { return RecordRun(options, LoggerScript().info, calibration, stop, logger); }
+
+  /// A recording that must succeed.
+  RecordedRun Recorded() {
+    auto recorded = Record();
+    EXPECT_TRUE(recorded) << recorded.error().message;
+    return recorded ? *std::move(recorded) : RecordedRun(options.rate);
+  }
+
+  TemporaryFolder folder;
+  ScriptedLogger board;
+  std::atomic<bool> stop = false;
+  Logger logger;
+  RecordPendulumOptions options;
+  std::optional<Calibration> calibration;
+};
+
+/// 100 more with each sample, modulo 1000: a sample that is missing or twice there is noticed.
+int Sawtooth(double time) { return 20 + static_cast<int>(std::lround(200 * time) * 100 % 1000); }
+
+LoggerScript WithSawtooth() {
+  LoggerScript script;
+  script.counts = Sawtooth;
+  return script;
+}
+
+/// What a reader makes of the file.
+Recording ReadBack(const std::string& text) {
+  const auto recording = ParseRecording(text, "run.csv");
+  EXPECT_TRUE(recording) << recording.error().message;
+  return recording.value_or(Recording());
+}
+
+/// The first `count` samples of the sawtooth, and nothing else.
+void ExpectSawtooth(const Recording& recording, int count) {
+  ASSERT_EQ(recording.size(), count);
+  for (int i = 0; i < count; ++i) {
+    EXPECT_DOUBLE_EQ(recording.time[i], i / 200.0);
+    EXPECT_EQ(recording.value[i], 20 + 100 * (i % 10)) << i;
+  }
+}
+
+std::vector<std::string> CodesOf(const RecordedRun& recorded) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : RecordWarnings(recorded)) codes.push_back(warning.code);
+  return codes;
+}
+
+// ---- Ends as they should be --------------------------------------------------------------------------------------
+
+TEST(RecordRun, RecordsForSoManySeconds) {
+  Laboratory laboratory(WithSawtooth());
+  laboratory.options.seconds = 2;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.end, RunEnd::kSeconds);
+  EXPECT_EQ(recorded.run.size(), 400);  // 0 to 1.995 s
+  ExpectSawtooth(ReadBack(recorded.Csv()), 400);
+  EXPECT_TRUE(IsComplete(recorded));
+  EXPECT_THAT(CodesOf(recorded), IsEmpty());
+  EXPECT_THAT(laboratory.board.Heard(), StartsWith("SX"));
+}
+
+// Frames have 8 samples; 0.104 s at 200 Hz are the 21 at 0, 0.005, ..., 0.1 s.
+TEST(RecordRun, RecordsNoMoreThanWasAskedFor) {
+  Laboratory laboratory(WithSawtooth());
+  laboratory.options.seconds = 0.104;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.run.size(), 21);
+  ExpectSawtooth(ReadBack(recorded.Csv()), 21);
+}
+
+TEST(RecordRun, DescribesTheRun) {
+  Laboratory laboratory(WithSawtooth());
+  laboratory.options.seconds = 0.2;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.description.run, 42);  // the logger had been started 41 times
+  EXPECT_THAT(recorded.description.begun, MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
+  EXPECT_TRUE(recorded.description.losses.is_end_known);
+  EXPECT_FALSE(recorded.description.clock.is_measured);  // much too short
+  EXPECT_FALSE(recorded.description.calibration);
+}
+
+TEST(RecordRun, RecordsMeansWithTheirCalibration) {
+  LoggerScript script;
+  script.counts = [](double) { return 540; };
+  Laboratory laboratory(script);
+  laboratory.options.rate = {1250, 16};
+  laboratory.options.seconds = 0.5;
+  laboratory.calibration = Calibration();
+  laboratory.calibration->input = "counts";
+  laboratory.calibration->angle_unit = "deg";
+  laboratory.calibration->coefficients = {-90, 0.25};
+  ASSERT_TRUE(laboratory.logger.SetRate(laboratory.options.rate));
+  const Recording recording = ReadBack(laboratory.Recorded().Csv());
+  ASSERT_EQ(recording.size(), 50);
+  EXPECT_NEAR(recording.value[0], 45 * kRadFromDeg, 1e-12);  // -90 + 0.25 * 540
+  EXPECT_NEAR(recording.resolution, 0.25 / 16 * kRadFromDeg, 1e-12);
+}
+
+TEST(RecordRun, StopsWhenItIsStopped) {
+  Laboratory laboratory(WithSawtooth());
+  std::thread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    laboratory.stop = true;
+  });
+  const RecordedRun recorded = laboratory.Recorded();
+  user.join();
+  EXPECT_EQ(recorded.end, RunEnd::kStopped);
+  EXPECT_TRUE(IsComplete(recorded));  // with its end
+  EXPECT_GT(recorded.run.size(), 40);
+  ExpectSawtooth(ReadBack(recorded.Csv()), static_cast<int>(recorded.run.size()));
+}
+
+// 300 counts that fall by 1/e in 3 s are half a count after 19 s; 5 s later it is known to be at rest. A minute of this
+// takes 1.5 s here, so the clocks cannot agree.
+TEST(RecordRun, StopsAtRest) {
+  LoggerScript script;
+  script.frame_seconds = 0.001;
+  script.counts = [](double t) {
+    return static_cast<int>(std::lround(500 + 300 * std::exp(-t / 3) * std::cos(2 * std::numbers::pi * t / 1.5)));
+  };
+  Laboratory laboratory(script);
+  laboratory.options.until_rest = true;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.end, RunEnd::kRest);
+  EXPECT_GT(recorded.run.size(), 200 * 15);
+  EXPECT_LT(recorded.run.size(), 200 * 60);
+  EXPECT_TRUE(recorded.description.clock.is_implausible);
+  EXPECT_EQ(recorded.description.clock.scale, 1);
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("clock_implausible"));
+}
+
+// ---- Ends as they should not be ----------------------------------------------------------------------------------
+
+RecordedRun RecordedUntil(Then then, Laboratory& laboratory) {
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.end, RunEnd::kLost) << static_cast<int>(then);
+  EXPECT_FALSE(IsComplete(recorded));
+  EXPECT_THAT(CodesOf(recorded), Contains("cut_short"));
+  ExpectSawtooth(ReadBack(recorded.Csv()), 80);
+  ExpectSawtooth(ReadBack(laboratory.folder.Text("run.csv.part")), 80);
+  return recorded;
+}
+
+/// A logger that after ten frames, 80 samples, does this.
+LoggerScript TenFramesAnd(Then then) {
+  LoggerScript script = WithSawtooth();
+  script.frames = 10;
+  script.then = then;
+  return script;
+}
+
+TEST(RecordRun, KeepsWhatCameBeforeTheCableWasPulled) {
+  Laboratory laboratory(TenFramesAnd(Then::kUnplugged));
+  EXPECT_THAT(RecordedUntil(Then::kUnplugged, laboratory).why_lost, HasSubstr("is gone"));
+}
+
+TEST(RecordRun, KeepsWhatCameBeforeAReset) {
+  Laboratory laboratory(TenFramesAnd(Then::kReset));
+  EXPECT_THAT(RecordedUntil(Then::kReset, laboratory).why_lost, HasSubstr("started again"));
+}
+
+TEST(RecordRun, KeepsWhatCameBeforeAnEndThatNobodyAskedFor) {
+  Laboratory laboratory(TenFramesAnd(Then::kEnd));
+  EXPECT_THAT(RecordedUntil(Then::kEnd, laboratory).why_lost, HasSubstr("by itself"));
+}
+
+TEST(RecordRun, KeepsWhatCameBeforeSilence) {
+  Laboratory laboratory(TenFramesAnd(Then::kSilence));
+  EXPECT_THAT(RecordedUntil(Then::kSilence, laboratory).why_lost, HasSubstr("silent"));
+}
+
+TEST(RecordRun, TellsLostFramesAndKeepsTheTimes) {
+  LoggerScript script = WithSawtooth();
+  script.lost_frames = {5, 6};
+  Laboratory laboratory(script);
+  laboratory.options.seconds = 1;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.end, RunEnd::kSeconds);
+  EXPECT_EQ(recorded.run.size(), 200 - 16);
+  EXPECT_EQ(recorded.description.losses.samples, 16);
+  EXPECT_EQ(recorded.description.losses.on_line, 16);
+  EXPECT_FALSE(IsComplete(recorded));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("lost_samples"));
+  const Recording recording = ReadBack(recorded.Csv());
+  EXPECT_DOUBLE_EQ(recording.time[39], 0.195);
+  EXPECT_DOUBLE_EQ(recording.time[40], 0.28);
+  EXPECT_EQ(recording.value[40], Sawtooth(0.28));
+}
+
+TEST(RecordRun, WaitsNotForeverForTheEnd) {
+  LoggerScript script = WithSawtooth();
+  script.sends_end = false;
+  Laboratory laboratory(script);
+  laboratory.options.seconds = 0.5;
+  const RecordedRun recorded = laboratory.Recorded();
+  EXPECT_EQ(recorded.end, RunEnd::kSeconds);
+  EXPECT_EQ(recorded.run.size(), 100);
+  EXPECT_FALSE(recorded.description.losses.is_end_known);
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
+  EXPECT_THAT(recorded.Csv(), HasSubstr("end of the run did not arrive"));
+}
+
+// ---- Nothing -----------------------------------------------------------------------------------------------------
+
+TEST(RecordRun, TellsThatNothingCame) {
+  LoggerScript script;
+  script.frames = 0;
+  Laboratory laboratory(script);
+  const auto recorded = laboratory.Record();
+  ASSERT_FALSE(recorded);
+  EXPECT_EQ(recorded.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(recorded.error().message, AllOf(HasSubstr("nothing was recorded"), HasSubstr("silent")));
+  EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
+}
+
+TEST(RecordRun, IsStoppedBeforeAnythingCame) {
+  LoggerScript script;
+  script.frames = 0;
+  Laboratory laboratory(script);
+  std::thread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    laboratory.stop = true;
+  });
+  const auto recorded = laboratory.Record();
+  user.join();
+  ASSERT_FALSE(recorded);
+  EXPECT_EQ(recorded.error().code, StatusCode::kTryAgain);
+  EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
+}
+
+// The part may be that of an earlier recording, which nothing has replaced yet.
+TEST(RecordRun, TouchesNothingWhereTheLoggerDoesNotStart) {
+  LoggerScript script;
+  script.refused = {{'S', pendulum_logger::kUnknown}};
+  Laboratory laboratory(script);
+  const auto recorded = laboratory.Record();
+  ASSERT_FALSE(recorded);
+  EXPECT_EQ(recorded.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
+  laboratory.folder.Create("run.csv.part", "earlier");
+  EXPECT_FALSE(laboratory.Record());
+  EXPECT_EQ(laboratory.folder.Text("run.csv.part"), "earlier");
+}
+
+// ---- The copy on the disk ----------------------------------------------------------------------------------------
+
+TEST(RecordRun, HasACopyOnTheDiskMeanwhile) {
+  Laboratory laboratory(WithSawtooth());
+  std::string meanwhile;
+  std::thread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1700));
+    meanwhile = laboratory.folder.Text("run.csv.part");
+    laboratory.stop = true;
+  });
+  const RecordedRun recorded = laboratory.Recorded();
+  user.join();
+  EXPECT_THAT(meanwhile, EndsWith("\n"));  // whole rows
+  const Recording recording = ReadBack(meanwhile);
+  EXPECT_GT(recording.size(), 200);
+  ExpectSawtooth(recording, static_cast<int>(recording.size()));
+  EXPECT_EQ(ReadBack(laboratory.folder.Text("run.csv.part")).size(), recorded.run.size());
+}
+
+TEST(RecordRun, GoesOnWhereTheCopyCannotBe) {
+  Laboratory laboratory(WithSawtooth());
+  laboratory.options.out = laboratory.folder.Path("nowhere/run.csv");
+  laboratory.options.seconds = 0.5;
+  const RecordedRun recorded = laboratory.Recorded();
+  ExpectSawtooth(ReadBack(recorded.Csv()), 100);
+  EXPECT_THAT(recorded.part_trouble, HasSubstr("nowhere/run.csv.part"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
+}
+
+// Lost behind the end that was asked for: it is none of the recording's.
+TEST(RecordRun, CountsNoLossBehindItsEnd) {
+  LoggerScript script = WithSawtooth();
+  script.lost_frames = {13, 14, 15, 16};  // 0.5 s are frames 0 to 12
+  Laboratory laboratory(script);
+  laboratory.options.seconds = 0.5;
+  const RecordedRun recorded = laboratory.Recorded();
+  ExpectSawtooth(ReadBack(recorded.Csv()), 100);
+  EXPECT_TRUE(IsComplete(recorded));
+}
+
+TEST(RecordRun, GoesOnWhereTheDiskIsFull) {
+  Laboratory laboratory(WithSawtooth());
+  std::filesystem::create_symlink("/dev/full", laboratory.folder.Path("run.csv.part"));
+  laboratory.options.seconds = 0.5;
+  const RecordedRun recorded = laboratory.Recorded();
+  ExpectSawtooth(ReadBack(recorded.Csv()), 100);
+  EXPECT_THAT(recorded.part_trouble, HasSubstr("No space left"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
+}
+
+TEST(RecordRun, HasNoCopyOfAStream) {
+  Laboratory laboratory(WithSawtooth());
+  laboratory.options.out = "-";
+  laboratory.options.seconds = 0.2;
+  EXPECT_EQ(laboratory.Recorded().part_trouble, "");
+  EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace pendulum::record_run_test

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/record_text.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::record_text_test {
+namespace {
+
+namespace wire = pendulum_logger;
+
+using testing::AllOf;
+using testing::AnyOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+wire::Info Uno() {
+  wire::Info info{};
+  info.firmware = 0x0100;
+  info.board = wire::kUno;
+  info.reference = 1;
+  info.run = 41;
+  return info;
+}
+
+/// A whole recording of these readings at 200 Hz.
+RecordedRun Recorded(const std::vector<int>& counts = {500, 540, 460, 500}) {
+  RecordedRun recorded(SamplingRate{10000, 1});
+  for (const int reading : counts) {
+    wire::Data frame{};
+    frame.tick = static_cast<std::uint32_t>(10000 * recorded.run.size());
+    frame.count = 1;
+    frame.sums[0] = static_cast<std::uint16_t>(reading);
+    EXPECT_TRUE(recorded.run.Take(frame, 0));
+  }
+  recorded.end = RunEnd::kSeconds;
+  recorded.description.logger = Uno();
+  recorded.description.run = 42;
+  recorded.description.losses.is_end_known = true;
+  return recorded;
+}
+
+Calibration QuarterDegree() {
+  Calibration calibration;
+  calibration.input = "counts";
+  calibration.angle_unit = "deg";
+  calibration.coefficients = {-135, 0.25};
+  return calibration;
+}
+
+std::vector<std::string> CodesOf(const RecordedRun& recorded) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : RecordWarnings(recorded)) codes.push_back(warning.code);
+  return codes;
+}
+
+/// A text with one blank for each run of blanks and line ends, so that it does not matter where lines break.
+std::string Flat(const std::string& text) {
+  std::istringstream words(text);
+  std::string flat;
+  for (std::string word; words >> word;) flat += (flat.empty() ? "" : " ") + word;
+  return flat;
+}
+
+std::string FlatText(const RecordedRun& recorded) { return Flat(RecordText(recorded, "run.csv")); }
+
+/// Columns of the widest line; of ± and the like several bytes are one.
+std::size_t Width(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t width = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto columns = std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; });
+    width = std::max(width, static_cast<std::size_t>(columns));
+  }
+  return width;
+}
+
+// ---- RecordText --------------------------------------------------------------------------------------------------
+
+TEST(RecordText, TellsWhatWasRecorded) {
+  const std::string text = FlatText(Recorded());
+  EXPECT_THAT(text, AllOf(HasSubstr("file run.csv"), HasSubstr("pendulum_logger version 1.0, Arduino Uno, run 42"),
+                          HasSubstr("4 at 200 Hz, 0.02 s; none lost"), HasSubstr("460 to 540 of 0 to 1023 counts"),
+                          HasSubstr("ended after the time asked for")));
+  EXPECT_THAT(text, Not(AnyOf(HasSubstr("Warnings"), HasSubstr("deg"), HasSubstr("mean of"))));
+}
+
+// -135 + 0.25 * 460 = -20 and -135 + 0.25 * 540 = 0.
+TEST(RecordText, TellsAnglesWhereTheyAreKnown) {
+  RecordedRun recorded = Recorded();
+  recorded.description.calibration = QuarterDegree();
+  EXPECT_THAT(FlatText(recorded), HasSubstr("460 to 540 of 0 to 1023 counts, -20 to 0 deg"));
+}
+
+TEST(RecordText, LooksOnlyAtWhatBelongsToTheRecording) {
+  RecordedRun recorded = Recorded({500, 510, 520, 1023, 0});
+  recorded.run.KeepFirst(3);
+  EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("3 at 200 Hz, 0.015 s"), HasSubstr("500 to 520 of")));
+  EXPECT_THAT(CodesOf(recorded), IsEmpty());
+}
+
+TEST(RecordText, TellsOversampling) {
+  RecordedRun recorded(SamplingRate{1250, 16});
+  wire::Data frame{};
+  frame.count = 1;
+  frame.sums[0] = 16 * 500 + 4;
+  ASSERT_TRUE(recorded.run.Take(frame, 0));
+  recorded.description.logger = Uno();
+  EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("1 at 100 Hz, 0.01 s, each the mean of 16 conversions"),
+                                        HasSubstr("500.25 to 500.25 of")));
+}
+
+// A second of the logger that is 1.0005 true ones: its clock is slow, by 500 ppm.
+TEST(RecordText, TellsTheClockAsItGoes) {
+  RecordedRun recorded = Recorded();
+  EXPECT_THAT(FlatText(recorded), HasSubstr("± 0.3 %"));
+  recorded.description.clock = {.scale = 1.0005, .std_dev = 12e-6, .is_measured = true};
+  EXPECT_THAT(FlatText(recorded), HasSubstr("500 ± 12 ppm slow"));
+  recorded.description.clock.scale = 0.997;  // 1 / 0.997 = 1.003009
+  EXPECT_THAT(FlatText(recorded), HasSubstr("3009 ± 12 ppm fast"));
+}
+
+TEST(RecordText, TellsWhyItEnded) {
+  RecordedRun recorded = Recorded();
+  recorded.end = RunEnd::kRest;
+  EXPECT_THAT(FlatText(recorded), HasSubstr("ended at rest"));
+  recorded.end = RunEnd::kStopped;
+  EXPECT_THAT(FlatText(recorded), HasSubstr("ended by hand"));
+  recorded.end = RunEnd::kLost;
+  recorded.why_lost = "the logger has fallen silent";
+  EXPECT_THAT(FlatText(recorded), HasSubstr("ended too early: the logger has fallen silent"));
+}
+
+TEST(RecordText, FitsATerminal) {
+  RecordedRun recorded = Recorded({0, 1023, 1023, 500});
+  recorded.description.calibration = QuarterDegree();
+  recorded.description.losses = {123456, 100000, 20000, 3456, 7, false};
+  recorded.description.clock.is_implausible = true;
+  recorded.part_trouble = "cannot write run.csv.part: No space left on device";
+  const std::string text = RecordText(recorded, "run.csv");
+  EXPECT_THAT(Flat(text), HasSubstr("[[Warnings]]"));
+  EXPECT_LE(Width(text), 80);
+}
+
+TEST(RecordText, SteersNoTerminal) {
+  RecordedRun recorded = Recorded();
+  recorded.part_trouble = "cannot write \x1b[2Jrun.csv.part";
+  EXPECT_THAT(RecordText(recorded, "\x1b[2Jrun.csv"), Not(HasSubstr("\x1b")));
+}
+
+// ---- RecordWarnings ----------------------------------------------------------------------------------------------
+
+TEST(RecordWarnings, AreNoneOfAGoodRecording) {
+  EXPECT_THAT(RecordWarnings(Recorded()), IsEmpty());
+  EXPECT_TRUE(IsComplete(Recorded()));
+}
+
+TEST(RecordWarnings, TellWhereSamplesWereLost) {
+  RecordedRun recorded = Recorded();
+  recorded.description.losses.samples = 30;
+  recorded.description.losses.dropped = 20;
+  recorded.description.losses.on_line = 10;
+  recorded.description.losses.late = 5;
+  const auto warnings = RecordWarnings(recorded);
+  ASSERT_THAT(warnings, SizeIs(1));
+  EXPECT_EQ(warnings[0].code, "lost_samples");
+  EXPECT_THAT(warnings[0].message, AllOf(HasSubstr("30 samples"), HasSubstr("20 found no room"), HasSubstr("--rate_hz"),
+                                         HasSubstr("10 were damaged"), HasSubstr("5 conversions")));
+  EXPECT_THAT(FlatText(recorded), HasSubstr("; 30 lost"));
+  EXPECT_FALSE(IsComplete(recorded));
+}
+
+TEST(RecordWarnings, TellAnEndThatDidNotCome) {
+  RecordedRun recorded = Recorded();
+  recorded.description.losses.is_end_known = false;
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
+  EXPECT_FALSE(IsComplete(recorded));
+}
+
+TEST(RecordWarnings, TellALoggerThatIsGone) {
+  RecordedRun recorded = Recorded();
+  recorded.end = RunEnd::kLost;
+  recorded.why_lost = "/dev/ttyACM0 is gone";
+  recorded.description.losses.is_end_known = false;
+  const auto warnings = RecordWarnings(recorded);
+  ASSERT_THAT(warnings, SizeIs(1));  // the end did not come either, of course
+  EXPECT_EQ(warnings[0].code, "cut_short");
+  EXPECT_THAT(warnings[0].message, HasSubstr("/dev/ttyACM0 is gone"));
+  EXPECT_FALSE(IsComplete(recorded));
+}
+
+TEST(RecordWarnings, CountSaturatedReadings) {
+  const auto warnings = RecordWarnings(Recorded({0, 1, 1022, 1023, 1023}));
+  ASSERT_THAT(warnings, SizeIs(1));
+  EXPECT_EQ(warnings[0].code, "saturated");
+  EXPECT_THAT(warnings[0].message, HasSubstr("3 readings"));
+  EXPECT_TRUE(IsComplete(Recorded({0, 1, 1022, 1023, 1023})));
+}
+
+TEST(RecordWarnings, TellEverythingElse) {
+  RecordedRun recorded = Recorded();
+  recorded.description.losses.contradicting_frames = 2;
+  recorded.description.clock.is_implausible = true;
+  recorded.part_trouble = "cannot write run.csv.part: No space left on device";
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("contradicting_frames", "clock_implausible", "no_part"));
+  EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("2 frames"), HasSubstr("No space left on device")));
+}
+
+// ---- Loggers and ports -------------------------------------------------------------------------------------------
+
+TEST(LoggerText, TellsWhatTheLoggerIs) {
+  const std::string text = Flat(LoggerText(Uno(), "/dev/ttyACM0"));
+  EXPECT_THAT(text, AllOf(HasSubstr("port /dev/ttyACM0"), HasSubstr("version 1.0"), HasSubstr("board Arduino Uno"),
+                          HasSubstr("reference supply voltage"), HasSubstr("41 so far"), HasSubstr("no calibration")));
+}
+
+TEST(LoggerText, TellsTheCalibration) {
+  wire::Info info = Uno();
+  info.has_calibration = 1;
+  info.calibration = {-135.1F, 0.2637F, 0, 0, 0};
+  EXPECT_THAT(Flat(LoggerText(info, "p")), HasSubstr("angle = -135.1 + 0.2637 x deg, x in counts"));
+  info.calibration = {135, -0.25F, 0.04F, -6e-5F, 1.25e-7F};
+  EXPECT_THAT(Flat(LoggerText(info, "p")), HasSubstr("angle = 135 - 0.25 x deg, x in counts, with its covariance"));
+}
+
+TEST(PortsText, ListsOneALine) {
+  const std::vector<PortName> ports = {{"/dev/ttyACM0", "Arduino \x1b[2JUno", true}, {"/dev/ttyUSB1", "", false}};
+  const std::string text = PortsText(ports);
+  std::istringstream lines(text);
+  std::string first, second;
+  std::getline(lines, first);
+  std::getline(lines, second);
+  EXPECT_THAT(first,
+              AllOf(HasSubstr("/dev/ttyACM0"), HasSubstr("Arduino"), HasSubstr("board's"), Not(HasSubstr("\x1b"))));
+  EXPECT_EQ(second, "/dev/ttyUSB1");
+  EXPECT_TRUE(lines.get() == EOF);
+}
+
+TEST(PortsText, TellsThatThereIsNone) { EXPECT_THAT(PortsText({}), HasSubstr("no USB serial port")); }
+
+}  // namespace
+}  // namespace pendulum::record_text_test
