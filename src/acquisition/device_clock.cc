@@ -72,8 +72,8 @@ std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t str
 /// The points without those that lie late by more than three standard deviations of the others, by their median.
 std::vector<Arrival> Punctual(const std::vector<Arrival>& points, const Line& line) {
   constexpr double kDeviations = 3, kStdDevOfMedian = 1.4826;
-  std::vector<double> sizes;
-  for (const Arrival& point : points) sizes.push_back(std::abs(line.Lateness(point)));
+  std::vector<double> sizes(points.size());
+  std::ranges::transform(points, sizes.begin(), [&](const Arrival& point) { return std::abs(line.Lateness(point)); });
   const double most = kDeviations * kStdDevOfMedian * Median(sizes);
   std::vector<Arrival> punctual;
   std::ranges::copy_if(points, std::back_inserter(punctual),

@@ -24,7 +24,8 @@ bool IsFileOrAbsent(const std::string& path) {
 
 }  // namespace
 
-PartFile::PartFile(const std::string& path) : path_(!path.empty() && path != "-" && IsFileOrAbsent(path) ? path + ".part" : "") {}
+PartFile::PartFile(const std::string& path)
+    : path_(!path.empty() && path != "-" && IsFileOrAbsent(path) ? path + ".part" : "") {}
 
 PartFile::~PartFile() {
   if (descriptor_ >= 0) ::close(descriptor_);

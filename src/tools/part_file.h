@@ -15,7 +15,9 @@ class PartFile {
   /// `path`: where the whole recording will be; empty for nowhere.
   explicit PartFile(const std::string& path);
   PartFile(const PartFile&) = delete;
+  PartFile(PartFile&&) = delete;
   PartFile& operator=(const PartFile&) = delete;
+  PartFile& operator=(PartFile&&) = delete;
   ~PartFile();
 
   /// Whether the part of an earlier recording is there.
