@@ -182,16 +182,16 @@ inline uint16_t Crc16(const uint8_t* bytes, size_t count) {
   return crc;
 }
 
-// Writes fields one after the other.
+// Writes fields one after the other, as far as there is room.
 class Writer {
  public:
-  explicit Writer(uint8_t* bytes) : bytes_(bytes) {}
+  Writer(uint8_t* bytes, size_t room) : bytes_(bytes), room_(room) {}
 
   template <class T>
   void operator()(const T& field) {
     uint32_t bits = 0;
     Bits(field, bits);
-    for (size_t i = 0; i < sizeof(T); ++i) bytes_[size_++] = static_cast<uint8_t>(bits >> (8 * i));
+    for (size_t i = 0; i < sizeof(T) && size_ < room_; ++i) bytes_[size_++] = static_cast<uint8_t>(bits >> (8 * i));
   }
 
   void Fail() {}
@@ -205,7 +205,7 @@ class Writer {
   static void Bits(float field, uint32_t& bits) { memcpy(&bits, &field, sizeof bits); }
 
   uint8_t* bytes_;
-  size_t size_ = 0;
+  size_t room_, size_ = 0;
 };
 
 // Reads them again; fields beyond the end are left as they are.
@@ -271,7 +271,7 @@ template <class Message>
 size_t MakeFrame(Message message, uint8_t* frame) {
   uint8_t payload[kMostPayload + 2];
   payload[0] = Message::kKind;
-  Writer writer(payload + 1);
+  Writer writer(payload + 1, kMostPayload - 1);
   message.Fields(writer);
   const size_t size = 1 + writer.size();
   const uint16_t crc = Crc16(payload, size);

@@ -30,6 +30,9 @@
 #else
 #error "pendulum_logger needs an ATmega328P (Uno, Nano) or an ATmega2560 (Mega): Timer 1 and the converter of these."
 #endif
+#if LOGGER_CHANNEL < 0 || LOGGER_CHANNEL > 7
+#error "LOGGER_CHANNEL must be 0 to 7."
+#endif
 #if F_CPU != 16000000UL
 #error "pendulum_logger needs a clock of 16 MHz: ticks and the time of a conversion are counted from it."
 #endif
@@ -51,6 +54,9 @@ static const uint8_t kRoom = 64;  // samples, a power of 2
 static Sample ring[kRoom];
 static volatile uint8_t ring_head = 0, ring_tail = 0;  // the next to be written and to be read
 
+// Between the two and the samples they stand for the compiler must not move anything.
+static inline void Fence() { __asm__ __volatile__("" ::: "memory"); }
+
 static uint16_t period = 10000;  // ticks between conversions: 200 Hz
 static uint8_t oversample = 1;
 static bool is_running = false;
@@ -65,7 +71,8 @@ static volatile uint32_t dropped, late;
 
 static const uint8_t kConverterOn = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
 
-// How far Timer 1 is before next_tick: more than a period once it has passed it.
+// How far Timer 1 is before next_tick: more than a period once it has passed it. It turns in 32 ms, so interrupts must
+// not be held back for longer, or times would be off by that; nothing here holds them for a thousandth of it.
 static inline uint16_t TicksAhead() { return static_cast<uint16_t>(static_cast<uint16_t>(next_tick) - TCNT1); }
 
 // The compare match has started a conversion already; this is told when, and says when the next one is due.
@@ -110,6 +117,7 @@ ISR(ADC_vect) {
   }
   ring[ring_head].tick = sample_tick;
   ring[ring_head].sum = sum;
+  Fence();
   ring_head = next;
 }
 
@@ -181,7 +189,7 @@ static bool ReadCalibration(StraightLine& line) {
 
 static void WriteCalibration(StraightLine& line) {
   uint8_t bytes[kCalibrationBytes + 2];
-  Writer writer(bytes);
+  Writer writer(bytes, sizeof bytes);
   line.Fields(writer);
   writer(Crc16(bytes, kCalibrationBytes));
   eeprom_update_block(bytes, kCalibrationAddress, sizeof bytes);
@@ -242,9 +250,11 @@ static bool Continues(uint32_t tick) {
 static bool PassOn() {
   const uint8_t tail = ring_tail;
   const bool is_waiting = tail != ring_head;
+  Fence();
   if (is_waiting && Continues(ring[tail].tick)) {
     if (block.count == 0) block.tick = ring[tail].tick;
     block.sums[block.count++] = ring[tail].sum;
+    Fence();
     ring_tail = (tail + 1) & (kRoom - 1);
     return true;
   }
@@ -296,8 +306,8 @@ static AckStatus TakeRate(const SetRate& rate) {
 static AckStatus TakeCalibration(StoreCalibration& store) {
   if (is_running) return kRunning;
   const StraightLine& line = store.calibration;
-  const bool is_number = line.offset_deg - line.offset_deg == 0 && line.deg_per_count - line.deg_per_count == 0;
-  if (!is_number || line.deg_per_count == 0) return kOutOfRange;
+  const float all = line.offset_deg + line.deg_per_count + line.offset_variance + line.covariance + line.slope_variance;
+  if (all - all != 0 || line.deg_per_count == 0) return kOutOfRange;  // one of them is no number
   WriteCalibration(store.calibration);
   return kDone;
 }
@@ -319,10 +329,14 @@ static void EndText() { Serial.write(static_cast<uint8_t>(0)); }
 
 // The answer to ? in the Serial Monitor.
 static void TellReading() {
-  if (is_running) return;  // it would cut a frame in two
+  if (is_running) return;  // a conversion by hand would end those of the timer
   const uint16_t counts = ConvertOnce();
   StraightLine line;
-  Serial.print(F("pendulum_logger 1.0: A"));
+  Serial.print(F("pendulum_logger "));
+  Serial.print(kFirmware >> 8);
+  Serial.print('.');
+  Serial.print(kFirmware & 0xFF);
+  Serial.print(F(": A"));
   Serial.print(LOGGER_CHANNEL);
   Serial.print(F(" = "));
   Serial.print(counts);

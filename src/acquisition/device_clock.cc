@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,9 +14,11 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kLeastArrivals = 120, kArrivalsInStretch = 15;
-constexpr std::size_t kLeastStretches = 8, kMostStretches = 32;
-constexpr double kLeastSeconds = 5;
+constexpr std::size_t kLeastArrivals = 150, kArrivalsInStretch = 15;
+constexpr std::size_t kLeastStretches = 10, kMostStretches = 32;
+constexpr std::size_t kLeastPoints = 6;
+constexpr double kLeastSeconds = 10;
+constexpr double kMostMemory = 0.9;
 
 /// host = offset + scale device, about the middle of the points.
 struct Line {
@@ -45,9 +46,16 @@ Line LeastSquares(const std::vector<Arrival>& points) {
   }
   line.offset = host;
   line.scale = sxy / sxx;
-  double rss = 0;
-  for (const Arrival& point : points) rss += std::pow(line.Lateness(point), 2);
-  line.std_dev = std::sqrt(rss / (count - 2) / sxx);
+  double rss = 0, products = 0, before = 0;
+  for (const Arrival& point : points) {
+    const double lateness = line.Lateness(point);
+    rss += lateness * lateness;
+    products += lateness * before;
+    before = lateness;
+  }
+  // Neighbours that are late together are one, and Student's t of so few is wider than a normal distribution.
+  const double memory = rss > 0 ? std::clamp(products / rss, 0.0, kMostMemory) : 0;
+  line.std_dev = std::sqrt(rss / (count - 4) / sxx * (1 + memory) / (1 - memory));
   return line;
 }
 
@@ -89,9 +97,9 @@ std::optional<Line> FitLine(std::span<const Arrival> arrivals) {
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = line.scale;
     std::vector<Arrival> points = Earliest(arrivals, stretches, line.scale);
-    if (points.size() < kLeastStretches / 2) return std::nullopt;
+    if (points.size() < kLeastPoints) return std::nullopt;
     line = LeastSquares(points);
-    if (std::vector<Arrival> punctual = Punctual(points, line); punctual.size() >= kLeastStretches / 2) {
+    if (std::vector<Arrival> punctual = Punctual(points, line); punctual.size() >= kLeastPoints) {
       line = LeastSquares(punctual);
     }
     if (std::abs(line.scale - before) < kSettled) break;
@@ -101,14 +109,16 @@ std::optional<Line> FitLine(std::span<const Arrival> arrivals) {
 
 }  // namespace
 
-DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double host_std_dev) {
+DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, double host_std_dev) {
   DeviceClock clock;
   if (arrivals.size() < kLeastArrivals) return clock;
   if (arrivals.back().device_time - arrivals.front().device_time < kLeastSeconds) return clock;
   const std::optional<Line> line = FitLine(arrivals);
   if (!line) return clock;
-  clock.is_implausible = !(std::abs(line->scale - 1) <= kMostDeviation);
-  const double std_dev = std::hypot(line->std_dev, host_std_dev * line->scale);
+  const double seconds = arrivals.back().device_time - arrivals.front().device_time;
+  const double rounding = polling / std::sqrt(6.0) / seconds;  // of both ends, each uniform
+  const double std_dev = std::hypot(line->std_dev, rounding, host_std_dev * line->scale);
+  clock.is_implausible = !(std::abs(line->scale - 1) - 3 * std_dev <= kMostDeviation);
   if (clock.is_implausible || !(std_dev < kResonatorStdDev)) return clock;
   clock.scale = line->scale;
   clock.std_dev = std_dev;
@@ -117,7 +127,7 @@ DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double host_std_de
 }
 
 double HostClockStdDev() {
-  constexpr double kQuartz = 30e-6, kDisciplined = 1e-6;
+  constexpr double kQuartz = 30e-6, kDisciplined = 10e-6;
   timex state{};
   const int status = ::adjtimex(&state);
   return status == -1 || status == TIME_ERROR ? kQuartz : kDisciplined;

@@ -2,7 +2,6 @@
 #include "pendulum/acquisition/logger.h"
 
 #include <chrono>
-#include <cstring>
 
 #include "pendulum/base/format.h"
 
@@ -108,6 +107,10 @@ Result<wire::Ack> Logger::Ask(const std::vector<std::uint8_t>& command, std::uin
       if (!*received) break;
       const auto* ack = std::get_if<wire::Ack>(&(*received)->message);
       if (ack != nullptr && ack->command == kind) return *ack;
+      if (kind == wire::kStart && std::holds_alternative<wire::Data>((*received)->message)) {
+        pending_.push_front(**received);  // it has started, and only its answer was lost
+        return wire::Ack{kind, wire::kDone};
+      }
     }
   }
   if (stop_) return Interrupted();

@@ -15,6 +15,11 @@ std::span<const std::uint16_t> Sums(const wire::Data& frame) { return {frame.sum
 /// Beyond half its range a 32-bit count of ticks cannot be told from one that went back: 18 minutes.
 constexpr std::uint32_t kLongestGap = std::uint32_t{1} << 31;
 
+/// By how much a logger may be ahead of the host from one frame to the next, s: the host may have been busy before.
+constexpr double kMostAhead = 30;
+
+constexpr std::uint16_t kSaturated = 65535;  // of the counts in a frame
+
 }  // namespace
 
 std::optional<SamplingRate> NearestRate(double hz, int oversample) {
@@ -24,11 +29,12 @@ std::optional<SamplingRate> NearestRate(double hz, int oversample) {
   return SamplingRate{static_cast<std::uint16_t>(period), static_cast<std::uint8_t>(oversample)};
 }
 
-bool ReceivedRun::Fits(const wire::Data& frame) const {
+bool ReceivedRun::Fits(const wire::Data& frame, double host_time) const {
   if (frame.count == 0 || std::ranges::any_of(Sums(frame), [&](int sum) { return sum > LargestSum(); })) return false;
   if (ticks_.empty()) return true;
   const std::uint32_t step = frame.tick - last_tick_;
-  return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0;
+  const double ahead = static_cast<double>(step) / wire::kTickHz - (host_time - arrivals_.back().host_time);
+  return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0 && ahead < kMostAhead;
 }
 
 /// What is missing before a frame that fits: of the beginning whole frames, later as many samples as its tick says.
@@ -41,13 +47,15 @@ void ReceivedRun::NoteGap(const wire::Data& frame) {
     missing = std::max<std::int64_t>(0, (step + rate_.Ticks() / 2) / rate_.Ticks() - 1);
   }
   if (missing == 0) return;
-  const std::int64_t dropped = std::clamp<std::int64_t>(frame.dropped - found_dropped_, 0, missing);
+  const bool is_all_dropped = frames == 0 && frame.dropped == kSaturated;
+  const std::int64_t unfound = is_all_dropped ? missing : frame.dropped - found_dropped_;
+  const std::int64_t dropped = std::clamp<std::int64_t>(unfound, 0, missing);
   gaps_.push_back({size(), missing, frames == 0 ? 0 : missing - dropped});
   found_dropped_ += dropped;
 }
 
 bool ReceivedRun::Take(const wire::Data& frame, double host_time) {
-  if (!Fits(frame)) {
+  if (!Fits(frame, host_time)) {
     ++contradicting_;
     return false;
   }
@@ -82,6 +90,21 @@ void ReceivedRun::KeepFirst(std::size_t samples) {
   is_trimmed_ = true;
 }
 
+void ReceivedRun::KeepUntil(double time) {
+  const double step = 1 / rate_.Hz();
+  std::size_t samples = size();
+  while (samples > 0 && Time(samples - 1) > time - 0.5 * step) --samples;
+  if (samples == size()) return;
+  const auto across = std::ranges::find(gaps_, samples, &Gap::sample);
+  Gap gap = across == gaps_.end() ? Gap{samples, 0, 0} : *across;
+  KeepFirst(samples);
+  const double due = std::ceil(time / step - 0.5) - (samples == 0 ? 0 : std::round(Time(samples - 1) / step) + 1);
+  gap.missing = std::min(gap.missing, static_cast<std::int64_t>(due));
+  gap.on_line = std::min(gap.on_line, gap.missing);
+  if (gap.missing > 0) gaps_.push_back(gap);
+}
+
+/// Losses behind the last sample show in no gap: of those the End tells.
 RunLosses ReceivedRun::Losses() const {
   RunLosses losses{0, 0, late_, 0, contradicting_, end_.has_value()};
   for (const Gap& gap : gaps_) {
@@ -90,13 +113,13 @@ RunLosses ReceivedRun::Losses() const {
   }
   losses.dropped = static_cast<std::uint32_t>(std::min<std::int64_t>(dropped_, losses.samples - losses.on_line));
   if (is_trimmed_) return losses;
-  losses.dropped = dropped_;
-  if (end_) {
-    losses.dropped = end_->dropped;
-    losses.late = end_->late;
-    losses.on_line = std::max<std::int64_t>(0, std::int64_t{end_->samples} - static_cast<std::int64_t>(size()));
-  }
-  losses.samples = std::max(losses.samples, losses.dropped + losses.on_line);
+  losses.dropped = end_ ? end_->dropped : dropped_;
+  losses.samples += std::max<std::int64_t>(0, losses.dropped - found_dropped_);
+  if (!end_) return losses;
+  losses.late = end_->late;
+  const std::int64_t on_line = std::int64_t{end_->samples} - static_cast<std::int64_t>(size());
+  losses.samples += std::max<std::int64_t>(0, on_line - losses.on_line);
+  losses.on_line = std::max<std::int64_t>(0, on_line);
   return losses;
 }
 

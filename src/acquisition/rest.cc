@@ -14,8 +14,11 @@ constexpr double kLeastTurn = 5;  // counts: what goes back less than that is no
 
 }  // namespace
 
-double RestDetector::Block::VarianceOfMean() const {
-  return count < 2 ? 0 : std::max(0.0, squares / count - Mean() * Mean()) / (count - 1);
+/// No potentiometer is noisier than the largest: what varies more is motion.
+double RestDetector::Block::Variance() const {
+  constexpr double kLargest = 16;  // counts²
+  if (count < 2) return kLargest;
+  return std::clamp((squares - count * Mean() * Mean()) / (count - 1), 0.0, kLargest);
 }
 
 void RestDetector::Take(double time, double counts) {
@@ -24,16 +27,15 @@ void RestDetector::Take(double time, double counts) {
   if (open_.count == 0) open_.time = time;
   open_.sum += counts;
   open_.squares += counts * counts;
+  open_.low = open_.count == 0 ? counts : std::min(open_.low, counts);
+  open_.high = open_.count == 0 ? counts : std::max(open_.high, counts);
   ++open_.count;
 }
 
 void RestDetector::Close() {
   FollowTurns(open_.Mean());
   blocks_.push_back(open_);
-  while (open_.time - blocks_.front().time > kRestSeconds) {
-    is_window_full_ = true;
-    blocks_.pop_front();
-  }
+  while (open_.time - blocks_.front().time > kRestSeconds) blocks_.pop_front();
   open_ = Block();
 }
 
@@ -55,17 +57,26 @@ void RestDetector::FollowTurns(double mean) {
 }
 
 bool RestDetector::IsAtRest() const {
-  if (!HasSwung() || !is_window_full_) return false;
-  double low = blocks_.front().Mean(), high = low, sum = 0, variance = 0;
+  if (!HasSwung() || blocks_.empty()) return false;
+  if (blocks_.back().time - blocks_.front().time < kRestSeconds - 2 * kLongestBlockSeconds) return false;
+  const Block& first = blocks_.front();
+  double low = first.Mean(), high = low, lowest = first.low, highest = first.high, sum = 0, variance = 0, samples = 0;
   for (const Block& block : blocks_) {
     low = std::min(low, block.Mean());
     high = std::max(high, block.Mean());
+    lowest = std::min(lowest, block.low);
+    highest = std::max(highest, block.high);
     sum += block.Mean();
-    variance += block.VarianceOfMean();
+    variance += block.Variance();
+    samples += block.count;
   }
   const auto count = static_cast<double>(blocks_.size());
-  constexpr double kRounding = 1.5, kDeviations = 5;  // counts; of the mean of a block, between the largest and least
-  if (high - low > kRounding + kDeviations * std::sqrt(variance / count)) return false;
+  // Counts: between the means of blocks rounding leaves so much, between single readings twice that; noise adds some
+  // standard deviations, of a mean or of a reading.
+  constexpr double kRounding = 1.5, kDeviationsOfMeans = 5, kDeviations = 8;
+  const double noise = std::sqrt(variance / count);
+  if (high - low > kRounding + kDeviationsOfMeans * noise / std::sqrt(samples / count)) return false;
+  if (highest - lowest > 2 * kRounding + kDeviations * noise) return false;
   const double rest = sum / count;
   for (std::size_t i = 1; i < turns_.size(); ++i) {
     if ((turns_[i] - rest) * (turns_[i - 1] - rest) >= 0) return false;

@@ -45,8 +45,12 @@ std::string RunHead(const RunDescription& description, const SamplingRate& rate)
   head += Line("resolution: " + NumberText(1.0 / rate.oversample));
   head += Line("range: 0," + std::to_string(kFullScaleCounts));
   head += ClockLines(description.clock);
-  if (!description.losses.is_end_known) head += Line("the logger's end of the run did not arrive");
-  head += Line("lost_samples: " + std::to_string(description.losses.samples));
+  if (const auto& losses = description.losses) {
+    if (!losses->is_end_known) head += Line("the logger's end of the run did not arrive");
+    head += Line("lost_samples: " + std::to_string(losses->samples));
+  } else {
+    head += Line("part of a run: what was lost of it is not known");
+  }
   if (description.calibration) {
     head += Line("calibration: " + JsonText(CalibrationJson(*description.calibration)));
   }

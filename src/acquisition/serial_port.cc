@@ -115,7 +115,7 @@ Result<void> SerialPort::Configure(unsigned baud) {
   settings.c_lflag = 0;
   settings.c_cflag = CS8 | CREAD | CLOCAL | BOTHER;  // without HUPCL: closing it does not reset the board
   settings.c_ispeed = settings.c_ospeed = baud;
-  settings.c_cc[VMIN] = 0;
+  settings.c_cc[VMIN] = 1;  // so that nothing read means that the port is gone
   settings.c_cc[VTIME] = 0;
   if (::ioctl(descriptor_, TCSETS2, &settings) != 0) {
     return Error(StatusCode::kDataLoss,

@@ -2,9 +2,9 @@
 #include "tools/live_trace.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/staged_file.h"
@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kColumns = 66, kLabel = 9;  // of the picture, and of the numbers beside it
+constexpr std::size_t kMostColumns = 66, kLabel = 9;  // of the picture, and of the numbers beside it
 constexpr std::size_t kPictureRows = LiveTrace::kRows - 1;
 
 std::string RightAligned(const std::string& text, std::size_t width) {
@@ -41,15 +41,18 @@ void LiveTrace::Take(double time, double value, double counts, double full_scale
   full_scale_ = full_scale;
 }
 
-std::vector<std::string> LiveTrace::Plot() const {
+std::vector<std::string> LiveTrace::Plot(std::size_t width) const {
+  constexpr std::size_t kBesides = kLabel + 3;  // label, blank, frame, and one to spare
   std::vector<std::string> rows(kRows);
-  if (points_.empty()) return rows;
-  std::array<Span, kColumns> spans;
+  if (points_.empty() || width < kBesides + 2) return rows;
+  const std::size_t columns = std::min(kMostColumns, width - kBesides);
+  std::vector<Span> spans(columns);
+  const auto last = static_cast<double>(columns - 1);
   double low = points_.front().value, high = low;
   const double begin = points_.back().time - kSeconds;
   for (const Point& point : points_) {
-    const double at = (point.time - begin) / kSeconds * (kColumns - 1);
-    Span& span = spans.at(static_cast<std::size_t>(std::clamp(at, 0.0, kColumns - 1.0)));
+    const double at = (point.time - begin) / kSeconds * last;
+    Span& span = spans[static_cast<std::size_t>(std::clamp(at, 0.0, last))];
     span.low = std::min(span.low, point.value);
     span.high = std::max(span.high, point.value);
     low = std::min(low, point.value);
@@ -66,8 +69,8 @@ std::vector<std::string> LiveTrace::Plot() const {
       rows[row] += span.low <= level + step / 2 && span.high > level - step / 2 ? '*' : ' ';
     }
   }
-  rows.back() = RightAligned(unit_, kLabel) + " |" + std::string(kColumns - 2 * kLabel, ' ') +
-                RightAligned("last " + NumberText(kSeconds) + " s", 2 * kLabel);
+  const std::string scale = "last " + NumberText(kSeconds) + " s";
+  rows.back() = RightAligned(unit_, kLabel) + " |" + (scale.size() <= columns ? RightAligned(scale, columns) : "");
   return rows;
 }
 
@@ -91,9 +94,9 @@ std::string LiveTrace::StatusLine(std::string_view remark) const {
          " " + unit_ + "  " + Level() + "  " + std::string(remark);
 }
 
-void RedrawnLines::Draw(const std::vector<std::string>& lines) {
+void RedrawnLines::Draw(const std::vector<std::string>& lines, std::size_t width) {
   std::string text = drawn_ > 0 ? "\x1b[" + std::to_string(drawn_) + "A" : "";
-  for (const std::string& line : lines) text += line + "\x1b[K\n";
+  for (const std::string& line : lines) text += line.substr(0, width - 1) + "\x1b[K\n";
   drawn_ = lines.size();
   WriteAll(descriptor_, text);
 }

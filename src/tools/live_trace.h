@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +20,8 @@ class LiveTrace {
   /// The next sample: time [s], value [unit], and its reading [counts, of `full_scale`].
   void Take(double time, double value, double counts, double full_scale);
 
-  /// The plot, kRows lines of 79 columns at most; blank where nothing came.
-  std::vector<std::string> Plot() const;
+  /// The plot, kRows lines of less than `width` columns and 77 at most; blank where nothing came.
+  std::vector<std::string> Plot(std::size_t width = 80) const;
 
   /// "12.4 s  200 Hz  -12.3 deg  [     *          ]  none lost": time, samples a second of the last ones, value, where
   /// the reading is between 0 and full scale (LOW and HIGH at the ends), and what the caller has to say.
@@ -48,7 +47,8 @@ class RedrawnLines {
  public:
   explicit RedrawnLines(int descriptor) : descriptor_(descriptor) {}
 
-  void Draw(const std::vector<std::string>& lines);
+  /// What a line has beyond `width` columns, of one byte each, is left out, for it would be drawn on the next line.
+  void Draw(const std::vector<std::string>& lines, std::size_t width);
 
  private:
   int descriptor_;

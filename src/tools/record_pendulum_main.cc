@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -68,10 +69,10 @@ std::atomic<bool> stop = false;
 
 void Stop(int) { stop = true; }
 
-/// Also when the terminal is closed: what was recorded must be written.
-void StopOnSignals() {
+/// Also when the terminal is closed: what was recorded must be written. SIG_DFL ends the process again.
+void OnSignals(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = Stop;
+  action.sa_handler = handler;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
 }
 
@@ -175,16 +176,28 @@ Result<void> Keep(const RecordPendulumOptions& options, const RecordedRun& recor
   return {};
 }
 
+/// A fit that needs angles is not found impossible after the swing.
+Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
+                             const pendulum_logger::Info& info) {
+  const auto needs_angle = [](const std::string& model) { return model != "linear"; };
+  if (!options.fit || given || info.has_calibration != 0) return {};
+  if (std::ranges::none_of(options.fit->models, needs_angle)) return {};
+  return Error(StatusCode::kDataLoss,
+               "--fit needs angles, and the logger has no calibration; store one (--store_calibration), give one "
+               "(--calibration), or fit with --model linear");
+}
+
 void WarnOfSlowLine(const RecordPendulumOptions& options) {
   const double capacity = LineCapacityHz(options.rate, options.baud);
   if (options.rate.Hz() <= capacity) return;
   Say(kRecordToolName, "warning: " + NumberText(options.rate.Hz(), 4) + " samples a second are more than the " +
-                           NumberText(capacity, 3) + " that a line of " + std::to_string(options.baud) +
+                           NumberText(capacity, 4) + " that a line of " + std::to_string(options.baud) +
                            " baud carries; the rest will be lost");
 }
 
 Result<int> Record(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
                    const pendulum_logger::Info& info, Logger& logger) {
+  if (auto checked = CheckCalibrated(options, given, info); !checked) return tl::unexpected(checked.error());
   WarnOfSlowLine(options);
   if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
   const auto recorded = RecordRun(options, info, given ? given : StoredCalibration(info), stop, logger);
@@ -192,6 +205,7 @@ Result<int> Record(const RecordPendulumOptions& options, const std::optional<Cal
   if (auto kept = Keep(options, *recorded); !kept) return tl::unexpected(kept.error());
   const int code = CodeOf(options, *recorded);
   if (!options.fit) return code;
+  OnSignals(SIG_DFL);
   return Fit(*options.fit).map([code](int fit) { return fit != 0 ? fit : code; });
 }
 
@@ -202,7 +216,8 @@ Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_log
   const auto recorded = RecordRun(options, info, std::nullopt, stop, logger);
   if (!recorded) return tl::unexpected(recorded.error());
   if (const int code = CodeOf(options, *recorded); code != 0) {
-    Say(kRecordToolName, "the second's readings are not complete; once more");
+    Say(kRecordToolName,
+        stop ? "interrupted before the second was over" : "samples of the second are missing; try again");
     return code;
   }
   double sum = 0;
@@ -242,7 +257,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (auto checked = CheckOut(*options); !checked) return tl::unexpected(checked.error());
   const auto port = ChoosePort(options->port);
   if (!port) return tl::unexpected(port.error());
-  StopOnSignals();
+  OnSignals(Stop);
   auto opened = SerialPort::Open(*port, options->baud);
   if (!opened) return tl::unexpected(opened.error());
   Logger logger(*std::move(opened), stop);

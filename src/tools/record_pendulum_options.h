@@ -46,7 +46,7 @@ struct RecordPendulumOptions {
   unsigned baud = 115200;
   std::optional<FitPendulumOptions> fit;  ///< Of the recording, once it is there; none: no fit.
 
-  /// The files to be written besides the recording, and to be read, with their flags.
+  /// The files to be written and to be read, with their flags.
   std::vector<NamedFile> Outputs() const;
   std::vector<NamedFile> Inputs() const;
 };

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <ctime>
-#include <utility>
 #include <variant>
 #include <vector>
 
+#include <poll.h>
 #include <unistd.h>
 
 #include "pendulum/acquisition/rest.h"
@@ -35,10 +35,18 @@ std::string Now() {
   return text;
 }
 
+/// Whether the other end of the pipe that is standard output has been closed.
+bool IsReaderGone() {
+  pollfd output{STDOUT_FILENO, 0, 0};
+  return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
 /// Whether so many seconds have gone by since the last time it was asked and they had.
 class Every {
  public:
   explicit Every(double seconds) : seconds_(seconds) {}
+
+  void Restart(double now) { last_ = now; }
 
   bool IsDue(double now) {
     if (now - last_ < seconds_) return false;
@@ -68,7 +76,7 @@ class RunInProgress {
 
  private:
   Result<void> Begin();
-  std::size_t SamplesAskedFor() const;
+  void Trim();
   void Go();
   void Take(const TimedMessage& received);
   void TakeData(const wire::Data& data, double host_time);
@@ -90,7 +98,7 @@ class RunInProgress {
   RestDetector rest_;
   std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not
   Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
-  std::size_t shown_ = 0;  // samples that are in the trace and in the part
+  std::size_t kept_ = 0;  // samples that are in the part
   double last_data_ = 0, stop_asked_ = 0;
   bool is_stopping_ = false, is_over_ = false;
 };
@@ -98,9 +106,10 @@ class RunInProgress {
 Result<void> RunInProgress::Record() {
   if (auto begun = Begin(); !begun) return begun;
   Go();
-  recorded_.run.KeepFirst(SamplesAskedFor());
+  Trim();
   recorded_.description.losses = recorded_.run.Losses();
-  recorded_.description.clock = FitDeviceClock(recorded_.run.arrivals(), HostClockStdDev());
+  recorded_.damaged_frames = logger_.RejectedFrames();
+  recorded_.description.clock = FitDeviceClock(recorded_.run.arrivals(), kUsbPolling, HostClockStdDev());
   if (recorded_.run.size() > 0) return {};
   part_.Remove();
   if (recorded_.end == RunEnd::kStopped) {
@@ -109,15 +118,13 @@ Result<void> RunInProgress::Record() {
   return Error(StatusCode::kDataLoss, "nothing was recorded: " + recorded_.why_lost);
 }
 
-/// Those that came after the end that was asked for do not belong to the recording.
-std::size_t RunInProgress::SamplesAskedFor() const {
-  const ReceivedRun& run = recorded_.run;
-  if (recorded_.end == RunEnd::kRest) return rest_samples_;
-  std::size_t samples = run.size();
-  if (!options_.seconds) return samples;
-  const double end = *options_.seconds - 0.5 / run.rate().Hz();
-  while (samples > 0 && run.Time(samples - 1) > end) --samples;
-  return samples;
+/// What came after the end that was asked for does not belong to the recording.
+void RunInProgress::Trim() {
+  if (recorded_.end == RunEnd::kRest) {
+    recorded_.run.KeepFirst(rest_samples_);
+  } else if (options_.seconds) {
+    recorded_.run.KeepUntil(*options_.seconds);
+  }
 }
 
 /// Nothing on the disk is touched before the logger has started.
@@ -174,6 +181,7 @@ void RunInProgress::TakeData(const wire::Data& data, double host_time) {
 
 void RunInProgress::Lose(const std::string& why) {
   is_over_ = true;
+  if (is_stopping_) return;  // the recording had ended before
   recorded_.end = RunEnd::kLost;
   recorded_.why_lost = why;
 }
@@ -190,10 +198,12 @@ void RunInProgress::StopWhenDue(double now) {
     const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
     const bool is_at_rest = options_.until_rest && rest_samples_ > 0;
     if (now - last_data_ > LongestSilence()) return Lose("the logger has fallen silent");
+    if (IsStandardOutput(options_.out) && IsReaderGone()) return Lose("nobody reads standard output any more");
     if (!stop_ && !is_long_enough && !is_at_rest) return;
     recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;
     is_stopping_ = true;
     stop_asked_ = now;
+    repeat_.Restart(now);
   } else if (now - stop_asked_ > kStopSeconds) {
     is_over_ = true;  // without its End: the description says so
     return;
@@ -207,23 +217,28 @@ void RunInProgress::StopWhenDue(double now) {
 void RunInProgress::KeepPart(double now) {
   if (!recorded_.part_trouble.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
   std::string rows;
-  for (; shown_ < recorded_.run.size(); ++shown_) rows += RunRow(recorded_.run, shown_);
+  for (; kept_ < recorded_.run.size(); ++kept_) rows += RunRow(recorded_.run, kept_);
   auto kept = part_.Append(rows);
   if (kept) kept = part_.Synchronise();
-  if (!kept) recorded_.part_trouble = kept.error().message;
+  if (kept) return;
+  recorded_.part_trouble = kept.error().message;
+  if (!is_live_) Say(kRecordToolName, "warning: " + recorded_.part_trouble + "; the recording goes on in memory only");
 }
 
 std::string RunInProgress::LossText() const {
   const RunLosses losses = recorded_.run.Losses();
-  return losses.samples == 0 ? "none lost" : std::to_string(losses.samples) + " LOST";
+  const std::string lost = losses.samples == 0 ? "none lost" : std::to_string(losses.samples) + " LOST";
+  return recorded_.part_trouble.empty() ? lost : lost + ", NOT ON DISK";
 }
 
 void RunInProgress::Show(double now) {
   const ReceivedRun& run = recorded_.run;
   if (is_live_ && (is_over_ || draw_.IsDue(now))) {
-    std::vector<std::string> lines = trace_.Plot();
+    const TerminalSize size = SizeOfTerminal(STDERR_FILENO);
+    std::vector<std::string> lines = trace_.Plot(size.columns);
+    if (size.rows <= lines.size() + 1) lines.clear();
     lines.push_back(trace_.StatusLine(LossText()));
-    lines_.Draw(lines);
+    lines_.Draw(lines, size.columns);
   } else if (!is_live_ && say_.IsDue(now) && run.size() > 0) {
     Say(kRecordToolName,
         NumberText(run.Time(run.size() - 1), 4) + " s, " + std::to_string(run.size()) + " samples, " + LossText());

@@ -30,6 +30,7 @@ struct RecordedRun {
   ReceivedRun run;  ///< No more of it than was asked for.
   RunEnd end = RunEnd::kStopped;
   std::string why_lost;      ///< A sentence, of kLost.
+  int damaged_frames = 0;    ///< Pieces of what came that were no frame.
   std::string part_trouble;  ///< Why there is no copy on the disk; empty where there is one.
 
   /// The file's text.

@@ -36,7 +36,7 @@ std::string Row(const std::string& name, const std::string& text) {
 }
 
 std::string SamplesText(const RecordedRun& recorded) {
-  const RunLosses& losses = recorded.description.losses;
+  const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   const double seconds = static_cast<double>(recorded.run.size()) / recorded.run.rate().Hz();
   std::string text = std::to_string(recorded.run.size()) + " at " + NumberText(recorded.run.rate().Hz(), kTextDigits) +
                      " Hz, " + NumberText(seconds, kTextDigits) + " s";
@@ -60,8 +60,8 @@ std::string ReadingsText(const RecordedRun& recorded) {
 std::string ClockText(const DeviceClock& clock) {
   constexpr double kMillion = 1e6;
   if (!clock.is_measured) {
-    return "not measured against this computer's (that takes a minute): ± " + NumberText(100 * clock.std_dev, 2) +
-           " %, as any resonator";
+    return "not measured against this computer's (that takes ten seconds and more): ± " +
+           NumberText(100 * clock.std_dev, 2) + " %, as any resonator";
   }
   const double ppm = (1 / clock.scale - 1) * kMillion;
   return std::to_string(std::lround(std::abs(ppm))) + " ± " + NumberText(clock.std_dev * kMillion, 2) + " ppm " +
@@ -83,13 +83,14 @@ std::string Counted(std::int64_t count, const std::string& one, const std::strin
   return std::to_string(count) + " " + one + (count == 1 ? " " + is : "s " + are);
 }
 
-std::string LossWarning(const RunLosses& losses) {
+std::string LossWarning(const RunLosses& losses, int damaged_frames) {
   std::string text = Counted(losses.samples, "sample", "is", "are") + " missing";
   if (losses.dropped > 0) {
     text += "; " + std::to_string(losses.dropped) +
             " found no room in the logger, for the line is too slow for this rate: lower --rate_hz";
   }
   if (losses.on_line > 0) text += "; " + std::to_string(losses.on_line) + " were damaged or lost on the line";
+  if (damaged_frames > 0) text += " (" + Counted(damaged_frames, "damaged frame", "came", "came") + ")";
   if (losses.late > 0) text += "; " + std::to_string(losses.late) + " conversions could not begin in time";
   return text + ". Their rows are not in the file, and all others have the right times";
 }
@@ -97,16 +98,16 @@ std::string LossWarning(const RunLosses& losses) {
 }  // namespace
 
 bool IsComplete(const RecordedRun& recorded) {
-  const RunLosses& losses = recorded.description.losses;
+  const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   return recorded.end != RunEnd::kLost && losses.samples == 0 && losses.is_end_known;
 }
 
 std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
-  const RunLosses& losses = recorded.description.losses;
+  const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   std::vector<Warning> warnings;
   if (recorded.end == RunEnd::kLost)
     warnings.push_back({"cut_short", recorded.why_lost + "; what came before is kept"});
-  if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses)});
+  if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses, recorded.damaged_frames)});
   if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
     warnings.push_back({"no_end",
                         "the logger did not say how many samples it had sent, so that the last ones may be "

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace pendulum {
@@ -20,6 +21,12 @@ std::string_view Environment(const char* name) {
 bool CanRedraw(int descriptor) {
   const std::string_view terminal = Environment("TERM");
   return ::isatty(descriptor) == 1 && !terminal.empty() && terminal != "dumb";
+}
+
+TerminalSize SizeOfTerminal(int descriptor) {
+  winsize size{};
+  if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {};
+  return {size.ws_col, size.ws_row};
 }
 
 bool WantsColour(int descriptor) { return CanRedraw(descriptor) && Environment("NO_COLOR").empty(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace pendulum {
 
 /// Whether text written to a file descriptor may be coloured: it is a terminal that knows how (TERM is there and not
@@ -9,5 +11,12 @@ bool WantsColour(int descriptor);
 
 /// Whether lines drawn on a file descriptor can be drawn over: it is a terminal that knows how.
 bool CanRedraw(int descriptor);
+
+struct TerminalSize {
+  std::size_t columns = 80, rows = 24;
+};
+
+/// Of the terminal as it is now; the usual one where it does not say.
+TerminalSize SizeOfTerminal(int descriptor);
 
 }  // namespace pendulum

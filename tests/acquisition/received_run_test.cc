@@ -134,7 +134,7 @@ TEST(ReceivedRun, GoesOnWhereTheTicksBeginAgain) {
 TEST(ReceivedRun, CountsHoursOfTicks) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 77;
-  for (int i = 0; i <= 7; ++i, tick += 2000000000U) ASSERT_TRUE(run.Take(Frame(i, tick, {i}), i));
+  for (int i = 0; i <= 7; ++i, tick += 2000000000U) ASSERT_TRUE(run.Take(Frame(i, tick, {i}), 1000 * i));
   EXPECT_EQ(run.Time(7), 7000);
   EXPECT_EQ(run.Losses().samples, 7 * 199999);
 }
@@ -382,7 +382,7 @@ TEST(ReceivedRun, TakesNoGapOfEighteenMinutes) {
   ReceivedRun run({250, 1});
   run.Take(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 2147483750U, {2}));  // a multiple of 250, beyond 2^31
-  EXPECT_TRUE(run.Take(Frame(1, 2147483500U, {2}), 1));
+  EXPECT_TRUE(run.Take(Frame(1, 2147483500U, {2}), 1074));
   EXPECT_EQ(run.Time(1), 1073.74175);
 }
 

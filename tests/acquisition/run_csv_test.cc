@@ -32,7 +32,7 @@ RunDescription Description() {
   description.logger.reference = 1;
   description.run = 17;
   description.begun = "2024-05-06T07:08:09Z";
-  description.losses.is_end_known = true;
+  description.losses.emplace().is_end_known = true;
   return description;
 }
 
@@ -88,8 +88,8 @@ TEST(RunHead, TellsLoggerRunAndSensor) {
 
 TEST(RunHead, TellsWhatIsOutOfTheOrdinary) {
   RunDescription description = Description();
-  description.losses.is_end_known = false;
-  description.losses.samples = 3;
+  description.losses->is_end_known = false;
+  description.losses->samples = 3;
   description.clock.is_measured = true;
   EXPECT_THAT(RunHead(description, {1250, 16}),
               AllOf(HasSubstr("# each row is the mean of 16 conversions\n"), HasSubstr("# sample_rate_hz: 100\n"),
@@ -166,7 +166,7 @@ TEST(RunCsv, CarriesTheCalibration) {
 // whoever reads them so is warned.
 TEST(RunCsv, TellsLostSamples) {
   RunDescription description = Description();
-  description.losses.samples = 4;
+  description.losses->samples = 4;
   EXPECT_TRUE(ReadBack(description).warnings.empty());
   std::string text = RunHead(description, kRate);
   text.replace(text.find("time_s,"), 7, "");
@@ -199,7 +199,7 @@ TEST(RunCsv, KeepsEveryTickOfALongRun) {
   ReceivedRun run({251, 1});
   wire::Data frame{};
   frame.count = 1;
-  for (int i = 0; i < 20; ++i, frame.tick += 251 * 4000000U) ASSERT_TRUE(run.Take(frame, 0));
+  for (int i = 0; i < 20; ++i, frame.tick += 251 * 4000000U) ASSERT_TRUE(run.Take(frame, 502 * i));
   const Recording recording = ReadBack(Description(), run);
   ASSERT_EQ(recording.size(), 20);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(recording.time[i], 502.0 * i);

@@ -100,6 +100,18 @@ TEST(JudgeHalfSwings, SeesTimeSlipByAFortiethOfAPeriodAndMore) {
   EXPECT_EQ(verdicts[HalfSwingAt(table, 5.25)], Verdict::kFree);
 }
 
+/// The last turning point comes 60 ms early. Where it stands out, time has slipped; where it hardly does, as before a
+/// rest, its time is a guess.
+TEST(JudgeHalfSwings, BelievesTheTimeOfALastTurningPointThatStandsOut) {
+  for (const bool stands_out : {true, false}) {
+    const Recording recording = Sampled(Decaying);
+    TurnTable table = TabulateTurns(recording);
+    table.turns.back().time -= 0.06;
+    table.threshold = table.amplitude.back() * (stands_out ? 0.9 : 1.1);
+    EXPECT_EQ(JudgeHalfSwings(table).back(), stands_out ? Verdict::kIrregular : Verdict::kFree);
+  }
+}
+
 TEST(JudgeHalfSwings, TellsAHoldFromATurningPoint) {
   const Recording recording = Sampled([](double t) { return t < 1 ? 0.301 : Decaying(t - 1); });
   const std::vector<Verdict> verdicts = JudgeHalfSwings(TabulateTurns(recording));

@@ -2,10 +2,9 @@
 #include "tests/firmware/simulated_board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -31,7 +30,7 @@ constexpr std::uint64_t kCyclesPerTick = 8;          // of Timer 1
 constexpr int kBitsPerByte = 10;                     // start, eight, stop
 constexpr std::uint64_t kSampleDelay = 2 * 128 + 3;  // cycles from the match to the end of sampling (data sheet 24.4)
 
-/// avr_reset turns the stack pointer to the end of the memory; the core's start-up code does as well.
+/// Instead of waiting for real time to pass.
 void NoSleep(avr_t*, avr_cycle_count_t) {}
 
 /// Nothing of what it says of its own limits is of interest: they are made up for here.

@@ -28,7 +28,9 @@ void RequireSame(const OtherProtocol& other) { Require(other.version != pendulum
 
 void Check(std::span<const std::uint8_t> bytes) {
   MessageDecoder decoder;
-  ReceivedRun run(SamplingRate{10000, 1});
+  const std::uint8_t choice = bytes.empty() ? 0 : bytes.back();
+  ReceivedRun run(SamplingRate{static_cast<std::uint16_t>(choice % 2 == 0 ? 10000 : 250),
+                               static_cast<std::uint8_t>(1 + choice % 64)});
   RestDetector rest;
   for (const LoggerMessage& message : decoder.Take(bytes)) {
     std::visit([](const auto& each) { RequireSame(each); }, message);
@@ -42,6 +44,10 @@ void Check(std::span<const std::uint8_t> bytes) {
     rest.IsAtRest();
   }
   Require(run.Losses().samples >= 0 && run.Losses().on_line >= 0);
+  run.KeepUntil(1e-3 * choice);
+  Require(run.size() == 0 || run.Time(run.size() - 1) < 1e-3 * choice);
+  run.KeepFirst(choice % 16);
+  Require(run.size() <= choice % 16u && run.Losses().samples >= 0);
 }
 
 /// The input with frames made right: a piece between two zeros gets the code and the CRC it would need, so that what

@@ -51,6 +51,16 @@ std::vector<bool> MarkedColumns(const std::vector<std::string>& rows) {
 
 // ---- Plot --------------------------------------------------------------------------------------------------------
 
+TEST(LiveTrace, FitsANarrowTerminalAndShowsTheNewest) {
+  const LiveTrace trace = TraceOf([](double t) { return t < 9 ? 0.0 : 50.0; }, 0, 10);
+  for (const std::size_t width : {20U, 40U, 60U, 80U, 200U}) {
+    const auto rows = trace.Plot(width);
+    for (const std::string& row : rows) EXPECT_LT(row.size(), width) << row;
+    EXPECT_EQ(rows.front().back(), '*') << width;  // the last second is at the top right
+  }
+  EXPECT_THAT(trace.Plot(10), Each(""));
+}
+
 TEST(LiveTrace, IsBlankBeforeTheFirstSample) {
   const LiveTrace trace("deg");
   EXPECT_THAT(trace.Plot(), AllOf(SizeIs(LiveTrace::kRows), Each("")));
@@ -167,8 +177,8 @@ TEST(RedrawnLines, DrawsOverWhatItDrewBefore) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   RedrawnLines lines(ends[1]);
-  lines.Draw({"one", "two"});
-  lines.Draw({"three", "four"});
+  lines.Draw({"one", "two"}, 80);
+  lines.Draw({"three", "four"}, 80);
   ::close(ends[1]);
   std::array<char, 256> text{};
   const ssize_t count = ::read(ends[0], text.data(), text.size());

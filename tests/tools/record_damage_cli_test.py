@@ -315,12 +315,8 @@ class BadLoggers(Lab):
 
     def test_a_start_whose_answer_is_lost(self):
         with LostAnswer() as logger:
-            out, _ = self.record(logger, "--seconds", 2, code=1)
-        rows = self.read()[2]
-        self.assertEqual(len(rows), 400)
-        begin = next(i for i in range(0, 400, BLOCK) if self.expected(logger, logger.taken[i:][:400]) == rows)
-        self.assertEqual(self.read()[1]["lost_samples"], str(begin))
-        self.assertIn(f"; {begin} lost", out)
+            self.record(logger, "--seconds", 2)
+        self.check_rows(logger, logger.taken[:400])  # the first samples say that it has started
 
     def test_commands_that_are_lost_are_repeated(self):
         with LostCommands(speed=2) as logger:

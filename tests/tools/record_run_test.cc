@@ -124,7 +124,7 @@ TEST(RecordRun, DescribesTheRun) {
   const RecordedRun recorded = laboratory.Recorded();
   EXPECT_EQ(recorded.description.run, 42);  // the logger had been started 41 times
   EXPECT_THAT(recorded.description.begun, MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
-  EXPECT_TRUE(recorded.description.losses.is_end_known);
+  EXPECT_TRUE(recorded.description.losses->is_end_known);
   EXPECT_FALSE(recorded.description.clock.is_measured);  // much too short
   EXPECT_FALSE(recorded.description.calibration);
 }
@@ -227,8 +227,8 @@ TEST(RecordRun, TellsLostFramesAndKeepsTheTimes) {
   const RecordedRun recorded = laboratory.Recorded();
   EXPECT_EQ(recorded.end, RunEnd::kSeconds);
   EXPECT_EQ(recorded.run.size(), 200 - 16);
-  EXPECT_EQ(recorded.description.losses.samples, 16);
-  EXPECT_EQ(recorded.description.losses.on_line, 16);
+  EXPECT_EQ(recorded.description.losses->samples, 16);
+  EXPECT_EQ(recorded.description.losses->on_line, 16);
   EXPECT_FALSE(IsComplete(recorded));
   EXPECT_THAT(CodesOf(recorded), ElementsAre("lost_samples"));
   const Recording recording = ReadBack(recorded.Csv());
@@ -245,7 +245,7 @@ TEST(RecordRun, WaitsNotForeverForTheEnd) {
   const RecordedRun recorded = laboratory.Recorded();
   EXPECT_EQ(recorded.end, RunEnd::kSeconds);
   EXPECT_EQ(recorded.run.size(), 100);
-  EXPECT_FALSE(recorded.description.losses.is_end_known);
+  EXPECT_FALSE(recorded.description.losses->is_end_known);
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
   EXPECT_THAT(recorded.Csv(), HasSubstr("end of the run did not arrive"));
 }

@@ -45,7 +45,7 @@ RecordedRun Recorded(const std::vector<int>& counts = {500, 540, 460, 500}) {
   recorded.end = RunEnd::kSeconds;
   recorded.description.logger = Uno();
   recorded.description.run = 42;
-  recorded.description.losses.is_end_known = true;
+  recorded.description.losses.emplace().is_end_known = true;
   return recorded;
 }
 
@@ -166,10 +166,10 @@ TEST(RecordWarnings, AreNoneOfAGoodRecording) {
 
 TEST(RecordWarnings, TellWhereSamplesWereLost) {
   RecordedRun recorded = Recorded();
-  recorded.description.losses.samples = 30;
-  recorded.description.losses.dropped = 20;
-  recorded.description.losses.on_line = 10;
-  recorded.description.losses.late = 5;
+  recorded.description.losses->samples = 30;
+  recorded.description.losses->dropped = 20;
+  recorded.description.losses->on_line = 10;
+  recorded.description.losses->late = 5;
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_EQ(warnings[0].code, "lost_samples");
@@ -181,7 +181,7 @@ TEST(RecordWarnings, TellWhereSamplesWereLost) {
 
 TEST(RecordWarnings, TellAnEndThatDidNotCome) {
   RecordedRun recorded = Recorded();
-  recorded.description.losses.is_end_known = false;
+  recorded.description.losses->is_end_known = false;
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
   EXPECT_FALSE(IsComplete(recorded));
 }
@@ -190,7 +190,7 @@ TEST(RecordWarnings, TellALoggerThatIsGone) {
   RecordedRun recorded = Recorded();
   recorded.end = RunEnd::kLost;
   recorded.why_lost = "/dev/ttyACM0 is gone";
-  recorded.description.losses.is_end_known = false;
+  recorded.description.losses->is_end_known = false;
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));  // the end did not come either, of course
   EXPECT_EQ(warnings[0].code, "cut_short");
@@ -208,7 +208,7 @@ TEST(RecordWarnings, CountSaturatedReadings) {
 
 TEST(RecordWarnings, TellEverythingElse) {
   RecordedRun recorded = Recorded();
-  recorded.description.losses.contradicting_frames = 2;
+  recorded.description.losses->contradicting_frames = 2;
   recorded.description.clock.is_implausible = true;
   recorded.part_trouble = "cannot write run.csv.part: No space left on device";
   EXPECT_THAT(CodesOf(recorded), ElementsAre("contradicting_frames", "clock_implausible", "no_part"));

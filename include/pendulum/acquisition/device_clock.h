@@ -25,14 +25,18 @@ struct DeviceClock {
 inline constexpr double kMostDeviation = 0.02;
 
 /// The device's clock against the host's, MODEL.md eqs. (65) and (66): a frame is never early and mostly a little late,
-/// so of each stretch of the run (8 to 32 of them) only the earliest arrival counts, and a line goes through these;
-/// stretches in which everything was late are left out. `host_std_dev` is the host's own relative error. Not measured
-/// where there are fewer than 120 arrivals or 5 s, or the result would be no better than what is known of any
-/// resonator. `arrivals`: N, both times rising.
-DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double host_std_dev);
+/// so of each stretch of the run (10 to 32 of them) only the earliest arrival counts, and a line goes through these;
+/// stretches in which everything was late are left out. Not measured where there are fewer than 150 arrivals or 10 s,
+/// or the result would be no better than what is known of any resonator. arrivals      N, both times rising. polling s,
+/// the grid that the host's times may be rounded up to; a coarser one may pass unseen. host_std_dev  Of the rate of the
+/// host's own clock, relative.
+DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, double host_std_dev);
 
-/// Relative standard deviation of the rate of this computer's monotonic clock: 1e-6 where the system says that it is
-/// kept in step with a time server, else 30e-6, that of a quartz.
+/// How often a host asks a USB device of full speed, such as an Arduino, s.
+inline constexpr double kUsbPolling = 1e-3;
+
+/// Relative standard deviation of the rate of this computer's monotonic clock: 10e-6 where the system says that it is
+/// kept in step with a time server, which slews it, else 30e-6, that of a quartz.
 double HostClockStdDev();
 
 }  // namespace pendulum

@@ -30,7 +30,7 @@ std::optional<SamplingRate> NearestRate(double hz, int oversample);
 
 /// What is missing in a run.
 struct RunLosses {
-  std::int64_t samples = 0;      ///< All that are missing: by time stamps, or by the logger's own count where larger.
+  std::int64_t samples = 0;      ///< All that are missing: by time stamps, and behind the last one by the End.
   std::uint32_t dropped = 0;     ///< Of them, in the logger: the line was too slow.
   std::uint32_t late = 0;        ///< Conversions that could not begin in time.
   std::int64_t on_line = 0;      ///< Of them, on the way: by the numbers of the frames, or by what the logger sent.
@@ -45,13 +45,17 @@ class ReceivedRun {
   explicit ReceivedRun(const SamplingRate& rate) : rate_(rate) {}
 
   /// Takes a frame that was complete at that time of the host [s]; false, and nothing is taken, where it contradicts
-  /// the run: not later than the samples before, off the grid of conversions, or more than the converter can give.
+  /// the run: not later than the samples before, much later than the host's time allows, off the grid of conversions,
+  /// or more than the converter can give.
   bool Take(const pendulum_logger::Data& frame, double host_time);
 
   void TakeEnd(const pendulum_logger::End& end) { end_ = end; }
 
-  /// Forgets what came behind the first so many samples, and what was lost behind them.
+  /// Forgets the samples behind the first so many, and what was lost behind them. Nothing is taken after that.
   void KeepFirst(std::size_t samples);
+
+  /// The same for the samples from that time on [s on the logger's clock].
+  void KeepUntil(double time);
 
   std::size_t size() const { return ticks_.size(); }
 
@@ -78,7 +82,7 @@ class ReceivedRun {
     std::int64_t missing, on_line;
   };
 
-  bool Fits(const pendulum_logger::Data& frame) const;
+  bool Fits(const pendulum_logger::Data& frame, double host_time) const;
   void NoteGap(const pendulum_logger::Data& frame);
   int LargestSum() const { return kFullScaleCounts * rate_.oversample; }
 

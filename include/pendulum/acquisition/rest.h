@@ -26,10 +26,11 @@ class RestDetector {
   struct Block {
     double time = 0;
     double sum = 0, squares = 0;
+    double low = 0, high = 0;  // counts
     int count = 0;
 
     double Mean() const { return sum / count; }
-    double VarianceOfMean() const;
+    double Variance() const;  // of one sample, as noise makes it
   };
 
   static constexpr std::size_t kTurns = 4;  // the last ones are kept
@@ -39,7 +40,6 @@ class RestDetector {
 
   Block open_;
   std::deque<Block> blocks_;  // of the last kRestSeconds
-  bool is_window_full_ = false;
   std::deque<double> turns_;  // readings at the last turning points
   double extreme_ = 0;        // since the last turning point
   int direction_ = 0;         // of the motion since then

@@ -21,7 +21,7 @@ struct RunDescription {
   std::string begun;                       ///< Date and time of the start, UTC.
   std::optional<Calibration> calibration;  ///< Of counts; none: the file holds counts alone.
   DeviceClock clock;
-  RunLosses losses;
+  std::optional<RunLosses> losses;  ///< None: the run goes on.
 };
 
 /// The lines above the rows: comments, the metadata that ReadRecording knows, and the names of the columns time_s and
