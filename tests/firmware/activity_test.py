@@ -95,7 +95,7 @@ def check_fit(folder, build):
 
 def check_files(folder, is_update):
     """What was recorded is what lies in datasets/, row by row: the simulated board gives the same each time."""
-    for made, kept in (("run_1.csv", "recorded.csv"), ("calibration.csv", "recorded_calibration.csv"),
+    for made, kept in (("run_1.csv", "recorded.csv"), ("run_2.csv", "recorded_2.csv"), ("calibration.csv", "recorded_calibration.csv"),
                        ("rig.json", "recorded_rig.json"), ("truth.json", "recorded_truth.json")):
         if is_update:
             shutil.copyfile(folder / made, TOP / "datasets" / kept)
