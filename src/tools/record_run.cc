@@ -98,8 +98,9 @@ class RunInProgress {
   RestDetector rest_;
   std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not
   Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
-  std::size_t kept_ = 0;  // samples that are in the part
-  double last_data_ = 0, stop_asked_ = 0;
+  std::size_t kept_ = 0;                // samples that are in the part
+  double silence_ = 0, last_look_ = 0;  // s: how long nothing came while we looked; when we looked last
+  double stop_asked_ = 0;
   bool is_stopping_ = false, is_over_ = false;
 };
 
@@ -131,7 +132,7 @@ void RunInProgress::Trim() {
 Result<void> RunInProgress::Begin() {
   if (auto started = logger_.Start(); !started) return started;
   recorded_.description.begun = Now();
-  last_data_ = HostTime();
+  last_look_ = HostTime();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
   if (!opened) recorded_.part_trouble = opened.error().message;
@@ -142,6 +143,8 @@ void RunInProgress::Go() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = HostTime();
+    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // where we were suspended, the logger was not silent
+    last_look_ = now;
     if (!received) {
       Lose(received.error().message);
     } else if (*received) {
@@ -169,7 +172,7 @@ void RunInProgress::TakeData(const wire::Data& data, double host_time) {
   ReceivedRun& run = recorded_.run;
   const std::size_t first = run.size();
   if (!run.Take(data, host_time)) return;
-  last_data_ = host_time;
+  silence_ = 0;
   const auto& calibration = recorded_.description.calibration;
   for (std::size_t i = first; i < run.size(); ++i) {
     const double counts = run.Counts(i);
@@ -197,7 +200,7 @@ void RunInProgress::StopWhenDue(double now) {
     const ReceivedRun& run = recorded_.run;
     const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
     const bool is_at_rest = options_.until_rest && rest_samples_ > 0;
-    if (now - last_data_ > LongestSilence()) return Lose("the logger has fallen silent");
+    if (silence_ > LongestSilence()) return Lose("the logger has fallen silent");
     if (IsStandardOutput(options_.out) && IsReaderGone()) return Lose("nobody reads standard output any more");
     if (!stop_ && !is_long_enough && !is_at_rest) return;
     recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;

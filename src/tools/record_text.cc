@@ -64,8 +64,8 @@ std::string ClockText(const DeviceClock& clock) {
            NumberText(100 * clock.std_dev, 2) + " %, as any resonator";
   }
   const double ppm = (1 / clock.scale - 1) * kMillion;
-  return std::to_string(std::lround(std::abs(ppm))) + " ± " + NumberText(clock.std_dev * kMillion, 2) + " ppm " +
-         (ppm < 0 ? "slow" : "fast") + " by this computer's, to be counted in by # clock_scale";
+  return std::to_string(std::lround(std::abs(ppm))) + " ± " + std::to_string(std::lround(clock.std_dev * kMillion)) +
+         " ppm " + (ppm < 0 ? "slow" : "fast") + " by this computer's, to be counted in by # clock_scale";
 }
 
 std::string EndText(const RecordedRun& recorded) {

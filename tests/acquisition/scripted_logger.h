@@ -20,6 +20,7 @@
 #include <pendulum_logger/frame.h>
 #include <poll.h>
 #include <pty.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace pendulum {
@@ -87,6 +88,16 @@ class ScriptedLogger {
   }
 
  private:
+  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal.
+  void Unplug() {
+    constexpr int kMostWaits = 2000;
+    for (int waits = 0, unread = 1; unread > 0 && waits < kMostWaits; ++waits) {
+      if (::ioctl(terminal_, FIONREAD, &unread) != 0) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ::close(std::exchange(board_, -1));
+  }
+
   using Clock = std::chrono::steady_clock;
   static constexpr int kBlock = 8;  // samples in a frame
 
@@ -184,7 +195,7 @@ class ScriptedLogger {
     std::this_thread::sleep_for(std::chrono::milliseconds(150));  // the host has read what is on its way
     ++frame_;
     info_.is_running = script_.then == LoggerScript::Then::kSilence ? 1 : 0;
-    if (script_.then == LoggerScript::Then::kUnplugged) ::close(std::exchange(board_, -1));
+    if (script_.then == LoggerScript::Then::kUnplugged) Unplug();
     if (script_.then == LoggerScript::Then::kEnd) Send(EndOfRun());
     if (script_.then == LoggerScript::Then::kReset) Send(info_);
   }

@@ -22,7 +22,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 GUIDE = TOP / "datasets" / "ACTIVITY.md"
 BLOCK = re.compile(r"```console\n(.*?)```", re.DOTALL)
 # What depends on how well the computer that runs this keeps time.
-OF_THE_HOST = re.compile(r"± [\d.]+ ppm|chi-square [\d.]+|\bp [\d.]+")
+OF_THE_HOST = re.compile(r"clock  .*?(?:clock_scale|resonator)\n|chi-square [\d.]+|\bp [\d.]+", re.DOTALL)
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 TRUTH = {"inertia": 0.079, "viscous": 0.002, "coulomb": 0.005}
 LOGGER = ["--rig", TOP / "datasets/textbook_rig.json", "--model", "coulomb", "--set",

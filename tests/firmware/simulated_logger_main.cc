@@ -18,6 +18,7 @@
 #include <gflags/gflags.h>
 #include <nlohmann/json.hpp>
 #include <pty.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -129,9 +130,14 @@ class PseudoTerminal {
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
   ~PseudoTerminal() { Close(); }
 
+  /// What has no room now goes with the next bytes: a machine that was suspended reads much at once. What nobody reads
+  /// at all is lost.
   void Write(const std::vector<std::uint8_t>& bytes) {
-    // What nobody reads is lost as in a USB bridge.
-    if (!bytes.empty() && ::write(host_side_, bytes.data(), bytes.size()) < 0) return;
+    constexpr std::size_t kMostUnread = std::size_t{1} << 16;
+    unread_.insert(unread_.end(), bytes.begin(), bytes.end());
+    const ssize_t count = unread_.empty() ? 0 : ::write(host_side_, unread_.data(), unread_.size());
+    if (count > 0) unread_.erase(unread_.begin(), unread_.begin() + count);
+    if (unread_.size() > kMostUnread) unread_.clear();
   }
 
   std::vector<std::uint8_t> Read() {
@@ -141,8 +147,14 @@ class PseudoTerminal {
     return bytes;
   }
 
+  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal.
   void Close() {
+    constexpr int kMostWaits = 2000;
     if (host_side_ < 0) return;
+    for (int waits = 0, unread = 1; unread > 0 && waits < kMostWaits; ++waits) {
+      if (::ioctl(board_side_, FIONREAD, &unread) != 0) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     ::close(host_side_);
     ::close(board_side_);
     std::filesystem::remove(link_);
@@ -151,6 +163,7 @@ class PseudoTerminal {
 
  private:
   std::string link_;
+  std::vector<std::uint8_t> unread_;
   int host_side_ = -1, board_side_ = -1;
 };
 
