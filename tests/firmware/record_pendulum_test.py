@@ -50,6 +50,19 @@ class RecordPendulumTest(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         cls.folder = pathlib.Path(temporary.name)
         (cls.folder / "calibration.json").write_text(json.dumps(CALIBRATION))
+        cls.record_all()
+        if not cls.is_quiet():
+            print("the machine stood still for a while; everything once more")
+            cls.record_all()
+
+    @classmethod
+    def is_quiet(cls):
+        """Whether no recorder saw its computer stall: the clocks are then known ten times as well as this."""
+        errors = [metadata(cls.folder / f"{name}.csv").get("clock_scale_std_dev", "1") for name in BENCHES]
+        return max(map(float, errors)) < 300e-6
+
+    @classmethod
+    def record_all(cls):
         with concurrent.futures.ThreadPoolExecutor(8) as executor:
             jobs = {name: executor.submit(cls.record, name, *bench) for name, bench in BENCHES.items()}
             jobs["unplugged"] = executor.submit(cls.record_unplugged)
@@ -61,7 +74,7 @@ class RecordPendulumTest(unittest.TestCase):
     def record_with(cls, name, logger_flags, *flags, board="uno"):
         path = cls.folder / f"{name}.csv"
         with simulated_lab.Logger(BUILD, cls.folder, *SWING, *logger_flags, board=board, name=f"tty_{name}") as logger:
-            return tool("record_pendulum", "--port", logger.port, "--out", path, *flags)
+            return tool("record_pendulum", "--port", logger.port, "--out", path, "--overwrite", *flags)
 
     @classmethod
     def record(cls, name, board, rate, oversample, ppm, noise, nonlinearity):
