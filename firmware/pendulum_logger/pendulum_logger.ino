@@ -72,7 +72,7 @@ static volatile uint32_t dropped, late;
 static const uint8_t kConverterOn = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
 
 // How far Timer 1 is before next_tick: more than a period once it has passed it. It turns in 32 ms, so interrupts must
-// not be held back for longer, or times would be off by that; nothing here holds them for a thousandth of it.
+// not be held back for longer, or times would be off by that; nothing here holds them for long.
 static inline uint16_t TicksAhead() { return static_cast<uint16_t>(static_cast<uint16_t>(next_tick) - TCNT1); }
 
 // The compare match has started a conversion already; this is told when, and says when the next one is due.

@@ -2,6 +2,8 @@
 #include "pendulum/acquisition/logger.h"
 
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "pendulum/base/format.h"
 
@@ -22,6 +24,12 @@ bool AreEqual(const wire::StraightLine& a, const wire::StraightLine& b) {
          a.covariance == b.covariance && a.slope_variance == b.slope_variance;
 }
 
+/// A message as the answer to that command; none where it is none.
+std::optional<wire::Ack> AckOf(std::uint8_t kind, const TimedMessage& received) {
+  const auto* ack = std::get_if<wire::Ack>(&received.message);
+  return ack != nullptr && ack->command == kind ? std::optional(*ack) : std::nullopt;
+}
+
 std::string Refusal(std::uint8_t status) {
   if (status == wire::kOutOfRange) return "a value is out of its range";
   if (status == wire::kRunning) return "it is recording";
@@ -31,8 +39,6 @@ std::string Refusal(std::uint8_t status) {
 }  // namespace
 
 double HostTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-Result<void> Logger::Send(const std::vector<std::uint8_t>& command) { return port_.Write(command); }
 
 Result<std::optional<TimedMessage>> Logger::Receive(double seconds) {
   const double until = HostTime() + seconds;
@@ -62,27 +68,43 @@ tl::unexpected<Status> Logger::NoAnswer(double seconds) const {
                                           "board, with the baud rate that --baud says?");
 }
 
-Result<wire::Info> Logger::Connect(double patience_seconds) {
-  const double begin = HostTime();
-  while (!stop_ && HostTime() - begin < patience_seconds) {
-    if (auto sent = Send(CommandBytes(wire::Command<wire::kStop>{})); !sent) return tl::unexpected(sent.error());
-    if (auto sent = Send(CommandBytes(wire::Command<wire::kAskInfo>{})); !sent) return tl::unexpected(sent.error());
+/// Sends commands, and again where nothing comes that `pick` makes an answer of: an optional, of which none is none.
+template <typename Pick>
+auto Logger::Exchange(const std::vector<std::uint8_t>& commands, int tries, const Pick& pick) {
+  using Answer = Result<decltype(pick(TimedMessage()))>;
+  for (int i = 0; i < tries && !stop_; ++i) {
+    if (auto sent = port_.Write(commands); !sent) return Answer(tl::unexpected(sent.error()));
     const double repeat = HostTime() + kRepeatSeconds;
     while (HostTime() < repeat) {
       const auto received = Receive(repeat - HostTime());
-      if (!received) return tl::unexpected(received.error());
+      if (!received) return Answer(tl::unexpected(received.error()));
       if (!*received) break;
-      if (const auto* other = std::get_if<OtherProtocol>(&(*received)->message)) {
-        return Error(StatusCode::kDataLoss,
-                     "the logger on " + port_.path() + " speaks version " + std::to_string(other->version) +
-                         " of the protocol, and this record_pendulum version " + std::to_string(wire::kProtocol) +
-                         "; put the firmware/pendulum_logger of the same release on the board");
-      }
-      const auto* info = std::get_if<wire::Info>(&(*received)->message);
-      if (info != nullptr && info->is_running == 0) return Checked(*info);
+      if (auto answer = pick(**received)) return Answer(std::move(answer));
     }
   }
-  return NoAnswer(patience_seconds);
+  return Answer(std::nullopt);
+}
+
+Result<wire::Info> Logger::Connect(double patience_seconds) {
+  std::vector<std::uint8_t> commands = CommandBytes(wire::Command<wire::kStop>{});
+  const std::vector<std::uint8_t> ask = CommandBytes(wire::Command<wire::kAskInfo>{});
+  commands.insert(commands.end(), ask.begin(), ask.end());
+  const auto pick = [this](const TimedMessage& received) -> std::optional<Result<wire::Info>> {
+    if (const auto* other = std::get_if<OtherProtocol>(&received.message)) return Refused(*other);
+    const auto* info = std::get_if<wire::Info>(&received.message);
+    return info != nullptr && info->is_running == 0 ? std::optional(Checked(*info)) : std::nullopt;
+  };
+  const auto answer = Exchange(commands, static_cast<int>(std::ceil(patience_seconds / kRepeatSeconds)), pick);
+  if (!answer) return tl::unexpected(answer.error());
+  if (!*answer) return NoAnswer(patience_seconds);
+  return **answer;
+}
+
+tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
+  return Error(StatusCode::kDataLoss,
+               "the logger on " + port_.path() + " speaks version " + std::to_string(other.version) +
+                   " of the protocol, and this record_pendulum version " + std::to_string(wire::kProtocol) +
+                   "; put the firmware/pendulum_logger of the same release on the board");
 }
 
 /// What the host takes for granted, for it reads times and counts by it.
@@ -97,22 +119,8 @@ Result<wire::Info> Logger::Checked(const wire::Info& info) const {
   return info;
 }
 
-Result<wire::Ack> Logger::Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind) {
-  for (int tries = 0; tries < kTries && !stop_; ++tries) {
-    if (auto sent = Send(command); !sent) return tl::unexpected(sent.error());
-    const double repeat = HostTime() + kRepeatSeconds;
-    while (HostTime() < repeat) {
-      const auto received = Receive(repeat - HostTime());
-      if (!received) return tl::unexpected(received.error());
-      if (!*received) break;
-      const auto* ack = std::get_if<wire::Ack>(&(*received)->message);
-      if (ack != nullptr && ack->command == kind) return *ack;
-      if (kind == wire::kStart && std::holds_alternative<wire::Data>((*received)->message)) {
-        pending_.push_front(**received);  // it has started, and only its answer was lost
-        return wire::Ack{kind, wire::kDone};
-      }
-    }
-  }
+/// Of a logger that has said what it is.
+tl::unexpected<Status> Logger::NoAnswerTo(std::uint8_t kind) const {
   if (stop_) return Interrupted();
   return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " said what it is, and now does not answer '" +
                                           static_cast<char>(kind) + "' within " +
@@ -120,20 +128,21 @@ Result<wire::Ack> Logger::Ask(const std::vector<std::uint8_t>& command, std::uin
                                           " s; unplug the board, plug it in and try again");
 }
 
-Result<void> Logger::AskAndCheck(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what) {
-  const auto ack = Ask(command, kind);
+Result<void> Logger::Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what) {
+  const auto ack = Exchange(command, kTries, [kind](const TimedMessage& received) { return AckOf(kind, received); });
   if (!ack) return tl::unexpected(ack.error());
-  if (ack->status == wire::kDone) return {};
-  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + Refusal(ack->status));
+  if (!*ack) return NoAnswerTo(kind);
+  if ((*ack)->status == wire::kDone) return {};
+  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + Refusal((*ack)->status));
 }
 
 Result<void> Logger::SetRate(const SamplingRate& rate) {
-  return AskAndCheck(CommandBytes(wire::SetRate{rate.period, rate.oversample}), wire::kSetRate,
-                     NumberText(rate.Hz(), 6) + " Hz");
+  return Ask(CommandBytes(wire::SetRate{rate.period, rate.oversample}), wire::kSetRate,
+             NumberText(rate.Hz(), 6) + " Hz");
 }
 
 Result<wire::Info> Logger::StoreCalibration(const wire::StraightLine& line) {
-  auto stored = AskAndCheck(CommandBytes(wire::StoreCalibration{line}), wire::kStoreCalibration, "the calibration");
+  auto stored = Ask(CommandBytes(wire::StoreCalibration{line}), wire::kStoreCalibration, "the calibration");
   if (!stored) return tl::unexpected(stored.error());
   auto info = Connect();
   if (info && (info->has_calibration == 0 || !AreEqual(info->calibration, line))) {
@@ -145,16 +154,21 @@ Result<wire::Info> Logger::StoreCalibration(const wire::StraightLine& line) {
 
 Result<void> Logger::Start() {
   rejected_before_ = decoder_.rejected();
-  const auto ack = Ask(CommandBytes(wire::Command<wire::kStart>{}), wire::kStart);
-  if (!ack) {
-    RequestStop();  // it may have started, and only its answers were lost
-    return tl::unexpected(ack.error());
+  const auto pick = [this](const TimedMessage& received) -> std::optional<wire::Ack> {
+    if (!std::holds_alternative<wire::Data>(received.message)) return AckOf(wire::kStart, received);
+    pending_.push_front(received);  // it has started, and only its answer was lost
+    return wire::Ack{wire::kStart, wire::kDone};
+  };
+  const auto ack = Exchange(CommandBytes(wire::Command<wire::kStart>{}), kTries, pick);
+  if (!ack || !*ack) {
+    RequestStop();  // it may have started, and all that it said was lost
+    return ack ? NoAnswerTo(wire::kStart) : tl::unexpected(ack.error());
   }
   // Already running: it was the answer to the first of several tries that was lost.
-  if (ack->status == wire::kDone || ack->status == wire::kRunning) return {};
-  return Error(StatusCode::kDataLoss, "the logger refuses to start: " + Refusal(ack->status));
+  if ((*ack)->status == wire::kDone || (*ack)->status == wire::kRunning) return {};
+  return Error(StatusCode::kDataLoss, "the logger refuses to start: " + Refusal((*ack)->status));
 }
 
-Result<void> Logger::RequestStop() { return Send(CommandBytes(wire::Command<wire::kStop>{})); }
+Result<void> Logger::RequestStop() { return port_.Write(CommandBytes(wire::Command<wire::kStop>{})); }
 
 }  // namespace pendulum

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "pendulum/base/staged_file.h"
+#include "tools/output.h"
 
 namespace pendulum {
 namespace {
@@ -25,7 +26,7 @@ bool IsFileOrAbsent(const std::string& path) {
 }  // namespace
 
 PartFile::PartFile(const std::string& path)
-    : path_(!path.empty() && path != "-" && IsFileOrAbsent(path) ? path + ".part" : "") {}
+    : path_(!path.empty() && !IsStandardOutput(path) && IsFileOrAbsent(path) ? path + ".part" : "") {}
 
 PartFile::~PartFile() {
   if (descriptor_ >= 0) ::close(descriptor_);

@@ -63,7 +63,7 @@ constexpr const char* kUsage =
     "cannot be written, 75 the port is in use, 130 interrupted before the time asked for.\n"
     "\n";
 
-constexpr int kIncomplete = 1, kInterrupted = 130;
+constexpr int kIncomplete = 1;
 
 std::atomic<bool> stop = false;
 

@@ -96,7 +96,7 @@ class RunInProgress {
   RedrawnLines lines_;
   bool is_live_;
   RestDetector rest_;
-  std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not
+  std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not, or nobody asked
   Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
   std::size_t kept_ = 0;                // samples that are in the part
   double silence_ = 0, last_look_ = 0;  // s: how long nothing came while we looked; when we looked last
@@ -176,8 +176,10 @@ void RunInProgress::TakeData(const wire::Data& data, double host_time) {
   const auto& calibration = recorded_.description.calibration;
   for (std::size_t i = first; i < run.size(); ++i) {
     const double counts = run.Counts(i);
-    rest_.Take(run.Time(i), counts);
-    if (rest_samples_ == 0 && rest_.IsAtRest()) rest_samples_ = i + 1;
+    if (options_.until_rest && rest_samples_ == 0) {
+      rest_.Take(run.Time(i), counts);
+      if (rest_.IsAtRest()) rest_samples_ = i + 1;
+    }
     trace_.Take(run.Time(i), calibration ? calibration->Angle(counts) / kRadFromDeg : counts, counts, kFullScaleCounts);
   }
 }
@@ -199,7 +201,7 @@ void RunInProgress::StopWhenDue(double now) {
   if (!is_stopping_) {
     const ReceivedRun& run = recorded_.run;
     const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
-    const bool is_at_rest = options_.until_rest && rest_samples_ > 0;
+    const bool is_at_rest = rest_samples_ > 0;
     if (silence_ > LongestSilence()) return Lose("the logger has fallen silent");
     if (IsStandardOutput(options_.out) && IsReaderGone()) return Lose("nobody reads standard output any more");
     if (!stop_ && !is_long_enough && !is_at_rest) return;

@@ -33,8 +33,6 @@ namespace {
 std::atomic<bool> stop = false;
 std::atomic<int> stop_signal = 0;
 
-constexpr int kInterrupted = 130;
-
 /// The first asks for an orderly end; a second Ctrl-C does not wait for it, which a store survives.
 void Stop(int signal) {
   constexpr std::string_view kWords =

@@ -19,6 +19,9 @@ struct Tool {
   std::function<Result<int>(const std::vector<std::string>& positional)> work;
 };
 
+/// The exit code of work that Ctrl-C ended before its time.
+inline constexpr int kInterrupted = 130;
+
 /// "name: sentence" on standard error.
 void Say(std::string_view name, std::string_view sentence);
 

@@ -56,11 +56,13 @@ class Logger {
   int RejectedFrames() const { return decoder_.rejected() - rejected_before_; }
 
  private:
-  Result<void> Send(const std::vector<std::uint8_t>& command);
-  Result<pendulum_logger::Ack> Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind);
-  Result<void> AskAndCheck(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what);
+  template <typename Pick>
+  auto Exchange(const std::vector<std::uint8_t>& commands, int tries, const Pick& pick);
+  Result<void> Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what);
+  tl::unexpected<Status> Refused(const OtherProtocol& other) const;
   Result<pendulum_logger::Info> Checked(const pendulum_logger::Info& info) const;
   tl::unexpected<Status> NoAnswer(double seconds) const;
+  tl::unexpected<Status> NoAnswerTo(std::uint8_t kind) const;
 
   SerialPort port_;
   const std::atomic<bool>& stop_;
