@@ -26,7 +26,8 @@ STANDS_ON = {
     "analysis": ["fitting"],
     "report": ["analysis"],
     "batch": ["report"],
-    "tools": ["acquisition", "batch"],
+    "request": ["batch"],
+    "tools": ["acquisition", "request"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
@@ -37,7 +38,7 @@ LIBRARY_FLOORS = {
     "gflags": {"tools", "service"},
     "glog": {"tools", "service"},
     "pendulum_logger": {"acquisition", "tools"},
-    "nlohmann": {"base", "recording", "model", "report", "batch", "tools"},
+    "nlohmann": {"base", "recording", "model", "report", "batch", "request", "tools"},
     "openssl": {"base", "recording"},
     "sqlite3.h": {"batch"},
     "SQLiteCpp": {"batch"},

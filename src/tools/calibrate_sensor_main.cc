@@ -10,6 +10,7 @@
 #include "pendulum/report/adc_plan_text.h"
 #include "pendulum/report/calibration_plot.h"
 #include "pendulum/report/calibration_text.h"
+#include "pendulum/request/calibration_flags.h"
 #include "tools/calibrate_sensor_options.h"
 #include "tools/gnuplot.h"
 #include "tools/output.h"
@@ -69,11 +70,7 @@ Result<std::vector<Output>> MakeOutputs(const CalibrateSensorOptions& options) {
   if (!options.plan.empty()) return std::vector<Output>{{"-", AdcPlanText(options.plan)}};
   const Result<CalibrationTable> table = ReadCalibrationTable(options.data);
   if (!table) return tl::unexpected(table.error());
-  if (options.has_bits && table->input != "counts") {
-    return Error(StatusCode::kInvalidArgument,
-                 "--bits tells the range of counts, and " + table->path + " has volts; give --input_range");
-  }
-  const Result<CalibrationFit> fit = CalibrateSensor(*table, options.order, options.input_range);
+  const Result<CalibrationFit> fit = CalibrateTable(*table, options);
   if (!fit) return tl::unexpected(fit.error());
   std::vector<Output> outputs;
   if (!options.json.empty()) outputs.push_back({options.json, fit->calibration.source.dump(2) + "\n"});

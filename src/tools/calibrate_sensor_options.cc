@@ -2,40 +2,21 @@
 #include "tools/calibrate_sensor_options.h"
 
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "pendulum/base/format.h"
-#include "pendulum/recording/calibrate.h"
-#include "tools/command_line.h"
+#include "pendulum/request/flag_values.h"
 
 namespace pendulum {
 namespace {
 
-constexpr int kMostBits = 32;
 constexpr int kUsualBits = 10;  // of the ATmega328P
-
-Result<void> CheckWhole(const std::string& flag, int value, int most) {
-  if (value >= 1 && value <= most) return {};
-  return BadFlag(flag + " is " + std::to_string(value) + "; it must be 1 to " + std::to_string(most));
-}
 
 /// A quantity that nothing sensible exceeds and no computation overflows with.
 Result<void> CheckQuantity(const std::string& flag, double value, double most) {
   if (value >= 1e-6 && value <= most) return {};
   return BadFlag(flag + " is " + NumberText(value) + "; it must be positive, 0.000001 to " + NumberText(most));
-}
-
-Result<SensorRange> ParseInputRange(const std::string& text) {
-  const std::vector<std::string> ends = Split(text, ',');
-  if (ends.size() != 2 || text.ends_with(',')) return BadFlag("--input_range is '" + text + "'; it must be low,high");
-  const Result<double> low = ParseNumber("--input_range", ends[0], "two numbers: low,high");
-  const Result<double> high = ParseNumber("--input_range", ends[1], "two numbers: low,high");
-  if (!low) return tl::unexpected(low.error());
-  if (!high) return tl::unexpected(high.error());
-  if (*low >= *high) return BadFlag("--input_range is '" + text + "'; low must be less than high");
-  return SensorRange{*low, *high};
 }
 
 /// A flag that was given although it says nothing of what is to be done.
@@ -68,7 +49,7 @@ Result<void> CheckTask(const CalibrateSensorFlags& flags) {
   for (const auto& [is_given, flag] : of_a_plan) {
     if (auto checked = CheckBelongs(!flags.plan && is_given, flag, false); !checked) return checked;
   }
-  return flags.bits == 0 ? Result<void>() : CheckWhole("--bits", flags.bits, kMostBits);
+  return CheckBits(flags.bits);
 }
 
 Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
@@ -95,19 +76,6 @@ Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
   return plan;
 }
 
-Result<void> ChooseRange(const CalibrateSensorFlags& flags, CalibrateSensorOptions& options) {
-  options.has_bits = flags.bits != 0;
-  if (options.has_bits && !flags.input_range.empty()) {
-    return BadFlag("--bits and --input_range both tell the sensor's range; leave one of them out");
-  }
-  if (options.has_bits) options.input_range = SensorRange{0, AdcSensor{.bits = flags.bits}.FullScale()};
-  if (flags.input_range.empty()) return {};
-  const Result<SensorRange> range = ParseInputRange(flags.input_range);
-  if (!range) return tl::unexpected(range.error());
-  options.input_range = *range;
-  return {};
-}
-
 }  // namespace
 
 std::vector<NamedFile> CalibrateSensorOptions::Outputs() const {
@@ -131,12 +99,10 @@ Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorF
     options.plan = *std::move(plan);
     return options;
   }
-  if (auto checked = CheckWhole("--order", flags.order, kHighestCalibrationOrder); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (auto chosen = ChooseRange(flags, options); !chosen) return tl::unexpected(chosen.error());
+  const Result<CalibrationOptions> calibration = MakeCalibrationOptions(flags);
+  if (!calibration) return tl::unexpected(calibration.error());
+  static_cast<CalibrationOptions&>(options) = *calibration;
   options.data = flags.data;
-  options.order = flags.order;
   options.json = flags.json;
   options.plot = flags.plot;
   return options;

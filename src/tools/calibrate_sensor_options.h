@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "pendulum/base/status.h"
 #include "pendulum/recording/adc.h"
-#include "pendulum/recording/sensor.h"
+#include "pendulum/request/calibration_flags.h"
 #include "tools/output.h"
 
 namespace pendulum {
 
 /// The flags of calibrate_sensor as they were given.
-struct CalibrateSensorFlags {
-  std::string data;         ///< Path, "-" for stdin, or empty.
-  int order = 1;            ///< Highest power of the reading.
-  std::string input_range;  ///< "low,high" in the unit of the readings, or empty.
-  std::string json;         ///< Path, "-" for stdout, or empty for none.
-  std::string plot;         ///< As json.
+struct CalibrateSensorFlags : CalibrationFlags {
+  std::string data;  ///< Path, "-" for stdin, or empty.
+  std::string json;  ///< Path, "-" for stdout, or empty for none.
+  std::string plot;  ///< As json.
   bool plan = false;
-  int bits = 0;                   ///< 0: not given.
   std::string reference_voltage;  ///< "volts,...", or empty.
   double supply_voltage = 5;      ///< V
   double potentiometer_range_deg = 270;
@@ -29,12 +25,9 @@ struct CalibrateSensorFlags {
 };
 
 /// What calibrate_sensor is to do: plan sensors when there are any, else calibrate one.
-struct CalibrateSensorOptions {
+struct CalibrateSensorOptions : CalibrationOptions {
   std::string data;  ///< As in the flags.
-  int order = 1;
-  std::optional<SensorRange> input_range;  ///< In the unit of the readings.
-  bool has_bits = false;                   ///< The range is that of a converter, whose readings are counts.
-  std::string json;                        ///< As in the flags.
+  std::string json;  ///< As in the flags.
   std::string plot;
   std::vector<AdcSensor> plan;
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "tools/command_line.h"
+#include "pendulum/request/flag_values.h"
 
 namespace pendulum {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/format.h"
-#include "tools/command_line.h"
+#include "pendulum/request/flag_values.h"
 
 namespace pendulum {
 namespace {
@@ -33,28 +33,12 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
   return {};
 }
 
-/// Closed forms need nothing that only a fit asks for.
+/// Closed forms make nothing that only a fit has.
 Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
-  const FitPendulumFlags none;
-  const std::array<std::pair<std::string_view, bool>, 13> of_a_fit = {
-      {{"--shared", flags.shared != none.shared && flags.shared != "none"},
-       {"--residuals", flags.residuals != none.residuals},
-       {"--start", flags.start != none.start},
-       {"--fix", flags.fix != none.fix},
-       {"--init", flags.init != none.init},
-       {"--bounds", flags.bounds != none.bounds},
-       {"--prior", flags.prior != none.prior},
-       {"--noise", flags.noise != none.noise},
-       {"--loss", flags.loss != none.loss},
-       {"--interval", flags.interval != none.interval},
-       {"--seed", flags.seed != none.seed},
-       {"--threads", flags.threads != none.threads},
-       {"--terminal_plot", flags.terminal_plot}}};
-  for (const auto& [flag, given] : of_a_fit) {
-    if (!given) continue;
-    return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
-  }
+  if (!flags.shared.empty() && flags.shared != "none") return NeedsAFit("--shared");
+  if (!flags.residuals.empty()) return NeedsAFit("--residuals");
+  if (flags.terminal_plot) return NeedsAFit("--terminal_plot");
   return {};
 }
 
@@ -140,7 +124,6 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.report = flags.report;
   options.markdown = flags.markdown;
   options.terminal_plot = flags.terminal_plot;
-  options.closed_form_only = flags.closed_form_only;
   if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());
   return options;
 }

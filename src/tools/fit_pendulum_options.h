@@ -6,8 +6,8 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/run_options.h"
+#include "pendulum/request/run_flags.h"
 #include "tools/output.h"
-#include "tools/run_flags.h"
 
 namespace pendulum {
 
@@ -22,7 +22,6 @@ struct FitPendulumFlags : RunFlags {
   std::string markdown;
   std::string shared;
   bool terminal_plot = false;
-  bool closed_form_only = false;
   std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
-#include "tools/command_line.h"
+#include "pendulum/request/flag_values.h"
 
 namespace pendulum {
 namespace {

@@ -10,7 +10,7 @@
 #include "pendulum/batch/refit.h"
 #include "pendulum/batch/shards.h"
 #include "pendulum/batch/summary.h"
-#include "tools/run_flags.h"
+#include "pendulum/request/run_flags.h"
 
 namespace pendulum {
 

@@ -7,7 +7,7 @@
 #include <gflags/gflags.h>
 
 #include "pendulum/model/motion_model.h"
-#include "tools/run_flags.h"
+#include "pendulum/request/run_flags.h"
 
 inline const std::string kModelHelp = "Model of the motion, one of " + pendulum::MotionModelNames() +
                                       ", several of them between commas to compare, or all; default coulomb.";

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "pendulum/base/parallel.h"
+#include "pendulum/request/simulation_text.h"
 #include "tools/output.h"
 #include "tools/simulate_pendulum_manifest.h"
-#include "tools/simulate_pendulum_text.h"
 
 namespace pendulum {
 namespace {
@@ -41,17 +41,17 @@ Result<void> CheckAllOutputs(const SimulateOptions& options) {
 }
 
 Result<void> WriteRecording(const SimulateOptions& all, int index) {
-  const Result<SimulateOptions> options = OptionsOfRecording(all, index);
-  if (!options) return tl::unexpected(options.error());
-  const std::uint64_t seed = options->synthetic.seed;
-  const Result<Recording> recording = SimulateRecording(options->synthetic);
+  const Result<Simulation> simulation = SimulationOfRecording(all, index);
+  if (!simulation) return tl::unexpected(simulation.error());
+  const std::uint64_t seed = simulation->synthetic.seed;
+  const Result<Recording> recording = SimulateRecording(simulation->synthetic);
   if (!recording) {
     const std::string which = all.count == 1 ? "" : "seed " + std::to_string(seed) + ": ";
     return Error(recording.error().code, which + recording.error().message);
   }
-  const std::vector<NamedFile> files = options->Outputs(index);
-  std::vector<Output> outputs = {{files.front().path, RecordingCsv(*options, *recording, seed)}};
-  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(*options, seed)});
+  const std::vector<NamedFile> files = all.Outputs(index);
+  std::vector<Output> outputs = {{files.front().path, RecordingCsv(*simulation, *recording, seed)}};
+  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(*simulation, seed)});
   return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
 }
 

@@ -11,7 +11,7 @@ namespace pendulum {
 ///
 /// Of one recording the files are synchronised with the disk as WriteOutputs does it, of several their file system is
 /// once all are written, before the manifest. Of several errors that of the first recording is returned; files of
-/// others may then have been made. Codes of CheckOutputs, WriteOutputs, SimulateRecording, OptionsOfRecording.
+/// others may then have been made. Codes of CheckOutputs, WriteOutputs, SimulateRecording, SimulationOfRecording.
 Result<void> WriteRecordings(const SimulateOptions& options);
 
 }  // namespace pendulum

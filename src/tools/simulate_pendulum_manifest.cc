@@ -43,7 +43,7 @@ std::string Manifest::Header() const {
 }
 
 Result<std::string> Manifest::Row(int index) const {
-  const Result<SimulateOptions> made = OptionsOfRecording(options_, index);
+  const Result<Simulation> made = SimulationOfRecording(options_, index);
   if (!made) return tl::unexpected(made.error());
   const fs::path path = NumberedPath(options_.out, index, options_.count);
   std::string row = CsvField(folder_ + path.filename().string()) + "," + CsvField(path.stem().string()) + ",";

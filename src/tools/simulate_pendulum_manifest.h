@@ -19,7 +19,7 @@ class Manifest {
   /// "path,id,rig,seed,true_inertia,...".
   std::string Header() const;
 
-  /// The row of recording `index` (0-based). kInvalidArgument: as OptionsOfRecording.
+  /// The row of recording `index` (0-based). kInvalidArgument: as SimulationOfRecording.
   Result<std::string> Row(int index) const;
 
  private:

@@ -24,10 +24,10 @@
 #include <unistd.h>
 
 #include "pendulum/model/rig.h"
+#include "pendulum/request/flag_values.h"
 #include "pendulum/trajectory/trajectory.h"
 #include "tests/firmware/potentiometer.h"
 #include "tests/firmware/simulated_board.h"
-#include "tools/command_line.h"
 #include "tools/run_tool.h"
 #include "tools/simulate_pendulum_options.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/run_flags.h"
+#include "pendulum/request/run_flags.h"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulate_pendulum_text.h"
+#include "pendulum/request/simulation_text.h"
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 #include "pendulum/recording/read_recording.h"
 
-namespace pendulum::simulate_pendulum_text_test {
+namespace pendulum::simulation_text_test {
 namespace {
 
 using testing::DoubleEq;
@@ -22,15 +22,14 @@ using testing::StartsWith;
 constexpr double kRadPerDeg = 0.017453292519943295;  // π / 180
 
 /// What the tool does with these flags, for a pendulum of 1 rad/s about 0.3 rad.
-SimulateOptions Options(SimulateFlags flags = {}) {
+Simulation Options(SimulationFlags flags = {}) {
   flags.set = "inertia=0.04,coulomb=0.001,release_angle=0.3,release_time=0.5";
-  flags.out = "run.csv";
-  const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
+  const Result<Simulation> options = MakeSimulation(flags, {});
   EXPECT_TRUE(options) << options.error().message;
   return *options;
 }
 
-Recording Simulated(const SimulateOptions& options) {
+Recording Simulated(const Simulation& options) {
   const Result<Recording> recording = SimulateRecording(options.synthetic);
   EXPECT_TRUE(recording) << recording.error().message;
   return *recording;
@@ -49,11 +48,11 @@ std::vector<std::string> ValueFields(const std::string& csv) {
 
 TEST(RecordingCsv, ReadsBackAsTheRecording) {
   for (const std::string unit : {"deg", "rad", "deg_s", "rad_s"}) {
-    SimulateFlags flags;
+    SimulationFlags flags;
     flags.unit = unit;
     flags.noise = 0.01;
     flags.jitter = 0.001;
-    const SimulateOptions options = Options(flags);
+    const Simulation options = Options(flags);
     const Recording recording = Simulated(options);
     const Result<Recording> read = ParseRecording(RecordingCsv(options, recording, 1), "run.csv");
     ASSERT_TRUE(read) << read.error().message;
@@ -65,10 +64,10 @@ TEST(RecordingCsv, ReadsBackAsTheRecording) {
 }
 
 TEST(RecordingCsv, SaysWhatMadeItAndGivesTheSensorInItsOwnUnit) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.resolution = 0.1985;
   flags.range = "-49.6077,153.4578";
-  const SimulateOptions options = Options(flags);
+  const Simulation options = Options(flags);
   const std::string csv = RecordingCsv(options, Simulated(options), 7);
   EXPECT_THAT(csv, StartsWith("# simulate_pendulum "));
   EXPECT_THAT(csv, HasSubstr(", model coulomb, gravity sin, seed 7\n# resolution: 0.1985\n"
@@ -80,43 +79,43 @@ TEST(RecordingCsv, SaysWhatMadeItAndGivesTheSensorInItsOwnUnit) {
 
 // 0.3 rad = 17.1887 deg; (17.1887 + 49.6077) / 0.1985 = 336.51, and level 337 is -49.6077 + 66.8945 = 17.2868 deg.
 TEST(RecordingCsv, PrintsTheLevelsOfADecimalSensorAsDecimals) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.resolution = 0.1985;
   flags.range = "-49.6077,153.4578";
-  const SimulateOptions options = Options(flags);
+  const Simulation options = Options(flags);
   const std::string csv = RecordingCsv(options, Simulated(options), 1);
   EXPECT_THAT(csv, HasSubstr("\n0,17.2868\n0.01,17.2868\n"));
   for (const std::string& field : ValueFields(csv)) ASSERT_THAT(field, MatchesRegex("-?[0-9]+(\\.[0-9]{1,4})?"));
 }
 
 TEST(RecordingCsv, PrintsZeroWithoutASign) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.resolution = 0.5;
   flags.noise = 1;
-  const SimulateOptions options = Options(flags);
+  const Simulation options = Options(flags);
   const std::string csv = RecordingCsv(options, Simulated(options), 1);
   EXPECT_THAT(csv, HasSubstr(",0\n"));
   EXPECT_THAT(csv, testing::Not(HasSubstr("-0\n")));
 }
 
 TEST(RecordingCsv, PrintsTheEndsOfTheRangeAsTheyWereGiven) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.range = "-9.9,12.1";
-  const SimulateOptions options = Options(flags);
+  const Simulation options = Options(flags);
   const std::vector<std::string> fields = ValueFields(RecordingCsv(options, Simulated(options), 1));
   EXPECT_THAT(fields, testing::Contains("12.1").Times(testing::Ge(50)));
   EXPECT_THAT(fields, testing::Contains("-9.9").Times(testing::Ge(50)));
 }
 
 TEST(RecordingCsv, PrintsShortTimesWithoutAnExponent) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.rate = 10000;
-  const SimulateOptions options = Options(flags);
+  const Simulation options = Options(flags);
   EXPECT_THAT(RecordingCsv(options, Simulated(options), 1), HasSubstr("\n0.0001,"));
 }
 
 TEST(TruthJson, GivesParametersNoiseAndSeed) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.noise = 0.5;
   flags.resolution = 0.2;
   const std::string text = TruthJson(Options(flags), 7);
@@ -135,7 +134,7 @@ TEST(TruthJson, GivesParametersNoiseAndSeed) {
 }
 
 TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.noise = 0.5;
   flags.noise_correlation = 0.9;
   flags.noise_freedom = 4;
@@ -145,7 +144,7 @@ TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
 }
 
 TEST(TruthJson, GivesARateItsOwnNames) {
-  SimulateFlags flags;
+  SimulationFlags flags;
   flags.unit = "rad_s";
   flags.noise = 0.5;
   const nlohmann::json truth = nlohmann::json::parse(TruthJson(Options(flags), 1));
@@ -156,4 +155,4 @@ TEST(TruthJson, GivesARateItsOwnNames) {
 }
 
 }  // namespace
-}  // namespace pendulum::simulate_pendulum_text_test
+}  // namespace pendulum::simulation_text_test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/run_options.h"
@@ -9,7 +10,7 @@
 namespace pendulum {
 
 /// The flags that say how a recording is read and fitted, as they were given; empty, or the default, where they were
-/// not. fit_pendulum and refit_pendulums have them both.
+/// not. The tools that fit recordings have them, and so has the service.
 struct RunFlags {
   std::string rig;
   std::string calibration;
@@ -33,7 +34,11 @@ struct RunFlags {
   std::string interval = "auto";
   std::string seed;
   std::string threads;
+  bool closed_form_only = false;
 };
+
+/// The refusal of a flag beside --closed_form_only.
+tl::unexpected<Status> NeedsAFit(std::string_view flag);
 
 /// Turns flags into options; rig and calibration are for the caller to read.
 /// kInvalidArgument: a flag is wrong or contradicts another; the message names it.

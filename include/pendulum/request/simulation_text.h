@@ -5,18 +5,18 @@
 #include <string>
 
 #include "pendulum/recording/recording.h"
-#include "tools/simulate_pendulum_options.h"
+#include "pendulum/request/simulation.h"
 
 namespace pendulum {
 
 /// The recording as a CSV file: comments that say what made it, metadata `resolution` and `range` in the file's unit,
-/// then time_s and the column of options.unit. Numbers are the shortest text that reads back; the levels of a sensor
+/// then time_s and the column of simulation.unit. Numbers are the shortest text that reads back; the levels of a sensor
 /// whose resolution and range are decimals are those decimals, low + k resolution, without the rounding of radians.
-std::string RecordingCsv(const SimulateOptions& options, const Recording& recording, std::uint64_t seed);
+std::string RecordingCsv(const Simulation& simulation, const Recording& recording, std::uint64_t seed);
 
 /// The truth as a flat JSON object: the parameters' names, SI with a rig, then sigma_rad, resolution_rad and seed;
 /// sigma_rad_s and resolution_rad_s for a rate. noise_correlation and
 /// noise_freedom stand there where they are not 0; sigma is the scale of Student's t noise.
-std::string TruthJson(const SimulateOptions& options, std::uint64_t seed);
+std::string TruthJson(const Simulation& simulation, std::uint64_t seed);
 
 }  // namespace pendulum

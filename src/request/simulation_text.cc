@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulate_pendulum_text.h"
+#include "pendulum/request/simulation_text.h"
 
 #include <algorithm>
 #include <array>
@@ -35,16 +35,16 @@ double RoundedTo(int decimals, double value) {
 /// Turns readings in SI into the file's unit.
 class FileUnit {
  public:
-  explicit FileUnit(const SimulateOptions& options)
-      : options_(options), low_(options.range ? options.range->low : 0.0) {
-    decimals_ = std::max(Decimals(options.resolution), Decimals(low_));
+  explicit FileUnit(const Simulation& simulation)
+      : simulation_(simulation), low_(simulation.range ? simulation.range->low : 0.0) {
+    decimals_ = std::max(Decimals(simulation.resolution), Decimals(low_));
   }
 
   double operator()(double si) const {
-    if (options_.resolution > 0) return Level(si);
-    if (options_.range && si == options_.synthetic.range->low) return options_.range->low;
-    if (options_.range && si == options_.synthetic.range->high) return options_.range->high;
-    return si / options_.unit.si;
+    if (simulation_.resolution > 0) return Level(si);
+    if (simulation_.range && si == simulation_.synthetic.range->low) return simulation_.range->low;
+    if (simulation_.range && si == simulation_.synthetic.range->high) return simulation_.range->high;
+    return si / simulation_.unit.si;
   }
 
  private:
@@ -52,13 +52,13 @@ class FileUnit {
   static constexpr int kMostDecimals = 10;
 
   double Level(double si) const {
-    const double step = options_.resolution;
-    const double level = std::round((si / options_.unit.si - low_) / step);
+    const double step = simulation_.resolution;
+    const double level = std::round((si / simulation_.unit.si - low_) / step);
     const double value = low_ + step * level;
     return decimals_ <= kMostDecimals ? RoundedTo(decimals_, value) : value;
   }
 
-  const SimulateOptions& options_;
+  const Simulation& simulation_;
   double low_;
   int decimals_;
 };
@@ -73,25 +73,25 @@ void AppendNumber(double value, std::string& text) {
   text.append(buffer.data(), end);
 }
 
-std::string Head(const SimulateOptions& options, std::uint64_t seed) {
-  const MotionModel& model = options.synthetic.model;
+std::string Head(const Simulation& simulation, std::uint64_t seed) {
+  const MotionModel& model = simulation.synthetic.model;
   std::string text = "# simulate_pendulum " + std::string(kVersion) + ", model " + std::string(model.name) +
                      ", gravity " + (model.gravity == Gravity::kSine ? "sin" : "linear") + ", seed " +
                      std::to_string(seed) + "\n";
-  if (options.resolution > 0) text += "# resolution: " + NumberText(options.resolution) + "\n";
-  if (options.range) {
-    text += "# range: " + NumberText(options.range->low) + "," + NumberText(options.range->high) + "\n";
+  if (simulation.resolution > 0) text += "# resolution: " + NumberText(simulation.resolution) + "\n";
+  if (simulation.range) {
+    text += "# range: " + NumberText(simulation.range->low) + "," + NumberText(simulation.range->high) + "\n";
   }
-  return text + "time_s," + std::string(options.unit.column) + "\n";
+  return text + "time_s," + std::string(simulation.unit.column) + "\n";
 }
 
 }  // namespace
 
-std::string RecordingCsv(const SimulateOptions& options, const Recording& recording, std::uint64_t seed) {
+std::string RecordingCsv(const Simulation& simulation, const Recording& recording, std::uint64_t seed) {
   constexpr std::size_t kTypicalLine = 24;  // bytes
-  std::string text = Head(options, seed);
+  std::string text = Head(simulation, seed);
   text.reserve(text.size() + kTypicalLine * static_cast<std::size_t>(recording.size()));
-  const FileUnit file_unit(options);
+  const FileUnit file_unit(simulation);
   for (Eigen::Index i = 0; i < recording.size(); ++i) {
     AppendNumber(recording.time[i], text);
     text += ',';
@@ -101,14 +101,14 @@ std::string RecordingCsv(const SimulateOptions& options, const Recording& record
   return text;
 }
 
-std::string TruthJson(const SimulateOptions& options, std::uint64_t seed) {
+std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {
   nlohmann::ordered_json json;
-  for (const auto& [name, value] : options.truth) json[name] = value;
-  const std::string unit = options.unit.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
-  json["sigma" + unit] = options.synthetic.noise;
-  if (options.synthetic.noise_correlation != 0) json["noise_correlation"] = options.synthetic.noise_correlation;
-  if (options.synthetic.noise_freedom > 0) json["noise_freedom"] = options.synthetic.noise_freedom;
-  json["resolution" + unit] = options.synthetic.resolution;
+  for (const auto& [name, value] : simulation.truth) json[name] = value;
+  const std::string unit = simulation.unit.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
+  json["sigma" + unit] = simulation.synthetic.noise;
+  if (simulation.synthetic.noise_correlation != 0) json["noise_correlation"] = simulation.synthetic.noise_correlation;
+  if (simulation.synthetic.noise_freedom > 0) json["noise_freedom"] = simulation.synthetic.noise_freedom;
+  json["resolution" + unit] = simulation.synthetic.resolution;
   json["seed"] = seed;
   constexpr int kIndent = 2;
   return json.dump(kIndent) + "\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/run_flags.h"
+#include "pendulum/request/run_flags.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
-#include "tools/command_line.h"
+#include "pendulum/request/flag_values.h"
 
 namespace pendulum {
 namespace {
@@ -220,10 +220,36 @@ Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
   return {};
 }
 
+/// Closed forms need nothing that only a fit asks for.
+Result<void> CheckClosedFormOnly(const RunFlags& flags) {
+  if (!flags.closed_form_only) return {};
+  const RunFlags none;
+  const std::array<std::pair<std::string_view, bool>, 10> of_a_fit = {{{"--start", flags.start != none.start},
+                                                                       {"--fix", flags.fix != none.fix},
+                                                                       {"--init", flags.init != none.init},
+                                                                       {"--bounds", flags.bounds != none.bounds},
+                                                                       {"--prior", flags.prior != none.prior},
+                                                                       {"--noise", flags.noise != none.noise},
+                                                                       {"--loss", flags.loss != none.loss},
+                                                                       {"--interval", flags.interval != none.interval},
+                                                                       {"--seed", flags.seed != none.seed},
+                                                                       {"--threads", flags.threads != none.threads}}};
+  for (const auto& [flag, given] : of_a_fit) {
+    if (given) return NeedsAFit(flag);
+  }
+  return {};
+}
+
 }  // namespace
 
+tl::unexpected<Status> NeedsAFit(std::string_view flag) {
+  return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
+}
+
 Result<RunOptions> MakeRunOptions(const RunFlags& flags) {
+  if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   RunOptions options;
+  options.closed_form_only = flags.closed_form_only;
   const auto models = FindMotionModels(flags.model);
   if (!models) return BadFlag("--model: " + models.error().message);
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/request/calibration_flags.h"
+
+#include <string>
+#include <vector>
+
+#include "pendulum/recording/adc.h"
+#include "pendulum/request/flag_values.h"
+
+namespace pendulum {
+namespace {
+
+Result<void> CheckWhole(const std::string& flag, int value, int most) {
+  if (value >= 1 && value <= most) return {};
+  return BadFlag(flag + " is " + std::to_string(value) + "; it must be 1 to " + std::to_string(most));
+}
+
+Result<SensorRange> ParseInputRange(const std::string& text) {
+  const std::vector<std::string> ends = Split(text, ',');
+  if (ends.size() != 2 || text.ends_with(',')) return BadFlag("--input_range is '" + text + "'; it must be low,high");
+  const Result<double> low = ParseNumber("--input_range", ends[0], "two numbers: low,high");
+  const Result<double> high = ParseNumber("--input_range", ends[1], "two numbers: low,high");
+  if (!low) return tl::unexpected(low.error());
+  if (!high) return tl::unexpected(high.error());
+  if (*low >= *high) return BadFlag("--input_range is '" + text + "'; low must be less than high");
+  return SensorRange{*low, *high};
+}
+
+Result<void> ChooseRange(const CalibrationFlags& flags, CalibrationOptions& options) {
+  options.has_bits = flags.bits != 0;
+  if (options.has_bits && !flags.input_range.empty()) {
+    return BadFlag("--bits and --input_range both tell the sensor's range; leave one of them out");
+  }
+  if (options.has_bits) options.input_range = SensorRange{0, AdcSensor{.bits = flags.bits}.FullScale()};
+  if (flags.input_range.empty()) return {};
+  const Result<SensorRange> range = ParseInputRange(flags.input_range);
+  if (!range) return tl::unexpected(range.error());
+  options.input_range = *range;
+  return {};
+}
+
+}  // namespace
+
+Result<void> CheckBits(int bits) {
+  constexpr int kMostBits = 32;
+  return bits == 0 ? Result<void>() : CheckWhole("--bits", bits, kMostBits);
+}
+
+Result<CalibrationOptions> MakeCalibrationOptions(const CalibrationFlags& flags) {
+  if (auto checked = CheckBits(flags.bits); !checked) return tl::unexpected(checked.error());
+  if (auto checked = CheckWhole("--order", flags.order, kHighestCalibrationOrder); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  CalibrationOptions options;
+  if (auto chosen = ChooseRange(flags, options); !chosen) return tl::unexpected(chosen.error());
+  options.order = flags.order;
+  return options;
+}
+
+Result<CalibrationFit> CalibrateTable(const CalibrationTable& table, const CalibrationOptions& options) {
+  if (options.has_bits && table.input != "counts") {
+    return Error(StatusCode::kInvalidArgument,
+                 "--bits tells the range of counts, and " + table.path + " has volts; give --input_range");
+  }
+  return CalibrateSensor(table, options.order, options.input_range);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/request/flag_values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+/// Levenshtein's distance: insertions, deletions and replacements that turn one text into the other.
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0U);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string NearestName(std::string_view name, std::span<const std::string_view> names) {
+  std::size_t least = 2 + name.size() / 4;  // as many slips as still look like one
+  std::string_view nearest;
+  for (const std::string_view candidate : names) {
+    const std::size_t distance = EditDistance(name, candidate);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = candidate;
+  }
+  return std::string(nearest);
+}
+
+tl::unexpected<Status> BadFlag(const std::string& sentence) { return Error(StatusCode::kInvalidArgument, sentence); }
+
+Result<double> ParseNumber(std::string_view flag, std::string_view value, std::string_view meaning) {
+  double number = 0;
+  const char* end = value.data() + value.size();
+  const auto [rest, error] = std::from_chars(value.data(), end, number);
+  if (error != std::errc() || rest != end || !std::isfinite(number)) {
+    return BadFlag(std::string(flag) + " is '" + std::string(value) + "'; it must be " + std::string(meaning));
+  }
+  return number;
+}
+
+namespace {
+
+tl::unexpected<Status> BadSetting(std::string_view flag, const std::string& sentence) {
+  return BadFlag(std::string(flag) + ": " + sentence);
+}
+
+/// One entry of a flag that sets parameters: name=value.
+struct Setting {
+  const ParameterInfo* info = nullptr;
+  std::string value;
+};
+
+Result<Setting> ParseSetting(std::string_view flag, const std::string& entry, std::string_view model,
+                             std::span<const ParameterInfo> parameters) {
+  const std::size_t equals = entry.find('=');
+  if (equals == 0 || equals == std::string::npos) return BadSetting(flag, "'" + entry + "' must be name=value");
+  const std::string name = entry.substr(0, equals);
+  const auto info = std::ranges::find(parameters, name, &ParameterInfo::name);
+  if (info != parameters.end()) return Setting{&*info, entry.substr(equals + 1)};
+  return BadSetting(flag, "model " + std::string(model) + " has no parameter '" + name + "'; its parameters are " +
+                              NameList(parameters));
+}
+
+Result<double> ParseValue(std::string_view flag, const ParameterInfo& info, std::string_view text) {
+  const std::string name(info.name);
+  auto value = ParseNumber(std::string(flag) + " " + name, text, "a number in SI units");
+  if (!value || (*value >= info.lower && *value <= info.upper)) return value;
+  const bool low = *value < info.lower;
+  return BadSetting(flag, name + " is " + NumberText(*value) + "; it must be at " + (low ? "least " : "most ") +
+                              NumberText(low ? info.lower : info.upper));
+}
+
+/// Parses all entries; parse(info, value) gives what is kept of one.
+template <typename Value, typename Parse>
+Result<std::map<std::string, Value, std::less<>>> ParseEntries(std::string_view flag, std::string_view text,
+                                                               std::string_view model,
+                                                               std::span<const ParameterInfo> parameters,
+                                                               const Parse& parse) {
+  std::map<std::string, Value, std::less<>> values;
+  if (text.ends_with(',')) return BadSetting(flag, "'" + std::string(text) + "' ends with a comma");
+  for (const std::string& entry : Split(text, ',')) {
+    const auto setting = ParseSetting(flag, entry, model, parameters);
+    if (!setting) return tl::unexpected(setting.error());
+    auto value = parse(*setting->info, setting->value);
+    if (!value) return tl::unexpected(value.error());
+    const std::string name(setting->info->name);
+    if (!values.emplace(name, *std::move(value)).second) return BadSetting(flag, name + " is given twice");
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.emplace_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+Result<ParameterValues> ParseSettings(std::string_view flag, std::string_view text, std::string_view model,
+                                      std::span<const ParameterInfo> parameters) {
+  return ParseEntries<double>(flag, text, model, parameters, [&](const ParameterInfo& info, const std::string& value) {
+    return ParseValue(flag, info, value);
+  });
+}
+
+Result<ParameterRanges> ParseRanges(std::string_view flag, std::string_view text, std::string_view model,
+                                    std::span<const ParameterInfo> parameters) {
+  const auto parse = [&](const ParameterInfo& info, const std::string& value) -> Result<ParameterRange> {
+    const std::size_t colon = value.find(':');
+    const std::string name(info.name);
+    if (colon == std::string::npos) return BadSetting(flag, "'" + name + "=" + value + "' must be name=low:high");
+    ParameterRange range;
+    const auto read = [&](const std::string& end, double& bound) -> Result<void> {
+      if (end.empty()) return {};
+      const auto number = ParseNumber(std::string(flag) + " " + name, end, "a number in SI units");
+      if (!number) return tl::unexpected(number.error());
+      bound = *number;
+      return {};
+    };
+    if (const auto done = read(value.substr(0, colon), range.lower); !done) return tl::unexpected(done.error());
+    if (const auto done = read(value.substr(colon + 1), range.upper); !done) return tl::unexpected(done.error());
+    if (range.lower < range.upper) return range;
+    return BadSetting(flag, "'" + name + "=" + value + "' leaves no value; low must be below high");
+  };
+  return ParseEntries<ParameterRange>(flag, text, model, parameters, parse);
+}
+
+Result<ParameterPriors> ParsePriors(std::string_view flag, std::string_view text, std::string_view model,
+                                    std::span<const ParameterInfo> parameters) {
+  const auto parse = [&](const ParameterInfo& info, const std::string& value) -> Result<ParameterPrior> {
+    const std::size_t colon = value.find(':');
+    const std::string name(info.name);
+    if (colon == std::string::npos) return BadSetting(flag, "'" + name + "=" + value + "' must be name=mean:std_dev");
+    const auto mean = ParseValue(flag, info, value.substr(0, colon));
+    if (!mean) return tl::unexpected(mean.error());
+    const auto std_dev =
+        ParseNumber(std::string(flag) + " " + name, value.substr(colon + 1), "a standard deviation in SI units");
+    if (!std_dev) return tl::unexpected(std_dev.error());
+    if (*std_dev > 0) return ParameterPrior{*mean, *std_dev};
+    return BadSetting(flag, "the standard deviation of " + name + " is " + NumberText(*std_dev) +
+                                "; it must be positive (--fix holds a parameter)");
+  };
+  return ParseEntries<ParameterPrior>(flag, text, model, parameters, parse);
+}
+
+}  // namespace pendulum
