@@ -27,19 +27,21 @@ STANDS_ON = {
     "report": ["analysis"],
     "batch": ["report"],
     "request": ["batch"],
-    "tools": ["acquisition", "request"],
+    "service": ["request"],
+    "tools": ["acquisition", "service"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
 LIBRARY_FLOORS = {
-    "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis", "batch"},
+    "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis", "batch", "service"},
     "ceres": {"fitting"},
     "csv.h": {"batch"},
     "gflags": {"tools", "service"},
     "glog": {"tools", "service"},
     "pendulum_logger": {"acquisition", "tools"},
-    "nlohmann": {"base", "recording", "model", "report", "batch", "request", "tools"},
-    "openssl": {"base", "recording"},
+    "nlohmann": {"base", "recording", "model", "report", "batch", "request", "service", "tools"},
+    "openssl": {"base", "recording", "service"},
+    "prometheus": {"service"},
     "sqlite3.h": {"batch"},
     "SQLiteCpp": {"batch"},
 }

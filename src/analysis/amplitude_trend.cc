@@ -60,7 +60,8 @@ double PooledSigma(const std::vector<PartFit>& parts) {
 }
 
 /// The memory that the windows' residuals show: those of the whole fit have that of its misfit too.
-Autocorrelation PooledMemory(const Recording& used, const Windows& windows, const VectorXd& readings) {
+Autocorrelation PooledMemory(const Recording& used, const Windows& windows, const VectorXd& readings,
+                             const std::stop_token& stop) {
   const Index first = windows.parts.front().first;
   const Index count = windows.parts.back().first + windows.parts.back().part.size() - first;
   Index columns = 0;
@@ -74,7 +75,7 @@ Autocorrelation PooledMemory(const Recording& used, const Windows& windows, cons
     columns += linear.influence.cols();
   }
   return MemoryOf(used.clock_scale * used.time.segment(first, count), used.value.segment(first, count), windows.noise,
-                  readings.segment(first, count), jacobian);
+                  readings.segment(first, count), jacobian, stop);
 }
 
 /// How a window's estimate of parameter k answers to what it holds at the whole fit's estimates.
@@ -174,7 +175,7 @@ std::string FitWindows(const Parts& parts, const std::vector<double>& ends, cons
 }
 
 /// What all windows' readings say under one noise.
-bool LinearizeWindows(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, const Parts& parts,
+bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOptions& options, const Parts& parts,
                       Windows& windows) {
   windows.noise = parts.NoiseOf(fit);
   windows.noise.sigma = PooledSigma(windows.parts);
@@ -182,11 +183,12 @@ bool LinearizeWindows(const Recording& used, const FitReport& fit, const std::op
   for (const PartFit& part : windows.parts) readings.segment(part.first, part.part.size()) = part.fit.fitted;
   windows.terms = TermsOf(windows.noise, used.value, readings);
   for (const PartFit& part : windows.parts) {
-    std::optional<LinearFit> linear = Linearize(part.part, part.fit, rig, windows.TermsIn(part), {}, false);
+    std::optional<LinearFit> linear =
+        Linearize(part.part, part.fit, options.rig, windows.TermsIn(part), {}, false, options.stop);
     if (!linear) return false;
     windows.linear.push_back(*std::move(linear));
   }
-  windows.memory = PooledMemory(used, windows, readings);
+  windows.memory = PooledMemory(used, windows, readings, options.stop);
   return true;
 }
 
@@ -251,8 +253,9 @@ std::string CompareWindows(const Recording& used, const Parts& parts, const std:
   if (friction != nullptr) windows.tested.push_back(friction - fit.parameters.data());
   if (windows.tested.empty()) return "inertia and friction are held: there is no trend to look for";
   if (std::string reason = FitWindows(parts, ends, fit, windows); !reason.empty()) return reason;
-  if (!LinearizeWindows(used, fit, options.rig, parts, windows)) return "a window does not tell inertia and friction";
-  const std::optional<LinearFit> whole = Linearize(used, fit, options.rig, windows.terms, options.priors, true);
+  if (!LinearizeWindows(used, fit, options, parts, windows)) return "a window does not tell inertia and friction";
+  const std::optional<LinearFit> whole =
+      Linearize(used, fit, options.rig, windows.terms, options.priors, true, options.stop);
   if (!whole) return "the errors of the whole fit cannot be followed";
   AddTrends(used, fit, *whole, windows, parts, result);
   return "";

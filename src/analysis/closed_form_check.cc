@@ -91,7 +91,7 @@ VectorXd DecrementValues(const Decrement& decrement) {
   return values;
 }
 
-FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity) {
+FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity, const std::stop_token& stop) {
   const Decrement& decrement = *forms.decrement;
   FormulaGroup group;
   const std::string method = "least squares over all turning points";
@@ -104,10 +104,11 @@ FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity) {
   group.value = DecrementValues(decrement);
   group.error = decrement.covariance.diagonal().cwiseSqrt();
   group.gradient = decrement.gradient;
-  group.apply = [model = decrement.model](const Recording& recording, Gravity gravity) -> std::optional<VectorXd> {
+  group.apply = [model = decrement.model, stop](const Recording& recording,
+                                                Gravity gravity) -> std::optional<VectorXd> {
     MotionModel with_gravity = model;
     with_gravity.gravity = gravity;
-    const Result<Decrement> there = FitDecrement(recording, with_gravity);
+    const Result<Decrement> there = FitDecrement(recording, with_gravity, stop);
     if (!there) return std::nullopt;
     return DecrementValues(*there);
   };
@@ -369,13 +370,13 @@ std::string Summarize(const std::vector<ClosedFormRow>& rows, const std::string&
 }  // namespace
 
 ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,
-                                 const std::optional<Rig>& rig) {
+                                 const std::optional<Rig>& rig, const std::stop_token& stop) {
   ClosedFormCheck check;
   if (fit.termination == Termination::kFailed) return check;
-  const FittedMotion motion(used, fit, rig);
+  const FittedMotion motion(used, fit, rig, stop);
   Checker checker(used, forms, fit, motion, rig ? rig->gravity_torque.value : 1.0);
   if (forms.linear) checker.Add(LinearFormulas(forms, used), check.rows);
-  if (forms.decrement) checker.Add(DecrementFormulas(forms, fit.quantity), check.rows);
+  if (forms.decrement) checker.Add(DecrementFormulas(forms, fit.quantity, stop), check.rows);
   if (rig) AddGeometry(used, *rig, fit, check.rows);
   if (forms.linear) {
     check.overlay = MakeOverlay(used, *forms.linear, fit, motion);

@@ -76,7 +76,7 @@ const FitReport* BestFit(const std::vector<FitReport>& fits) {
 
 std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit, const FitOptions& options,
                                                bool with_bounded) {
-  const FittedMotion motion(used, fit, options.rig);
+  const FittedMotion motion(used, fit, options.rig, options.stop);
   Eigen::MatrixXd jacobian;
   const auto readings = motion.Readings(motion.instants(), &jacobian);
   if (!readings) return std::nullopt;

@@ -70,7 +70,7 @@ void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& s
 
 /// Why there is no test; empty when there is.
 std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
-                          const std::optional<Rig>& rig, Constancy& result) {
+                          const FitOptions& options, Constancy& result) {
   if (ends.size() - 1 < 2 * kFewestHalfSwings) return TooShort(ends, "halves", 2 * kFewestHalfSwings);
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
   std::vector<UnboundedEstimate> estimates;
@@ -78,7 +78,8 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
        {std::tuple("first", ends.front(), cut), std::tuple("second", After(cut), ends.back())}) {
     const PartFit half = parts.Fit(from, to, {});
     if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
-    std::optional<UnboundedEstimate> estimate = EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), rig);
+    std::optional<UnboundedEstimate> estimate =
+        EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), options.rig, options.stop);
     if (!estimate) return std::string("the ") + name + " half does not tell all parameters";
     estimates.push_back(*std::move(estimate));
   }
@@ -152,7 +153,7 @@ Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOp
   } else {
     const std::vector<double> ends = HalfSwingEnds(used, BeginOfMotion(used, fit));
     const Parts parts(used, fit, options);
-    const std::string halves = CompareHalves(parts, ends, fit, options.rig, result);
+    const std::string halves = CompareHalves(parts, ends, fit, options, result);
     result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");
   }
   if (std::erase_if(result.trends, [](const AmplitudeTrend& trend) { return !std::isfinite(trend.p); }) > 0) {

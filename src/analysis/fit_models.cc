@@ -195,6 +195,7 @@ Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, cons
                                const std::vector<std::string>& models) {
   Result<FittedModels> fitted = swing.undersampled ? FitEach(recording, swing, options, models)
                                                    : FitShared(std::move(recording), swing, options, models);
+  if (options.stop.stop_requested()) return FitStopped();
   if (!fitted) return fitted;
   if (models.size() > 1) WarnOfIgnored(options, models, *fitted);
   return fitted;

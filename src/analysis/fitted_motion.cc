@@ -3,14 +3,16 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/trajectory_cost.h"
 
 namespace pendulum {
 
-FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig)
-    : model_(fit.model), start_(fit.start), quantity_(fit.quantity) {
+FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig,
+                           std::stop_token stop)
+    : model_(fit.model), start_(fit.start), quantity_(fit.quantity), stop_(std::move(stop)) {
   instants_ = used.clock_scale * (used.time.array() - used.time[0]);
   const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   for (const ParameterEstimate& parameter : fit.parameters) {
@@ -58,6 +60,7 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
   data.natural_frequency = 1 / std::sqrt(parameters_[0]);
   data.latest_release = instants[instants.size() - 1];
   data.drifts = drifts_;
+  data.stop = stop_;
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model_, start_, data);
   Eigen::VectorXd readings;
   if (!cost->Readings(parameters_, &readings, jacobian)) return std::nullopt;

@@ -110,7 +110,8 @@ MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names
 std::optional<Told> TellAllFree(const RunAlone& run) {
   const FitReport& fit = run.fit;
   if (std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; })) {
-    const auto unbounded = EstimateUnbounded(run.used, fit, NoiseOfFit(run.used, fit, run.options), run.options.rig);
+    const auto unbounded =
+        EstimateUnbounded(run.used, fit, NoiseOfFit(run.used, fit, run.options), run.options.rig, run.options.stop);
     if (!unbounded) return std::nullopt;
     return Told{0, {unbounded->names.begin(), unbounded->names.end()}, unbounded->value, unbounded->covariance};
   }

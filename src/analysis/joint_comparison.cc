@@ -197,7 +197,7 @@ std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std:
   const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
   data->lowest.setConstant(-kUnbounded);
   data->highest.setConstant(kUnbounded);
-  auto likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)));
+  auto likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)), options.stop);
   if (!likelihood) return std::nullopt;
   std::vector<std::string> names;
   for (const ParameterEstimate& parameter : fit.parameters) {

@@ -17,7 +17,7 @@ namespace {
 void SetCorrelatedLikelihood(const FittedModels& fitted, const FitReport& fit, const Autocorrelation& like,
                              const FitOptions& options, ComparisonRow& row) {
   const std::optional<CorrelatedResiduals> data = ResidualsOf(fitted.used, fit, options, true);
-  const auto likelihood = data ? MaximizeCorrelatedLikelihood(*data, like) : std::nullopt;
+  const auto likelihood = data ? MaximizeCorrelatedLikelihood(*data, like, options.stop) : std::nullopt;
   if (!likelihood) {
     row.judged = false;
     row.reason = "its residuals have no likelihood with the memory of the best model's";

@@ -52,7 +52,7 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
   std::vector<Index> rows;  // of the two
   for (const ComparedRun& run : compared.runs) {
     const FitReport& fit = *run.fits[index];
-    const FittedMotion motion(run.used, fit, options.rig);
+    const FittedMotion motion(run.used, fit, options.rig, options.stop);
     Eigen::MatrixXd jacobian;
     if (!motion.Readings(motion.instants(), &jacobian)) return 0;
     std::vector<Index> own, common;
@@ -105,7 +105,7 @@ struct NullColumns {
 std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vector<std::string>& shared,
                                          const FitReport& simpler, const FitReport& null, std::string_view term,
                                          const FitOptions& options) {
-  const FittedMotion motion(run.used, null, options.rig);
+  const FittedMotion motion(run.used, null, options.rig, options.stop);
   Eigen::MatrixXd jacobian;
   if (!motion.Readings(motion.instants(), &jacobian)) return std::nullopt;
   const OrderedPair order = OrderOf(null.model);

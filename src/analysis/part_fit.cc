@@ -48,7 +48,7 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
 
 /// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its
 /// bound: near enough for a last step on the linear motion.
-bool IsNear(const PartFit& part, const NoiseModel& noise, const std::optional<Rig>& rig) {
+bool IsNear(const PartFit& part, const NoiseModel& noise, const FitOptions& options) {
   constexpr double kMostUnexplained = 0.12;
   constexpr double kNear = 1;
   if (part.fit.termination != Termination::kNotConverged) return false;
@@ -56,7 +56,7 @@ bool IsNear(const PartFit& part, const NoiseModel& noise, const std::optional<Ri
   const double variance = (value.array() - value.mean()).matrix().squaredNorm();
   if (part.fit.residual.squaredNorm() > kMostUnexplained * variance) return false;
   const ReadingTerms terms = TermsOf(noise, value, part.fit.fitted);
-  const std::optional<LinearFit> linear = Linearize(part.part, part.fit, rig, terms, {}, true);
+  const std::optional<LinearFit> linear = Linearize(part.part, part.fit, options.rig, terms, {}, true, options.stop);
   if (!linear) return false;
   const VectorXd gradient = linear->jacobian(Eigen::all, linear->free).transpose() * terms.score;
   return gradient.dot(linear->inverse * gradient) < kNear * kNear;
@@ -64,12 +64,12 @@ bool IsNear(const PartFit& part, const NoiseModel& noise, const std::optional<Ri
 
 /// The covariance of all that is free, with the residuals' own variance and memory (MODEL.md eq. (29)).
 MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearFit& linear, const NoiseModel& noise,
-                      const ReadingTerms& terms) {
+                      const ReadingTerms& terms, const std::stop_token& stop) {
   const VectorXd time = part.clock_scale * part.time;
   const bool converged = fit.termination == Termination::kConverged;
   const Autocorrelation memory =
       converged ? fit.noise.memory
-                : MemoryOf(time, part.value, noise, fit.fitted, linear.jacobian(Eigen::all, linear.free));
+                : MemoryOf(time, part.value, noise, fit.fitted, linear.jacobian(Eigen::all, linear.free), stop);
   const MatrixXd covariance = ScoreCovariance(noise, memory, terms, time, linear.influence);
   const double lost = linear.inverse.ldlt().solve(covariance).trace();
   return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
@@ -100,9 +100,10 @@ MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory,
 }
 
 std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
-                                   const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds) {
+                                   const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds,
+                                   const std::stop_token& stop) {
   LinearFit linear;
-  const FittedMotion motion(recording, fit, rig);
+  const FittedMotion motion(recording, fit, rig, stop);
   if (!motion.Readings(motion.instants(), &linear.jacobian)) return std::nullopt;
   const MatrixXd weighted = terms.information.asDiagonal() * linear.jacobian;
   MatrixXd information = linear.jacobian.transpose() * weighted;
@@ -174,7 +175,7 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
   }
   result.fit = *std::move(fit);
   const bool converged =
-      result.fit.termination == Termination::kConverged || IsNear(result, NoiseOf(result.fit), options.rig);
+      result.fit.termination == Termination::kConverged || IsNear(result, NoiseOf(result.fit), options);
   if (!converged) result.reason = result.fit.reason;
   return result;
 }
@@ -218,11 +219,11 @@ double After(double time) { return std::nextafter(time, std::numeric_limits<doub
 double TwoSidedP(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
 Autocorrelation MemoryOf(const VectorXd& time, const VectorXd& value, const NoiseModel& noise, const VectorXd& readings,
-                         const MatrixXd& jacobian) {
+                         const MatrixXd& jacobian, const std::stop_token& stop) {
   constexpr double kDoubtful = 0.05;
   const VectorXd z = QuantileResiduals(noise, value, readings);
   if (LjungBoxP(z) > kDoubtful) return {};
-  return EstimateAutocorrelation(time, z, jacobian / noise.sigma);
+  return EstimateAutocorrelation(time, z, jacobian / noise.sigma, stop);
 }
 
 double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {
@@ -234,12 +235,12 @@ double Inflation(const NoiseModel& noise, Index samples, Index free, double lost
 /// A step to where the likelihood would be greatest without the bounds: what a bound cut off has no normal
 /// distribution, and what is left beside it depends on it.
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
-                                                   const std::optional<Rig>& rig) {
+                                                   const std::optional<Rig>& rig, const std::stop_token& stop) {
   const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);
-  const std::optional<LinearFit> linear = Linearize(part, fit, rig, terms, {}, false);
+  const std::optional<LinearFit> linear = Linearize(part, fit, rig, terms, {}, false, stop);
   if (!linear) return std::nullopt;
   const VectorXd step = linear->influence.transpose() * terms.score;
-  const MatrixXd covariance = CovarianceOf(part, fit, *linear, noise, terms);
+  const MatrixXd covariance = CovarianceOf(part, fit, *linear, noise, terms, stop);
   UnboundedEstimate estimate;
   const auto physical = static_cast<Index>(PhysicalParameters(fit.model).size());
   std::vector<double> values;

@@ -74,7 +74,7 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
   const Result<FitProblem> problem = MakeFitProblem(used, options);
   if (!problem) return tl::unexpected(problem.error());
   options = OptionsAtEstimates(*problem, fit, std::move(options));
-  const FittedMotion motion(used, fit, options.rig);
+  const FittedMotion motion(used, fit, options.rig, options.stop);
   const int release = problem->solve.release_time;
   const double begin = release < 0 ? 0.0 : options.start_values->parameters[static_cast<std::size_t>(release)];
   const double end = motion.instants()[used.size() - 1];
@@ -150,7 +150,8 @@ Result<void> PredictPart(const Task& task, const Part& part, Sums& sums) {
   const auto untraced = [&] { return Error(StatusCode::kFailedPrecondition, fit->reason); };
   if (fit->termination == Termination::kFailed) return untraced();
   Eigen::MatrixXd jacobian;
-  const auto predicted = FittedMotion(rest, *fit, task.options.rig).Readings(task.instants, &jacobian);
+  const auto predicted =
+      FittedMotion(rest, *fit, task.options.rig, task.options.stop).Readings(task.instants, &jacobian);
   if (!predicted) return untraced();
   if (fit->termination != Termination::kConverged) sums.without_errors = fit->reason;
   const Eigen::VectorXd variance = TrajectoryVariance(*fit, jacobian).array() + ReadingVariance(*fit);

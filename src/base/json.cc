@@ -13,10 +13,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Watches the parser: which key of the outermost object is being read, and which key an object has twice.
+/// Watches the parser: which key of the outermost object is being read, which key an object has twice, and whether
+/// there is more of it than anything here needs.
 class KeyWatch {
  public:
-  void See(int depth, Json::parse_event_t event, const Json& parsed) {
+  /// Whether to keep what comes.
+  bool See(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (depth > kMostJsonDepth || seen_ > kMostJsonKeys) is_too_much_ = true;
+    if (!is_too_much_) Note(depth, event, parsed);
+    return !is_too_much_;
+  }
+
+  std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
+  const std::optional<std::string>& repeated() const { return repeated_; }
+  bool is_too_much() const { return is_too_much_; }
+
+ private:
+  void Note(int depth, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) {
       keys_.resize(std::max<std::size_t>(keys_.size(), depth + 1));
       keys_[depth].clear();
@@ -25,15 +38,14 @@ class KeyWatch {
       std::vector<std::string>& keys = keys_[depth - 1];
       if (!repeated_ && std::ranges::find(keys, key) != keys.end()) repeated_ = key;
       keys.push_back(key);
+      ++seen_;
     }
   }
 
-  std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
-  const std::optional<std::string>& repeated() const { return repeated_; }
-
- private:
   std::vector<std::vector<std::string>> keys_;  // Of the object open at each depth.
   std::optional<std::string> repeated_;
+  int seen_ = 0;  // keys
+  bool is_too_much_ = false;
 };
 
 /// The parser counts bytes; a person counts lines.
@@ -52,18 +64,22 @@ tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, c
 }  // namespace
 
 Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std::string_view kind,
-                             std::string_view form) {
+                             std::string_view form, std::size_t most_bytes) {
   const std::string what(kind);
-  if (text.size() > kMostJsonBytes) {
-    return Fault(name, "this is longer than 64 KiB, so it is not a " + what + "; name a " + what + " file");
+  if (text.size() > most_bytes) {
+    return Fault(name, "this is longer than " + std::to_string(most_bytes / 1024) + " KiB, so it is not a " + what +
+                           "; name a " + what + " file");
   }
   KeyWatch watch;
   const auto see = [&watch](int depth, Json::parse_event_t event, const Json& parsed) {
-    watch.See(depth, event, parsed);
-    return true;
+    return watch.See(depth, event, parsed);
   };
   try {
     Json json = Json::parse(text, see);
+    if (watch.is_too_much()) {
+      return Fault(name, "this has more than " + std::to_string(kMostJsonKeys) + " keys, or more than " +
+                             std::to_string(kMostJsonDepth) + " brackets within one another, so it is not a " + what);
+    }
     if (!json.is_object()) {
       return Fault(name, "the " + what + " is " + ShownJson(json) + "; it must be an object: " + std::string(form));
     }

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stop_token>
 #include <string>
 #include <utility>
 
+#include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/model_comparison.h"
+#include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/window.h"
 
@@ -35,19 +38,46 @@ MotionModel ClosedFormModel(const RunOptions& options, const Recording& used, Ru
   return linear;
 }
 
-/// What is concluded from the fits together and from each.
+bool IsStopped(const RunOptions& options) { return options.fit.stop.stop_requested(); }
+
+/// What is concluded from the fits together and from each, but for what is left out when it is stopped.
 void AddAnalysis(const RunOptions& options, const FittedModels& fitted, FitRun& run) {
   RunReport& report = run.report;
   FitOptions fit_options = options.fit;
   fit_options.rig = report.rig;
   if (fitted.fits.size() > 1) report.comparison = CompareModels(fitted, fit_options);
   for (const FitReport& fit : fitted.fits) {
+    if (IsStopped(options)) return;
     const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
     report.constancy.push_back(TestConstancy(fitted.used, fit, own));
   }
 }
 
-/// What is reported of one swing. kFailedPrecondition: there are neither fits nor closed forms.
+/// As AddClosedForms of run_parts.h, until it is stopped.
+void AddClosedForms(const MotionModel& model, const Recording& used, const std::stop_token& stop, RunReport& report) {
+  auto forms = EstimateClosedForms(used, model, stop);
+  if (!forms) {
+    report.no_closed_forms = forms.error().message;
+    return;
+  }
+  report.closed_forms = *std::move(forms);
+  report.closed_forms_model = model.name;
+}
+
+/// As AddChecks of run_parts.h, until it is stopped.
+void AddChecks(const Recording& used, const std::stop_token& stop, RunReport& report) {
+  if (!report.closed_forms) return;
+  for (const FitReport& fit : report.fits) {
+    report.checks.emplace_back();
+    if (fit.termination == Termination::kFailed) continue;
+    const bool same = fit.model.name == report.closed_forms_model;
+    const auto own = same ? Result<ClosedForms>(*report.closed_forms) : EstimateClosedForms(used, fit.model, stop);
+    if (own) report.checks.back() = CheckClosedForms(used, *own, fit, report.rig, stop);
+  }
+}
+
+/// What is reported of one swing, without meaning once it is stopped. kFailedPrecondition: there are neither fits nor
+/// closed forms.
 Result<FitRun> MakeRun(const RunOptions& options, const ReadSwings& one, int release, FittedModels fitted) {
   FitRun run{one.common, {}};
   run.report.data = SummarizeData(fitted.used, fitted.swing, one.swings, release, one.samples);
@@ -59,11 +89,12 @@ Result<FitRun> MakeRun(const RunOptions& options, const ReadSwings& one, int rel
     run.report.no_closed_forms =
         "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
   } else if (options.closed_form_only) {
-    AddClosedForms(ClosedFormModel(options, used, run.report), used, run.report);
+    AddClosedForms(ClosedFormModel(options, used, run.report), used, options.fit.stop, run.report);
   } else {
-    AddClosedForms(run.report.fits[run.report.MainFit()].model, used, run.report);
-    AddChecks(used, run.report);
+    AddClosedForms(run.report.fits[run.report.MainFit()].model, used, options.fit.stop, run.report);
+    AddChecks(used, options.fit.stop, run.report);
   }
+  if (IsStopped(options)) return FitStopped();
   if (options.closed_form_only && !run.report.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, run.report.no_closed_forms);
   }
@@ -71,22 +102,30 @@ Result<FitRun> MakeRun(const RunOptions& options, const ReadSwings& one, int rel
   return run;
 }
 
+/// One chosen swing, `release`, of a recording that is used up.
+Result<FitRun> FitOne(const RunOptions& options, const ReadSwings& one, int release, Recording recording) {
+  if (IsStopped(options)) return FitStopped();
+  FitOptions fit_options = options.fit;
+  fit_options.rig = one.common.rig;
+  const FreeSwing& found = one.swings.found[static_cast<std::size_t>(release - 1)];
+  auto fitted = options.closed_form_only ? TakeSwing(std::move(recording), found)
+                                         : FitModels(std::move(recording), found, fit_options, options.models);
+  Result<FitRun> run = fitted ? MakeRun(options, one, release, *std::move(fitted)) : tl::unexpected(fitted.error());
+  if (IsStopped(options)) return FitStopped();  // whatever the pieces have made of it
+  return run;
+}
+
 }  // namespace
 
 std::vector<Result<FitRun>> FitRuns(const RunOptions& options, ReadSwings one) {
   std::vector<Result<FitRun>> runs;
-  FitOptions fit_options = options.fit;
-  fit_options.rig = one.common.rig;
   const std::string path = one.recording.path;
   const bool several = one.swings.chosen.size() > 1;
   for (const int release : one.swings.chosen) {
     // The last one needs no copy: a long recording fills the memory.
     const bool last = release == one.swings.chosen.back();
     Recording recording = last ? std::exchange(one.recording, {}) : one.recording;
-    const FreeSwing& found = one.swings.found[static_cast<std::size_t>(release - 1)];
-    auto fitted = options.closed_form_only ? TakeSwing(std::move(recording), found)
-                                           : FitModels(std::move(recording), found, fit_options, options.models);
-    Result<FitRun> run = fitted ? MakeRun(options, one, release, *std::move(fitted)) : tl::unexpected(fitted.error());
+    Result<FitRun> run = FitOne(options, one, release, std::move(recording));
     if (!run && several) run = ErrorAmong(run.error(), path, release);
     runs.push_back(std::move(run));
   }

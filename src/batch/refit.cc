@@ -13,10 +13,10 @@
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/version.h"
+#include "pendulum/batch/fit_bytes.h"
 #include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/provenance.h"
 #include "pendulum/model/motion_model.h"
-#include "pendulum/recording/read_recording.h"
 #include "pendulum/report/json.h"
 
 namespace pendulum {
@@ -95,29 +95,18 @@ Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inp
   return provenance;
 }
 
-/// Reads and fits as fit_pendulum does, from bytes that were read.
+std::optional<NamedBytes> Named(const std::string& name, std::optional<std::string> bytes) {
+  if (!bytes) return std::nullopt;
+  return NamedBytes{name, *std::move(bytes)};
+}
+
 Result<FitRun> FitInputs(const ManifestEntry& entry, RunInputs& inputs) {
   if (!inputs.data) return tl::unexpected(inputs.data.error());
   if (!inputs.rig) return tl::unexpected(inputs.rig.error());
   if (!inputs.calibration) return tl::unexpected(inputs.calibration.error());
-  std::optional<Rig> rig;
-  if (*inputs.rig) {
-    auto parsed = ParseRig(**inputs.rig, inputs.rig_name);
-    if (!parsed) return tl::unexpected(parsed.error());
-    rig = *std::move(parsed);
-  }
-  if (*inputs.calibration) {
-    auto parsed = ParseCalibration(**inputs.calibration, inputs.calibration_name);
-    if (!parsed) return tl::unexpected(parsed.error());
-    inputs.options.read.calibration = *std::move(parsed);
-  }
-  auto recording = ParseRecording(*inputs.data, entry.path, inputs.options.read);
-  if (!recording) return tl::unexpected(recording.error());
-  inputs.data->clear();
-  inputs.data->shrink_to_fit();
-  auto swings = FindSwings(*std::move(recording), inputs.options.swing, std::move(rig));
-  if (!swings) return tl::unexpected(swings.error());
-  return std::move(FitRuns(inputs.options, *std::move(swings)).front());
+  return FitBytes(inputs.options, {{entry.path, *std::move(inputs.data)},
+                                   Named(inputs.rig_name, *std::move(inputs.rig)),
+                                   Named(inputs.calibration_name, *std::move(inputs.calibration))});
 }
 
 RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance) {

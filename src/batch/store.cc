@@ -38,6 +38,11 @@ SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_
     batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
   FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
 
+// Rows are numbered as they come, so that the number is a position behind all others.
+constexpr const char* kAddRun = R"sql(
+INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
+  VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
+
 constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
   options_sha256 = ?, version = ?, cpu = ?, result = ? WHERE run = ?)sql";
@@ -149,7 +154,7 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
+  std::unique_ptr<SQLite::Statement> run_of, add_run, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
 };
 
 /// Fills the table of this batch with all entries; gives their hash.
@@ -318,6 +323,25 @@ Result<void> Store::Commit() {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     state_->Commit();
     return {};
+  });
+}
+
+Result<void> Store::BeginWrite() {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->BeginIfNone();
+    return {};
+  });
+}
+
+void Store::Rollback() { state_->transaction.reset(); }
+
+Result<std::int64_t> Store::Add(const ManifestEntry& entry) {
+  return sqlite::Guard(name(), [&]() -> Result<std::int64_t> {
+    state_->BeginIfNone();
+    sqlite::Bind(state_->Prepared(state_->add_run, kAddRun), entry.id, entry.path, entry.rig, entry.calibration,
+                 entry.from, entry.to, entry.models, entry.columns)
+        .exec();
+    return state_->database.getLastInsertRowid();
   });
 }
 

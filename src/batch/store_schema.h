@@ -11,7 +11,7 @@ inline constexpr int kStoreId = 0x50656e64;
 
 /// What makes version n of a store's tables from version n - 1 (PRAGMA user_version), n from 1 on. A version that was
 /// shipped is never changed: another one is appended. SQLite keeps the comments, so that .schema explains the tables.
-inline constexpr std::array<std::string_view, 1> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 2> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -61,6 +61,28 @@ CREATE TABLE quantities(  -- one row for each parameter of a fit, and each quant
 
 CREATE VIEW results AS  -- the fits with the id of their run
   SELECT id, position, path, runs.recommended = model AS recommended, fits.* FROM runs JOIN fits USING(run);
+)sql",
+                                                                     R"sql(
+CREATE TABLE files(  -- what a service was sent, each once: recordings, rigs, calibrations
+  file INTEGER PRIMARY KEY, sha256 TEXT NOT NULL UNIQUE, bytes BLOB NOT NULL);
+
+CREATE TABLE batches(  -- one row for each batch that a service accepted
+  batch INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE,
+  created TEXT NOT NULL);         -- RFC 3339, UTC
+
+CREATE TABLE requests(  -- one row for each run that a service was asked for; its name is the run's path
+  run INTEGER PRIMARY KEY REFERENCES runs,
+  batch INTEGER REFERENCES batches,  -- NULL: asked for alone
+  created TEXT NOT NULL,
+  flags TEXT NOT NULL,            -- what was asked, a JSON object of texts by the flags' names
+  data INTEGER NOT NULL REFERENCES files, rig INTEGER REFERENCES files, calibration INTEGER REFERENCES files);
+CREATE INDEX requests_of_batch ON requests(batch, run);
+CREATE INDEX requests_of_data ON requests(data);
+CREATE INDEX requests_of_rig ON requests(rig);
+CREATE INDEX requests_of_calibration ON requests(calibration);
+
+CREATE TABLE answers(  -- where the answer is to what a client may ask again: its idempotency key, and what it sent
+  key TEXT PRIMARY KEY, request_sha256 TEXT NOT NULL, location TEXT NOT NULL, created TEXT NOT NULL) WITHOUT ROWID;
 )sql"};
 
 }  // namespace pendulum

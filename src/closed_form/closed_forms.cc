@@ -62,14 +62,20 @@ void Inflate(double scatter, PeakTable& table) {
   table.zero.std_error *= std::sqrt(factor);
 }
 
+tl::unexpected<Status> Stopped() {
+  return Error(StatusCode::kTryAgain, "the closed forms were stopped before they were done; give them more time");
+}
+
 }  // namespace
 
-Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model) {
+Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
+                                        const std::stop_token& stop) {
   const double origin = recording.time[0];
   const Recording timed = InTrueTime(recording);
   ClosedForms forms;
   forms.gravity = model.gravity;
-  Result<Decrement> decrement = FitDecrement(timed, model);
+  Result<Decrement> decrement = FitDecrement(timed, model, stop);
+  if (stop.stop_requested()) return Stopped();
   if (decrement) {
     forms.table = decrement->table;
     forms.decrement = *std::move(decrement);
@@ -79,7 +85,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     if (!table) return tl::unexpected(table.error());
     forms.table = *std::move(table);
   }
-  Result<EnvelopeComparison> laws = CompareEnvelopes(forms.table, model.gravity);
+  Result<EnvelopeComparison> laws = CompareEnvelopes(forms.table, model.gravity, stop);
   if (laws) {
     if (forms.decrement) forms.wrong_law = DescribeWrongLaw(*forms.decrement, *laws);
     Inflate(laws->richest_chi_square / laws->richest_freedom, forms.table);
@@ -88,8 +94,9 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
   } else {
     forms.envelope = "not told: " + laws.error().message;
   }
-  forms.decay = TabulateDecay(forms.table);
-  forms.linear = ApplyLogDecrement(forms.table, model.gravity);
+  forms.decay = TabulateDecay(forms.table, stop);
+  forms.linear = ApplyLogDecrement(forms.table, model.gravity, stop);
+  if (stop.stop_requested()) return Stopped();
   for (Peak& peak : forms.table.peaks) peak.time = origin + (peak.time - origin) / recording.clock_scale;
   return forms;
 }

@@ -46,8 +46,9 @@ std::vector<PeakRun> Runs(const PeakTable& table) {
 /// peak between turning points, of the one before its first peak.
 class DecrementProblem {
  public:
-  DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included)
-      : table_(table), model_(model), included_(std::move(included)), runs_(Runs(table)) {
+  DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included,
+                   const std::stop_token& stop)
+      : table_(table), model_(model), stop_(stop), included_(std::move(included)), runs_(Runs(table)) {
     for (PeakRun& run : runs_) {
       run.row = 2 * peaks_;
       peaks_ += static_cast<Index>(run.count);
@@ -91,7 +92,8 @@ class DecrementProblem {
     return x;
   }
 
-  /// What the table has beyond the model, in standard errors; nothing where the model does not swing so far.
+  /// What the table has beyond the model, in standard errors; nothing where the model does not swing so far, or when
+  /// stopped.
   std::optional<VectorXd> Residuals(const VectorXd& x) const {
     VectorXd residuals(observations());
     if (!SetAll(x, residuals)) return std::nullopt;
@@ -167,7 +169,7 @@ class DecrementProblem {
     return true;
   }
 
-  /// The residuals of one run; false where the model does not swing so far.
+  /// The residuals of one run; false where the model does not swing so far, or when stopped.
   bool SetRun(std::size_t r, const VectorXd& x, VectorXd& residuals) const {
     Index row = runs_[r].row;
     const std::span<const double> friction_parameters(x.data() + 2, included_.size());
@@ -176,7 +178,7 @@ class DecrementProblem {
     const bool is_rate = table_.quantity == Quantity::kRate;
     for (std::size_t i = 0; i < runs_[r].count; ++i) {
       const std::size_t peak = runs_[r].first + i;
-      if (!(amplitude > 0 && x[1] > 0)) return false;
+      if (stop_.stop_requested() || !(amplitude > 0 && x[1] > 0)) return false;
       if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
       if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
       if (!is_rate && i + 1 == runs_[r].count) break;
@@ -198,6 +200,7 @@ class DecrementProblem {
 
   const PeakTable& table_;
   const MotionModel& model_;
+  const std::stop_token& stop_;
   std::vector<bool> included_;
   std::vector<PeakRun> runs_;
   std::vector<Eigen::Matrix2d> whitening_;  // of each peak in the table
@@ -307,9 +310,9 @@ std::string_view EnvelopeShape(std::string_view term) {
 }
 
 Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
-                          std::optional<VectorXd>& start) {
+                          const std::stop_token& stop, std::optional<VectorXd>& start) {
   Decrement decrement{model, table, {}, {}, std::vector<Estimate>(included.size()), {}, {}, 0, 0};
-  const DecrementProblem problem(table, model, included);
+  const DecrementProblem problem(table, model, included, stop);
   const std::vector<Index> free = problem.Free();
   decrement.freedom = static_cast<int>(problem.observations()) - static_cast<int>(free.size());
   if (decrement.freedom < 1) {
@@ -319,6 +322,10 @@ Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, cons
   }
   if (!start || start->size() != problem.unknowns()) start = problem.Start();
   const std::optional<LeastSquares> solution = Solve(problem, *start, free);
+  if (stop.stop_requested()) {
+    return Error(StatusCode::kTryAgain,
+                 "the least squares of the turning points was stopped before it was done; give it more time");
+  }
   if (!solution) {
     return Error(StatusCode::kFailedPrecondition, "the turning points follow no " + std::string(model.friction) +
                                                       " friction: their least squares has no end");
@@ -333,12 +340,13 @@ Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, cons
 
 double Decrement::Probability() const { return ProbabilityBeyond(chi_square, freedom); }
 
-Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included) {
+Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
+                               const std::stop_token& stop) {
   std::optional<VectorXd> start;
-  return FitFrom(table, model, included, start);
+  return FitFrom(table, model, included, stop, start);
 }
 
-Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model) {
+Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop) {
   if (!IsLinear(model)) {
     return Error(StatusCode::kFailedPrecondition, std::string(model.friction) +
                                                       " friction is not linear in its parameters, which the least "
@@ -348,24 +356,24 @@ Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& mo
   if (!table) return tl::unexpected(table.error());
   const std::vector<bool> all(PhysicalParameters(model).size() - 1, true);
   std::optional<VectorXd> start;
-  Result<Decrement> decrement = FitFrom(*table, model, all, start);
+  Result<Decrement> decrement = FitFrom(*table, model, all, stop, start);
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds && decrement; ++round) {
     const Kink kink{RestTorque(*decrement), 1 / std::sqrt(decrement->inertia.value)};
     if (kink.sticking_angle == 0) break;
     table = LocatePeaks(recording, kink);
     if (!table) return tl::unexpected(table.error());
-    decrement = FitFrom(*table, model, all, start);
+    decrement = FitFrom(*table, model, all, stop, start);
   }
   return decrement;
 }
 
-Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity) {
+Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity, const std::stop_token& stop) {
   const MotionModel richest = {"drag", "drag", gravity};
   const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
   const std::size_t terms = infos.size() - 1;
   std::optional<VectorXd> start;
-  const Result<Decrement> all = FitFrom(table, richest, std::vector<bool>(terms, true), start);
+  const Result<Decrement> all = FitFrom(table, richest, std::vector<bool>(terms, true), stop, start);
   if (!all) return tl::unexpected(all.error());
   start->segment(2, static_cast<Index>(terms)).setZero();
   const double scale = std::max(1.0, all->chi_square / all->freedom);
@@ -374,7 +382,8 @@ Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity grav
     std::vector<bool> alone(terms, false);
     alone[k] = true;
     std::optional<VectorXd> from = start;
-    const Result<Decrement> one = FitFrom(table, richest, alone, from);
+    const Result<Decrement> one = FitFrom(table, richest, alone, stop, from);
+    if (!one && one.error().code == StatusCode::kTryAgain) return tl::unexpected(one.error());
     if (!one) continue;
     const std::string_view name = infos[k + 1].name;
     laws.single.push_back({std::string(name), std::string(EnvelopeShape(name)), one->chi_square, one->freedom,

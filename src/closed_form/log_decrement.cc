@@ -151,7 +151,7 @@ std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gr
   return result;
 }
 
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity) {
+std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, const std::stop_token& stop) {
   const std::vector<std::size_t> starts = RunStarts(table);
   std::size_t longest = 0;
   for (std::size_t r = 1; r + 1 < starts.size(); ++r) {
@@ -161,17 +161,18 @@ std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gr
   int best = 0;
   double smallest = 0;
   for (int n = 1; Reaches(table, starts[longest], n); ++n) {
+    if (stop.stop_requested()) return std::nullopt;
     const double error = DampingRatio(table, weights, starts[longest], n)->std_error;
     if (best == 0 || error < smallest) best = n, smallest = error;
   }
   return ApplyLogDecrement(table, gravity, starts[longest], best);
 }
 
-std::vector<DecayRow> TabulateDecay(const PeakTable& table) {
+std::vector<DecayRow> TabulateDecay(const PeakTable& table, const std::stop_token& stop) {
   const VectorXd weights = table.ZeroWeights();
   std::vector<DecayRow> rows;
   std::size_t start = 0;
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+  for (std::size_t i = 0; i < table.peaks.size() && !stop.stop_requested(); ++i) {
     if (!table.peaks[i].continues) start = i;
     DecayRow row{i, DampingRatio(table, weights, i, 1), std::nullopt, static_cast<int>((i - start) / 2)};
     row.so_far = DampingRatio(table, weights, start + (i - start) % 2, row.periods);

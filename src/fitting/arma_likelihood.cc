@@ -115,18 +115,25 @@ Slope SlopeAt(const MemoryFamily& family, const Eigen::VectorXd& place, const Ei
 /// Fisher's scoring, damped as by Levenberg and Marquardt.
 class Climb {
  public:
-  Climb(const MemoryFamily& family, const Eigen::VectorXd& time, const Eigen::VectorXd& residual)
-      : family_(family), time_(time), residual_(residual) {}
+  Climb(const MemoryFamily& family, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+        const std::stop_token& stop)
+      : family_(family), time_(time), residual_(residual), stop_(stop) {}
 
-  Slope At(const Eigen::VectorXd& place) const { return SlopeAt(family_, place, time_, residual_, 0); }
+  /// Nowhere near, when stopped.
+  Slope At(const Eigen::VectorXd& place) const {
+    return is_stopped() ? Slope{} : SlopeAt(family_, place, time_, residual_, 0);
+  }
+
+  bool is_stopped() const { return stop_.stop_requested(); }
 
   Eigen::VectorXd Highest(Eigen::VectorXd place) const {
     constexpr int kMostSteps = 30;
     constexpr double kEnough = 1e-7;  // gain in log-likelihood
     constexpr double kLongest = 1;    // step
+    if (is_stopped()) return place;
     Slope here = SlopeAt(family_, place, time_, residual_, kDifference);
     double damping = 1e-4;
-    for (int i = 0; i < kMostSteps && damping < 1e6; ++i) {
+    for (int i = 0; i < kMostSteps && damping < 1e6 && !is_stopped(); ++i) {
       Eigen::VectorXd step = StepOf(here, damping);
       if (!(step.dot(here.gradient) > kEnough)) break;
       step /= std::max(1.0, step.cwiseAbs().maxCoeff() / kLongest);
@@ -153,6 +160,7 @@ class Climb {
   const MemoryFamily& family_;
   const Eigen::VectorXd& time_;
   const Eigen::VectorXd& residual_;
+  const std::stop_token& stop_;
 };
 
 // ---- Where to begin ------------------------------------------------------------------------------------------------
@@ -208,12 +216,11 @@ void AddContinuous(const Autocorrelation& like, const Eigen::VectorXd& time, Pla
 
 /// Of the places that `like` and the residuals' moments suggest the likeliest, at a scale of its own.
 Eigen::VectorXd LikeliestStart(const MemoryFamily& family, const Autocorrelation& like, const Eigen::VectorXd& time,
-                               const Eigen::VectorXd& residual) {
+                               const Eigen::VectorXd& residual, const Climb& climb) {
   Places places;
   if (family.kind == Kind::kAutoregressive) AddAutoregressive(like, time, residual, &places);
   if (family.kind == Kind::kMixed) AddMixed(like, &places);
   if (family.kind == Kind::kContinuous) AddContinuous(like, time, &places);
-  const Climb climb(family, time, residual);
   const double square = residual.squaredNorm() / static_cast<double>(residual.size());
   const double variance = std::max(square - family.rounding_variance, 0.01 * (square + family.rounding_variance));
   Eigen::VectorXd best;
@@ -283,16 +290,17 @@ CorrelatedLikelihood White(const CorrelatedResiduals& data, Eigen::VectorXd shif
 }
 
 CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const Autocorrelation& like,
-                                             const CorrelatedResiduals& data, Eigen::VectorXd shift) {
+                                             const CorrelatedResiduals& data, Eigen::VectorXd shift,
+                                             const std::stop_token& stop) {
   constexpr int kMostRounds = 6;
   constexpr double kEnough = 1e-3;  // gain in log-likelihood by the shift; the memory's that follows is less
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
-  const Climb climb(family, data.time, left);
-  Eigen::VectorXd place = LikeliestStart(family, like, data.time, left);
+  const Climb climb(family, data.time, left, stop);
+  Eigen::VectorXd place = LikeliestStart(family, like, data.time, left, climb);
   if (place.size() == 0) return {std::numeric_limits<double>::quiet_NaN(), {}, 0, shift, 0, {}};
   place = climb.Highest(place);
   double log_likelihood = climb.At(place).log_likelihood;
-  for (int round = 0; round < kMostRounds && data.jacobian.cols() > 0; ++round) {
+  for (int round = 0; round < kMostRounds && data.jacobian.cols() > 0 && !climb.is_stopped(); ++round) {
     const Eigen::VectorXd next = ShiftUnder(FilteredAt(family, place), data);
     left = data.residual - data.jacobian * next;
     const double gain = climb.At(place).log_likelihood - log_likelihood;
@@ -311,7 +319,8 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
 }  // namespace
 
 std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const CorrelatedResiduals& data,
-                                                                 const Autocorrelation& like) {
+                                                                 const Autocorrelation& like,
+                                                                 const std::stop_token& stop) {
   constexpr double kNothing = 1e-20;  // of the residuals' sum of squares: rounding
   if (!IsSound(data, like)) return std::nullopt;
   Eigen::VectorXd shift = BoxLeastSquares(data.jacobian, data.residual, data.lowest, data.highest);
@@ -320,7 +329,8 @@ std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const Correlate
   const MemoryFamily family = FamilyOf(like, data.rounding_variance);
   CorrelatedLikelihood best = family.kind == Kind::kWhite
                                   ? White(data, std::move(shift))
-                                  : AlternateShiftAndMemory(family, like, data, std::move(shift));
+                                  : AlternateShiftAndMemory(family, like, data, std::move(shift), stop);
+  if (stop.stop_requested()) return std::nullopt;
   if (!std::isfinite(best.log_likelihood) || !best.shift.allFinite() || !std::isfinite(best.sigma)) return std::nullopt;
   return best;
 }

@@ -49,8 +49,9 @@ class Replicas {
     Differentiate();
   }
 
-  /// Estimates of replica number `index`; empty when it cannot be solved, or runs out of memory.
+  /// Estimates of replica number `index`; empty when it cannot be solved, is stopped, or runs out of memory.
   std::vector<double> Estimate(std::uint64_t index) const {
+    if (options_.stop.stop_requested()) return {};
     try {
       return Refit(index);
     } catch (const std::exception&) {

@@ -198,7 +198,8 @@ bool LooksWhite(const Eigen::VectorXd& residual) {
   return LargestScore(residual) < std::log(static_cast<double>(residual.size()));
 }
 
-/// A deviance over the plane.
+/// A deviance over the plane, which is flat when the search for its lowest place is to end.
+constexpr double kStopped = 0;
 using Surface = std::function<double(const Eigen::Vector2d&)>;
 
 struct Vertex {
@@ -262,8 +263,9 @@ constexpr double kMostMemory = 0.99999;
 
 double MemoryAt(double place) { return kMostMemory * std::tanh(place); }
 
-Surface MixedSurface(const Clock& clock, const Eigen::MatrixXd& columns) {
-  return [&clock, &columns, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
+Surface MixedSurface(const Clock& clock, const Eigen::MatrixXd& columns, const std::stop_token& stop) {
+  return [&clock, &columns, &stop, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
+    if (stop.stop_requested()) return kStopped;
     PredictMixed(clock, MemoryAt(place[0]), MemoryAt(place[1]), &innovations);
     return Deviance(innovations, columns);
   };
@@ -294,19 +296,20 @@ Vertex BestMixed(const Surface& surface) {
   return Lowest(surface, best.place, 0.3);
 }
 
-Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
+Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights,
+                             const std::stop_token& stop) {
   const double penalty = std::log(static_cast<double>(residual.size()));
   const double white = WhiteCriterion(residual);
   const Autoregression burg = BestAutoregression(clock, residual);
   if (burg.criterion >= 0 && LooksWhite(residual)) return {};
   const Eigen::MatrixXd column = residual;
-  const Vertex mixed = BestMixed(MixedSurface(clock, column));
+  const Vertex mixed = BestMixed(MixedSurface(clock, column, stop));
   const double gain = mixed.height + 2 * penalty - white;
-  if (std::min(burg.criterion, gain) >= 0) return {};
+  if (std::min(burg.criterion, gain) >= 0 || stop.stop_requested()) return {};
   const bool is_mixed = gain < burg.criterion;
   if (!is_mixed && burg.reflection.size() > 1) return FromBurg(clock, burg.reflection);
   const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
-  const Surface restricted = MixedSurface(clock, columns);
+  const Surface restricted = MixedSurface(clock, columns, stop);
   if (is_mixed) return Mixed(clock, Lowest(restricted, mixed.place, 0.1).place);
   const double place = std::atanh(burg.reflection[0]);
   const auto along = [&](double p) { return restricted({p, 0}); };
@@ -327,14 +330,16 @@ Autocorrelation Continuous(const Eigen::VectorXd& time, const Eigen::Vector2d& p
   return continuous;
 }
 
-Surface ContinuousSurface(const Eigen::VectorXd& time, const Eigen::MatrixXd& columns) {
+Surface ContinuousSurface(const Eigen::VectorXd& time, const Eigen::MatrixXd& columns, const std::stop_token& stop) {
   Eigen::VectorXd age = Eigen::VectorXd::Zero(time.size());
   age.tail(time.size() - 1) = time.tail(time.size() - 1) - time.head(time.size() - 1);
-  return [&time, &columns, age, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
-    const Autocorrelation continuous = Continuous(time, place);
-    PredictContinuous(age, continuous.decay_time, continuous.white_share, &innovations);
-    return Deviance(innovations, columns);
-  };
+  return
+      [&time, &columns, &stop, age, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
+        if (stop.stop_requested()) return kStopped;
+        const Autocorrelation continuous = Continuous(time, place);
+        PredictContinuous(age, continuous.decay_time, continuous.white_share, &innovations);
+        return Deviance(innovations, columns);
+      };
 }
 
 Vertex LowestWithoutWhite(const Surface& surface, double from, double to) {
@@ -355,18 +360,18 @@ Vertex BestUnderWhite(const Surface& surface, double interval) {
 }
 
 Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& weights) {
+                               const Eigen::MatrixXd& weights, const std::stop_token& stop) {
   if (LooksWhite(residual)) return {};
   const double penalty = std::log(static_cast<double>(residual.size()));
   const Eigen::MatrixXd column = residual;
-  const Surface plain = ContinuousSurface(time, column);
+  const Surface plain = ContinuousSurface(time, column, stop);
   const double interval = Continuous(time, {0, 0}).interval;
   const Vertex pure = LowestWithoutWhite(plain, std::log(interval / 10), std::log(time[time.size() - 1] - time[0]));
   const Vertex under_white = BestUnderWhite(plain, interval);
   const double least = std::min(pure.height + penalty, under_white.height + 2 * penalty);
-  if (WhiteCriterion(residual) <= least) return {};
+  if (WhiteCriterion(residual) <= least || stop.stop_requested()) return {};
   const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
-  const Surface restricted = ContinuousSurface(time, columns);
+  const Surface restricted = ContinuousSurface(time, columns, stop);
   if (least < pure.height + penalty) return Continuous(time, Lowest(restricted, under_white.place, 0.1).place);
   return Continuous(time, LowestWithoutWhite(restricted, pure.place[0] - 1, pure.place[0] + 1).place);
 }
@@ -374,11 +379,11 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
 }  // namespace
 
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                                        const Eigen::MatrixXd& weights) {
+                                        const Eigen::MatrixXd& weights, const std::stop_token& stop) {
   constexpr Eigen::Index kFewest = 30;
   if (residual.size() < kFewest || !(residual.squaredNorm() > 0)) return {};
   const Clock clock = FindClock(time);
-  return clock.even ? EstimateEven(clock, residual, weights) : EstimateUneven(time, residual, weights);
+  return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
 }
 
 }  // namespace pendulum

@@ -151,7 +151,10 @@ FitOptions AskAlike(const FitReport& fit, FitOptions options) {
   return options;
 }
 
-Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
+namespace {
+
+/// The report, unless the fit is stopped: then it may be half made.
+Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TryFit(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());
   if (MayBeginInMotion(*attempt, options)) {
@@ -173,6 +176,22 @@ Result<FitReport> FitRecording(const Recording& recording, const FitOptions& opt
   }
   const std::string broken = estimates.empty() ? "" : BrokenOrder(*attempt->problem, estimates);
   return broken.empty() ? report : ReportSimplerLaw(recording, options, *attempt->problem, broken);
+}
+
+}  // namespace
+
+tl::unexpected<Status> FitStopped() {
+  return Error(
+      StatusCode::kTryAgain,
+      "the fit was stopped before it was done; give it more time, or ask for fewer models, a shorter window or "
+      "intervals by covariance");
+}
+
+Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
+  if (options.stop.stop_requested()) return FitStopped();
+  Result<FitReport> report = FitUnlessStopped(recording, options);
+  if (options.stop.stop_requested()) return FitStopped();
+  return report;
 }
 
 }  // namespace pendulum

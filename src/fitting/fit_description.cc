@@ -167,7 +167,7 @@ Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, 
   if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
   const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
   if (jacobian.rows() == 0) return {};
-  return EstimateAutocorrelation(problem.data.times(), z, jacobian / solution.noise.sigma);
+  return EstimateAutocorrelation(problem.data.times(), z, jacobian / solution.noise.sigma, problem.data.stop);
 }
 
 }  // namespace pendulum

@@ -335,7 +335,10 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
   return all;
 }
 
-Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+namespace {
+
+/// Once a stop is requested, of no meaning.
+Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());
   Work work;
@@ -367,6 +370,19 @@ Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<st
   fit.whole.statistics = SumStatistics(all, fit.parameters);
   SetShared(fit);
   fit.whole.solver.evaluations = work.joint.cost->traces();
+  return fit;
+}
+
+bool IsStopped(std::span<const JointRun> runs) {
+  return std::ranges::any_of(runs, [](const JointRun& run) { return run.options.stop.stop_requested(); });
+}
+
+}  // namespace
+
+Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+  if (IsStopped(runs)) return FitStopped();
+  Result<JointFit> fit = FitUnlessStopped(runs, shared);
+  if (IsStopped(runs)) return FitStopped();
   return fit;
 }
 

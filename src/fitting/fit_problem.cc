@@ -253,6 +253,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, *start);
   problem.data.drifts = drifts;
+  problem.data.stop = options.stop;
   SetCensoring(recording, problem);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   for (const ParameterInfo& info : problem.infos) {

@@ -34,6 +34,7 @@ class WindowTrials {
     options_.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
     options_.loss = options.loss;
     options_.interval = IntervalMethod::kCovariance;
+    options_.stop = options.stop;
   }
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
@@ -227,9 +228,9 @@ void Withdraw(const std::string& why, FitReport& fit) {
   WithdrawErrors("not a pendulum", fit);
 }
 
-std::optional<std::string> WhyNoPendulum(const SwingFit& result) {
+std::optional<std::string> WhyNoPendulum(const SwingFit& result, const std::stop_token& stop) {
   if (result.swing.beats) return "its amplitude grows again and again, as that of two pendulums that are coupled does";
-  return WhyLinear(result.used, result.fit);
+  return WhyLinear(result.used, result.fit, stop);
 }
 
 /// The swing's window as FindFreeSwings would have it, for ends that the user chose.
@@ -295,7 +296,10 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   return swings;
 }
 
-Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+namespace {
+
+/// Once a stop is requested, of no meaning.
+Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
   if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
   Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
   if (!result) return result;
@@ -307,7 +311,7 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
     WarnOfLargerMotion(swing, result->fit);
     return result;
   }
-  if (const auto why = WhyNoPendulum(*result)) {
+  if (const auto why = WhyNoPendulum(*result, options.stop)) {
     Withdraw(*why, result->fit);
     return result;
   }
@@ -325,7 +329,16 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
   WarnOfLargerMotion(swing, result->fit);
-  if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit) : std::nullopt) Withdraw(*why, result->fit);
+  if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit, options.stop) : std::nullopt)
+    Withdraw(*why, result->fit);
+  return result;
+}
+
+}  // namespace
+
+Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+  Result<SwingFit> result = FitUnlessStopped(std::move(recording), std::move(swing), options);
+  if (options.stop.stop_requested()) return FitStopped();
   return result;
 }
 

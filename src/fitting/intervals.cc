@@ -237,7 +237,7 @@ std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, F
   Optimum optimum = WithoutBounds(fitted.optimum);
   if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
   const LinearizedFit linear = LinearizedOf(fitted, optimum);
-  const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed);
+  const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed, fitted.options.stop);
   if (!posterior) return std::nullopt;
   MoveTo(linear, *posterior, fitted, optimum.free, report);
   constexpr double kNormal = 1.959963984540054;

@@ -94,7 +94,8 @@ bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known) {
   joint.Distribute(solution.parameters);
   for (JointMember& member : joint.members) {
     member.solution.noise.sigma = member.alone->noise.sigma;
-    member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr);  // known to be traced
+    member.cost->Readings(member.solution.parameters, &member.solution.readings,
+                          nullptr);  // known to be traced, unless stopped
   }
   return true;
 }

@@ -28,13 +28,14 @@ Recording FirstSwings(const Recording& recording, const FitReport& report) {
 }
 
 /// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
-std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity) {
+std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity, const std::stop_token& stop) {
   FitOptions options;
   options.model = "drag";
   options.gravity = gravity;
   options.max_traces = 200;
   options.noise = NoiseChoice::kGaussian;
   options.interval = IntervalMethod::kCovariance;
+  options.stop = stop;
   Result<FitReport> fit = FitRecording(recording, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
   return *std::move(fit);
@@ -49,14 +50,15 @@ bool DescribesAll(const FitReport& report) {
 }
 
 /// A mass on a spring swings with one period at every amplitude. pendulum: a fit with sine gravity.
-std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum) {
+std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum,
+                                    const std::stop_token& stop) {
   constexpr double kSmallest = 0.2;  // rad; below it the two can hardly be told apart
   constexpr double kMuchLess = 0.7;
   constexpr double kSurely = 30;
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
   const double amplitude = 0.5 * (recording.value.maxCoeff() - recording.value.minCoeff());
   if (amplitude < kSmallest) return std::nullopt;
-  const std::optional<FitReport> linear = FitRichest(recording, Gravity::kLinear);
+  const std::optional<FitReport> linear = FitRichest(recording, Gravity::kLinear, stop);
   if (!linear) return std::nullopt;
   const double left = pendulum.statistics.rms_residual;
   const double ratio = linear->statistics.rms_residual / left;
@@ -121,18 +123,19 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
 
 }  // namespace
 
-std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report) {
+std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report, const std::stop_token& stop) {
   if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
-  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine);
-  return richest ? IsLinear(some, *richest) : std::nullopt;
+  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
+  return richest ? IsLinear(some, *richest, stop) : std::nullopt;
 }
 
-std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report) {
+std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report,
+                                       const std::stop_token& stop) {
   if (report.termination == Termination::kFailed) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest =
-      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear);
+      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear, stop);
   return richest ? HasTwoModes(some, *richest) : std::nullopt;
 }
 

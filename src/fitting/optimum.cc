@@ -107,10 +107,20 @@ std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std
   return columns;
 }
 
+/// The optimum was traced: unless the fit was stopped since, this can be, too. Then the part has no information.
+void SetNothing(const std::vector<Index>& columns, Part& part) {
+  const auto size = static_cast<Index>(columns.size());
+  part.bread = part.meat = Eigen::MatrixXd::Zero(size, size);
+  part.mixed = Eigen::VectorXd::Zero(size);
+}
+
 /// The sums say it all, and the cost has them ready.
 void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
   Eigen::MatrixXd sums, priors;
-  run.cost.Sums(run.solution.parameters, &sums);  // known to be traced: the optimum was
+  if (!run.cost.Sums(run.solution.parameters, &sums)) {
+    SetNothing(columns, part);
+    return;
+  }
   priors.setZero(sums.rows(), sums.cols());
   AddPriors(run.cost.priors(), run.solution.parameters, &priors);
   part.bread = part.meat = (sums - priors)(columns, columns);
@@ -127,7 +137,10 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
   const NoiseModel& noise = run.solution.noise;
   Eigen::VectorXd readings;
   Eigen::MatrixXd all;
-  run.cost.Readings(run.solution.parameters, &readings, &all);  // known to be traced: the optimum was
+  if (!run.cost.Readings(run.solution.parameters, &readings, &all)) {
+    SetNothing(columns, part);
+    return part;
+  }
   const Eigen::MatrixXd jacobian = all(Eigen::all, columns);
   const SampleTerms terms = TermsOf(run.problem, run.solution);
   part.bread = InformationOf(run.problem, noise, terms, jacobian);

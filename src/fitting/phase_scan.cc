@@ -57,22 +57,24 @@ struct Candidate {
 /// The samples to scan.
 class Scan {
  public:
-  Scan(const Recording& recording, Gravity gravity)
+  Scan(const Recording& recording, Gravity gravity, const std::stop_token& stop)
       : quantity_(recording.quantity),
         gravity_(gravity),
         time_(recording.clock_scale * (recording.time.head(Count(recording)).array() - recording.time[0])),
-        value_(recording.value.head(Count(recording))) {}
+        value_(recording.value.head(Count(recording))),
+        stop_(stop) {}
 
   double duration() const { return time_[time_.size() - 1]; }
   double half_range() const { return 0.5 * (value_.maxCoeff() - value_.minCoeff()); }
 
-  /// The best envelope at each frequency, when the reading's amplitude is about `amplitude` at first.
+  /// The best envelope at each frequency, when the reading's amplitude is about `amplitude` at first; unless it is
+  /// stopped.
   std::vector<Candidate> At(const std::vector<double>& frequencies, double amplitude) const {
     std::vector<Candidate> best(frequencies.size());
     for (const Envelope& envelope : kEnvelopes) {
       const ArrayXd decay = (time_ / duration()).unaryExpr([&](double part) { return envelope.At(part); });
       ArrayXd warped;
-      for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      for (std::size_t i = 0; i < frequencies.size() && !stop_.stop_requested(); ++i) {
         // The amplitude that belongs to a rate depends on the frequency, that of an angle does not.
         if (i == 0 || quantity_ == Quantity::kRate) warped = WarpedTime(amplitude * decay, frequencies[i]);
         Candidate trial{frequencies[i], envelope};
@@ -112,6 +114,7 @@ class Scan {
   Gravity gravity_;
   ArrayXd time_;
   Eigen::VectorXd value_;
+  const std::stop_token& stop_;
 };
 
 std::vector<double> Grid(const FrequencyRange& range, double duration) {
@@ -187,15 +190,17 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
 
 /// Scanned twice: the samples' range tells the amplitude roughly, the best least squares well.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
-                                         const FrequencyRange& range) {
+                                         const FrequencyRange& range, const std::stop_token& stop) {
   constexpr double kMostAmplitude = 3;  // half ranges: samples seldom miss more of the swing
-  const Scan scan(recording, model.gravity);
+  const Scan scan(recording, model.gravity, stop);
   const std::vector<double> frequencies = Grid(range, scan.duration());
   const std::vector<Candidate> rough = scan.At(frequencies, scan.half_range());
   const Candidate& best = *std::ranges::min_element(rough, {}, &Candidate::rss);
   const double amplitude = std::min(best.amplitude(), kMostAmplitude * scan.half_range());
+  const std::vector<Candidate> fine = scan.At(frequencies, amplitude);
+  if (stop.stop_requested()) return {};
   std::vector<StartValues> starts;
-  for (const Candidate& candidate : LocalMinima(scan.At(frequencies, amplitude))) {
+  for (const Candidate& candidate : LocalMinima(fine)) {
     starts.push_back(StartAt(candidate, recording, model, scan.duration()));
   }
   return starts;

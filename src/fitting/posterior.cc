@@ -18,6 +18,7 @@
 #include "line_likelihood.h"
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/covariance.h"
+#include "pendulum/fitting/fit.h"
 
 namespace pendulum {
 namespace {
@@ -141,14 +142,16 @@ constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolu
 /// of readings in units of the resolution.
 class Chain {
  public:
-  Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed);
+  Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop);
 
+  /// Without meaning when stopped.
   Draws Run(int rounds);
 
   /// Turns to coordinates in which these draws are white.
   void Whiten(const Draws& draws);
 
   double work() const { return likelihood_.work(); }
+  bool is_stopped() const { return stop_.stop_requested(); }
 
  private:
   void Round();
@@ -161,6 +164,7 @@ class Chain {
   void EnterFrame(Frame frame, const Eigen::VectorXd& delta);
 
   const LinearizedFit& fit_;
+  const std::stop_token& stop_;
   Generator generator_;
   LevelSamples samples_;  // slopes by δ
   Frame frame_;
@@ -175,8 +179,11 @@ class Chain {
   Eigen::VectorXd positions_;  // of the active samples
 };
 
-Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed)
-    : fit_(fit), generator_(seed), samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
+Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop)
+    : fit_(fit),
+      stop_(stop),
+      generator_(seed),
+      samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
   constexpr double kLeastStart = 0.05;  // a smaller one would hold the chain where it begins
   log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kLeastStart, kMostSigma));
   EnterFrame(std::move(frame), Eigen::VectorXd::Zero(fit.jacobian.cols()));
@@ -264,13 +271,13 @@ void Chain::Round() {
   for (double& entry : random.reshaped()) entry = normal(generator_);
   const Eigen::MatrixXd directions = Eigen::HouseholderQR<Eigen::MatrixXd>(random).householderQ();
   positions_ = active_.position + active_.slope * w_;
-  for (Eigen::Index k = 0; k < parameters; ++k) MoveAlong(directions.col(k));
+  for (Eigen::Index k = 0; k < parameters && !is_stopped(); ++k) MoveAlong(directions.col(k));
   MoveSigma();
 }
 
 Draws Chain::Run(int rounds) {
   Draws draws(rounds, w_.size() + 1);
-  for (Eigen::Index k = 0; k < rounds; ++k) {
+  for (Eigen::Index k = 0; k < rounds && !is_stopped(); ++k) {
     Round();
     draws.row(k) << Delta().transpose(), std::exp(log_sigma_);
   }
@@ -361,6 +368,7 @@ constexpr double kMostWork = 1e9;
 void WarmUp(Chain& chain) {
   for (const int rounds : {10, 20, 40, 80, 160}) {
     const Draws draws = chain.Run(rounds);
+    if (chain.is_stopped()) return;
     chain.Whiten(draws.bottomRows(rounds * 3 / 4));
     if (chain.work() > kMostWork / 8) break;  // where samples are that many, the first coordinates are good
   }
@@ -370,7 +378,7 @@ Draws RunUntilEnough(Chain& chain) {
   constexpr int kRounds = 150;
   constexpr double kEnoughDraws = 500;
   Draws draws = chain.Run(kRounds);
-  while (LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
+  while (!chain.is_stopped() && LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
     const Draws more = chain.Run(kRounds);
     draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
     draws.bottomRows(kRounds) = more;
@@ -380,15 +388,17 @@ Draws RunUntilEnough(Chain& chain) {
 
 }  // namespace
 
-Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed) {
+Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed, const std::stop_token& stop) {
   for (const auto check : {CheckSizes, CheckValues}) {
     if (Result<void> checked = check(fit); !checked) return tl::unexpected(checked.error());
   }
   Result<Frame> frame = FirstFrame(fit);
   if (!frame) return tl::unexpected(frame.error());
-  Chain chain(fit, std::move(*frame), seed);
+  Chain chain(fit, std::move(*frame), seed, stop);
   WarmUp(chain);
-  return Summarize(RunUntilEnough(chain), fit.noise.resolution);
+  Draws draws = RunUntilEnough(chain);
+  if (chain.is_stopped()) return FitStopped();
+  return Summarize(std::move(draws), fit.noise.resolution);
 }
 
 }  // namespace pendulum

@@ -97,6 +97,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
+    if (IsStopped()) return false;
     if (!last_.IsAt(p, *this)) {
       if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
       last_.SetAt(p, *this, *sums);
@@ -107,6 +108,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
+    if (IsStopped()) return false;
     readings->resize(static_cast<Eigen::Index>(used_samples_));
     const auto read = [&](const double* row, std::size_t first, int count) {
       Read(p, row, first, count, readings->data() + first);
@@ -135,10 +137,14 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
   TraceSummary Trace(std::span<const double> p) const override {
+    if (IsStopped()) return {};
     if (traced_.IsAt(p, *this)) return traced_.value;
     ++traces_;
-    const std::function<void(const Segment<double>&)> nothing = [](const Segment<double>&) {};
-    traced_.SetAt(p, *this, TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), Options(), nothing));
+    TraceOptions options = Options();
+    const std::function<void(const Segment<double>&)> nothing = [&](const Segment<double>&) {
+      GiveUpIfStopped(options);
+    };
+    traced_.SetAt(p, *this, TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
     return traced_.value;
   }
 
@@ -277,6 +283,14 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return options;
   }
 
+  bool IsStopped() const { return data_.stop.stop_requested(); }
+
+  /// A motion of a short period and few samples takes minutes: the tracer refuses it as soon as it may make no more
+  /// steps.
+  void GiveUpIfStopped(TraceOptions& options) const {
+    if (IsStopped()) options.max_steps = 0;
+  }
+
   bool IsAdmissible(std::span<const double> p) const {
     if (!(p[0] > 0)) return false;
     return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
@@ -286,9 +300,11 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
-    if (!IsAdmissible(p)) return false;
+    if (IsStopped() || !IsAdmissible(p)) return false;
     samples.Restart({data_.time.data(), used_samples_}, threads_);
+    TraceOptions options = Options();
     const auto visit = [&](const Segment<T>& segment) {
+      GiveUpIfStopped(options);
       if (data_.quantity == Quantity::kAngle) {
         samples.Take(segment, work, add);
       } else {
@@ -298,7 +314,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     ++traces_;
     // One tracer for all visitors: it is by far the most code here.
     const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
-    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), Options(), visitor);
+    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
     if (summary.outcome != TraceSummary::Outcome::kComplete || !samples.is_complete()) return false;
     if constexpr (DualNumber<T>) traced_.SetAt(p, *this, summary);
     return true;

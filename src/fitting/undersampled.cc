@@ -108,7 +108,7 @@ Result<std::vector<Alias>> FitAliases(const Recording& used, const Allowed& allo
   model->gravity = options.gravity.value_or(model->gravity);
   std::optional<Status> error;
   std::vector<Alias> aliases;
-  for (StartValues& start : ScanFrequencies(used, *model, allowed.range)) {
+  for (StartValues& start : ScanFrequencies(used, *model, allowed.range, options.stop)) {
     options.start_values = start;
     Result<FitReport> fit = FitRecording(used, options);
     if (!fit) error = fit.error();
@@ -118,6 +118,7 @@ Result<std::vector<Alias>> FitAliases(const Recording& used, const Allowed& allo
         kTurn * frequency * kBeyond > allowed.range.low && kTurn * frequency < kBeyond * allowed.range.high;
     if (inside) aliases.push_back({std::move(start), *std::move(fit), frequency});
   }
+  if (options.stop.stop_requested()) return FitStopped();
   if (aliases.empty() && error) return tl::unexpected(*error);
   std::ranges::stable_sort(aliases, std::ranges::greater(), &Alias::likelihood);
   std::vector<Alias> distinct;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Completes an installed folder so that it runs from anywhere: lib/ gets every shared library that the tools need, but for
-# glibc's own, share/doc/ the licences of these. pendulum_tools are the tools as they were built, pendulum_strip is strip.
+# glibc's own, share/doc/ the licences of these and of what is in the tools. pendulum_tools are the tools as they were
+# built, pendulum_strip is strip, pendulum_packages this folder.
+include(${pendulum_packages}/licences.cmake)
 set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
 set(glibc "^(ld-linux.*|libc|libm|libmvec|libpthread|libdl|librt|libresolv|libutil)\\.so")
 
@@ -21,16 +23,14 @@ endfunction()
 # The licence of a package, and the texts that it refers to.
 function(copy_licence package)
   file(REAL_PATH /usr/share/doc/${package}/copyright licence)
-  file(MAKE_DIRECTORY ${prefix}/share/doc/${package} ${prefix}/share/doc/common-licenses)
+  file(MAKE_DIRECTORY ${prefix}/share/doc/${package})
   file(COPY_FILE ${licence} ${prefix}/share/doc/${package}/copyright)
-  file(READ ${licence} text)
-  string(REGEX MATCHALL "/usr/share/common-licenses/[A-Za-z]+(-[0-9]+(\\.[0-9]+)*)?" common "${text}")
-  foreach(path ${common})
-    file(REAL_PATH ${path} file)
-    cmake_path(GET path FILENAME name)
-    file(COPY_FILE ${file} ${prefix}/share/doc/common-licenses/${name} ONLY_IF_DIFFERENT)
-  endforeach()
+  copy_common_licences(${licence} ${prefix}/share/doc/common-licenses)
 endfunction()
+
+file(MAKE_DIRECTORY ${prefix}/share/doc/pendulum)
+write_copyright(${prefix}/share/doc/pendulum/copyright)
+copy_common_licences(${prefix}/share/doc/pendulum/copyright ${prefix}/share/doc/common-licenses)
 
 file(GET_RUNTIME_DEPENDENCIES
   EXECUTABLES ${pendulum_tools}

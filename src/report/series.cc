@@ -133,6 +133,11 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
   return text;
 }
 
+std::string ToResidualCsv(const Recording& used, const RunReport& report, std::size_t fit) {
+  return ToResidualCsv(used, report.fits[fit],
+                       report.checks.empty() ? TextbookOverlay{} : report.checks[fit].overlay);
+}
+
 nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report, SeriesDetail detail) {
   const std::string unit = used.value_unit();
   Json json;

@@ -98,10 +98,7 @@ std::string CommandLine() {
 /// The residuals of recording k of a run.
 std::string ResidualsOf(const FitRun& run, std::size_t k) {
   const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
-  const std::size_t main = run.report.MainFit();
-  const TextbookOverlay none;
-  const TextbookOverlay& overlay = report.checks.empty() ? none : report.checks[main].overlay;
-  return ToResidualCsv(run.used[k], report.fits[main], overlay);
+  return ToResidualCsv(run.used[k], report, run.report.MainFit());
 }
 
 /// What is to be written of run `index` (0-based) of `count`, standard output for people apart.

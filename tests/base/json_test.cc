@@ -64,5 +64,22 @@ TEST(JsonText, ReplacesWhatIsNoUtf8) {
   EXPECT_EQ(JsonText({{"a", 1}}, 2), "{\n  \"a\": 1\n}");
 }
 
+TEST(ParseJsonObject, RefusesWhatIsDeeperOrHasMoreKeysThanAnythingHere) {
+  const std::string deep = R"({"a": )" + std::string(30'000, '[') + std::string(30'000, ']') + "}";
+  const auto refused = ParseJsonObject(deep, "rig.json", "rig", "{}");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("more than 32 brackets within one another"));
+  std::string keys = "{";
+  for (int i = 0; i <= 4100; ++i) keys += (i == 0 ? "\"k" : ",\"k") + std::to_string(i) + "\":1";
+  EXPECT_FALSE(ParseJsonObject(keys + "}", "rig.json", "rig", "{}"));
+}
+
+TEST(ParseJsonObject, TakesAsManyBytesAsItIsTold) {
+  const std::string text = R"({"a": ")" + std::string(100'000, 'x') + "\"}";
+  EXPECT_FALSE(ParseJsonObject(text, "rig.json", "rig", "{}"));
+  EXPECT_TRUE(ParseJsonObject(text, "rig.json", "rig", "{}", 200'000));
+}
+
 }  // namespace
 }  // namespace pendulum::json_test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,9 @@ struct ClosedFormCheck {
 /// Compares a fit that is not kFailed with closed forms of its model, and with the inertia that the rig's geometry
 /// gives. A difference is traced to its cause by applying the formula to the fitted model's own trajectory: with small
 /// angles, with its own, at the recording's own instants and on the sensor's levels (MODEL.md eq. (38)). `used` is what
-/// was fitted. Cost: some milliseconds, some tens where something differs.
+/// was fitted. Once a stop is requested it ends soon, with rows that mean nothing. Cost: some milliseconds, some tens
+/// where something differs, seconds where turning points are thousands.
 ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,
-                                 const std::optional<Rig>& rig);
+                                 const std::optional<Rig>& rig, const std::stop_token& stop = {});
 
 }  // namespace pendulum

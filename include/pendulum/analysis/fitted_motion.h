@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -17,8 +18,8 @@ namespace pendulum {
 /// The motion that a fit found, to be followed at any instants, with another gravity or other parameters.
 class FittedMotion {
  public:
-  /// `used` is what was fitted.
-  FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig);
+  /// `used` is what was fitted. Once a stop is requested, there are no readings any more.
+  FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, std::stop_token stop = {});
 
   /// The recording's instants, true s from its first sample.
   const Eigen::VectorXd& instants() const { return instants_; }
@@ -51,6 +52,7 @@ class FittedMotion {
   std::vector<double> parameters_;  // P, units of G, times from the first sample
   std::vector<double> reported_;    // P: report's unit per unit of parameters_
   Eigen::VectorXd instants_;
+  std::stop_token stop_;
 };
 
 }  // namespace pendulum

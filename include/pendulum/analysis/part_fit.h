@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,9 +39,11 @@ ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, cons
 Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
                                 const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 
-/// The memory of N residuals; time in true s, jacobian N x K by all that was fitted to them.
+/// The memory of N residuals; time in true s, jacobian N x K by all that was fitted to them. As
+/// EstimateAutocorrelation.
 Autocorrelation MemoryOf(const Eigen::VectorXd& time, const Eigen::VectorXd& value, const NoiseModel& noise,
-                         const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian);
+                         const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian,
+                         const std::stop_token& stop = {});
 
 /// What a variance by N residuals is short of, `lost` of N variances having gone into the free parameters.
 double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index free, double lost);
@@ -53,9 +56,10 @@ struct LinearFit {
   Eigen::MatrixXd influence;       ///< N x F: estimates [report's units] move by its transpose times the scores.
 };
 
-/// Nothing where the motion cannot be traced or the readings do not tell the F parameters.
+/// Nothing where the motion cannot be traced or the readings do not tell the F parameters, or once a stop is requested.
 std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
-                                   const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds);
+                                   const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds,
+                                   const std::stop_token& stop = {});
 
 /// The noise of a fit, with the sensor's range.
 NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options);
@@ -70,7 +74,7 @@ struct UnboundedEstimate {
 
 /// A step from the fit to where the likelihood would be greatest without bounds. Nothing as Linearize.
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
-                                                   const std::optional<Rig>& rig);
+                                                   const std::optional<Rig>& rig, const std::stop_token& stop = {});
 
 /// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
 double SquaredLength(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);

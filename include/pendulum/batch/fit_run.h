@@ -19,7 +19,8 @@ struct FitRun {
 
 /// Fits the chosen swings of one recording one by one, with all that is concluded from the fits. One that cannot be
 /// fitted keeps its place with its error: as FitModels, or kFailedPrecondition where neither fits nor closed forms were
-/// found; of several swings, the message says which.
+/// found; of several swings, the message says which. kTryAgain once options.fit.stop is requested, whatever was ready
+/// of the swing by then; those that were done before stay.
 std::vector<Result<FitRun>> FitRuns(const RunOptions& options, ReadSwings one);
 
 /// The exit code of a run: that of its fit, of several the recommended one; 0 for closed forms alone.

@@ -99,6 +99,15 @@ class Store {
 
   Result<void> Commit();
 
+  /// Begins what the next Commit makes durable, unless that has begun.
+  Result<void> BeginWrite();
+
+  /// Forgets what came since the last Commit.
+  void Rollback();
+
+  /// Adds a run that belongs to no manifest; its position is behind those of all others. kInternal: the id is known.
+  Result<std::int64_t> Add(const ManifestEntry& entry);
+
   /// Commits that every run of the batch has its rows.
   Result<void> Complete();
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct ClosedForms {
   std::string envelope;                ///< Which of them the amplitudes follow, a sentence.
 };
 
-/// kFailedPrecondition: as LocatePeaks.
-Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model);
+/// kFailedPrecondition: as LocatePeaks. kTryAgain: a stop was requested before they were done.
+Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
+                                        const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -36,11 +37,13 @@ struct Decrement {
 /// 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), each without their small angles, and
 /// frictionless the period corrected by the elliptic integral. Errors are those of the turning points, times
 /// sqrt(chi_square / freedom) where that is above 1. Turning points are located again once the kinks are known.
-/// kFailedPrecondition: as LocatePeaks, or too few for so many unknowns, or no such motion. Cost: some milliseconds.
-Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model);
+/// kFailedPrecondition: as LocatePeaks, or too few for so many unknowns, or no such motion. kTryAgain: a stop was
+/// requested before it was done. Cost: some milliseconds, for a thousand turning points a second.
+Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop = {});
 
 /// The same from turning points as they were located; friction parameters that are not `included` (K) are 0.
-Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included);
+Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
+                               const std::stop_token& stop = {});
 
 /// One term of friction alone, and whether the turning points follow it.
 struct EnvelopeLaw {
@@ -60,6 +63,6 @@ struct EnvelopeComparison {
 
 /// Which law the envelope follows: dry friction alone a straight line, viscous an exponential, drag a hyperbola. Each
 /// is fitted alone; errors are enlarged until all terms together fit. `gravity` as the model's. Errors as FitDecrement.
-Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity);
+Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity, const std::stop_token& stop = {});
 
 }  // namespace pendulum

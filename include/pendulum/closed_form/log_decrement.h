@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,8 +35,9 @@ struct LogDecrement {
 std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods);
 
 /// The same over that many periods of the longest run of turning points, from its beginning, that give the damping
-/// ratio the smallest standard error. Nothing where no run has a whole period.
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity);
+/// ratio the smallest standard error. Nothing where no run has a whole period, or once a stop is requested.
+std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity,
+                                              const std::stop_token& stop = {});
 
 /// A line of the table of turning points: damping ratios with the turning point a period later, and since the first.
 struct DecayRow {
@@ -45,6 +47,7 @@ struct DecayRow {
   int periods = 0;                 ///< Between those two.
 };
 
-std::vector<DecayRow> TabulateDecay(const PeakTable& table);
+/// One line for each turning point; not for all once a stop is requested.
+std::vector<DecayRow> TabulateDecay(const PeakTable& table, const std::stop_token& stop = {});
 
 }  // namespace pendulum

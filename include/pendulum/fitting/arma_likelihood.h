@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include <Eigen/Core>
@@ -33,8 +34,9 @@ struct CorrelatedLikelihood {
 /// Exact Gaussian likelihood by a Kalman filter (A. C. Harvey, Forecasting, structural time series models and the
 /// Kalman filter, 1989, section 3.4; R. H. Jones, Technometrics 22:389, 1980, for gaps), maximised over memory and
 /// scale, and by generalised least squares over δ in turn. `like` gives the kind and order of the memory, and where to
-/// begin. Nothing when no number comes out. Cost: a few hundred passes over the samples.
+/// begin. Nothing when no number comes out, or a stop is requested. Cost: a few hundred passes over the samples.
 std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const CorrelatedResiduals& data,
-                                                                 const Autocorrelation& like);
+                                                                 const Autocorrelation& like,
+                                                                 const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -20,7 +20,7 @@ struct Bootstrap {
 /// Refits of kBootstrapFits recordings: the fitted readings with new noise, rounded and cut as the sensor does.
 /// Independent Gaussian or quantized noise is drawn from its model; residuals that remember, and those of a robust
 /// family, are resampled in circular blocks (Politis & Romano 1992). quantile_residuals: N. Runs on options.threads
-/// threads; the same for a seed whatever their number.
+/// threads; the same for a seed whatever their number. Once options.stop is requested the others count as failed.
 Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, const Solution& solution,
                        const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,13 @@ struct FitOptions {
   double max_trace_error = 1e-8;  ///< Aim for the trajectory [rad], also sigma / 1000; warned above sigma / 100.
   int max_iterations = 100;       ///< Of Ceres, for each solve.
   int max_traces = 3000;          ///< Trajectories of a fit: good recordings need tens, hopeless ones go on for ever.
+  /// Once it is requested, the fit ends soon with nothing, and what is concluded from fits means nothing; default
+  /// never.
+  std::stop_token stop;
 };
+
+/// The error of a fit whose stop was requested before it was done: kTryAgain.
+tl::unexpected<Status> FitStopped();
 
 /// How a fit ended, and what of its report means something:
 ///                                     estimates     std_error, covariance   statistics
@@ -156,8 +163,8 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
 /// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
 /// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
 /// bounds, quantized noise without a resolution or with a robust loss. kDataLoss: counts or volts without a
-/// calibration. kFailedPrecondition: no swing, or too little of one. Cost: about a millisecond for 2000 samples, three
-/// with the quantized likelihood, tens where the pendulum comes to rest.
+/// calibration. kFailedPrecondition: no swing, or too little of one. kTryAgain: options.stop was requested. Cost: about
+/// a millisecond for 2000 samples, three with the quantized likelihood, tens where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

@@ -47,7 +47,8 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 /// that every recording is explained as a fit alone must explain it: what shares no parameters is not of one rig. Where
 /// the errors alone come from posteriors, the joint estimates combine these, as parabolas. kInvalidArgument: fewer than
 /// two recordings, no shared parameter, another model or rig than the first, and what FitRecording says of options.
-/// kFailedPrecondition: a recording that cannot be fitted alone. Cost: about half of the fits alone.
+/// kFailedPrecondition: a recording that cannot be fitted alone. kTryAgain: a stop was requested in the options of any.
+/// Cost: about half of the fits alone.
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

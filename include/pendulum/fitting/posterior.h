@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 
 #include <Eigen/Core>
 
@@ -34,8 +35,8 @@ struct Posterior {
 /// (R. M. Neal, Ann. Stat. 31:705, 2003) until 500 effective draws make means good to 5 % of a standard deviation, or
 /// 1e9 samples have been looked at (5 s): see effective_draws. kInvalidArgument: sizes that disagree, numbers that are
 /// not finite, noise that is not quantized or has no resolution, δ = 0 out of bounds. kFailedPrecondition: a
-/// combination of the parameters leaves no trace in the readings or the priors. The same seed gives the same numbers.
-/// 2000 samples, 7 parameters: 0.2 s.
-Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed);
+/// combination of the parameters leaves no trace in the readings or the priors. kTryAgain: a stop was requested. The
+/// same seed gives the same numbers. 2000 samples, 7 parameters: 0.2 s.
+Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed, const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct TrajectoryData {
   double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
   bool drifts = false;              ///< The zero moves: one parameter more.
   double scale = 1;                 ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
+  std::stop_token stop;             ///< Once it is requested, nothing is evaluated any more.
 
   Eigen::Map<const Eigen::VectorXd> times() const { return {time.data(), static_cast<Eigen::Index>(time.size())}; }
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
@@ -38,8 +40,10 @@ struct TrajectoryData {
 /// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
 /// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
 /// the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be
-/// traced or is released outside the data makes every function return false. It remembers what it was asked last: one
-/// thread at a time.
+/// traced or is released outside the data makes every function return false. So does, from one call to the next, a stop
+/// of the data: where a trajectory was traced before, it cannot be taken for granted. What they would have set is left
+/// as it is, or without meaning; Trace then says nothing of the motion. It remembers what it was asked last: one thread
+/// at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
   /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace pendulum {
 /// rate), residual = measured - fitted. used: the N samples that were fitted. Where fit or overlay have not N numbers,
 /// or one that is not finite, its fields are empty.
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
+
+/// The same for a fit of a report, with its own overlay if there is one.
+std::string ToResidualCsv(const Recording& used, const RunReport& report, std::size_t fit);
 
 /// All of the series, or what the page needs: seven digits, no residuals (it takes differences), and the closed forms'
 /// trajectories of the main fit alone.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { defineConfig, type Plugin } from 'vite';
+import { defineConfig, type Plugin, type UserConfig } from 'vite';
 
 /** Text that may stand in an inline script: nothing in it ends the element. */
 const scriptSafe = (code: string): string => code.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
@@ -28,19 +28,35 @@ function inlineEverything(source: string, file: string): Plugin {
   };
 }
 
-/** A page of its own file each: `vite build` makes report.html of index.html, `vite build --mode summary` the other. */
+const kCommon = { target: 'es2022', cssCodeSplit: false, modulePreload: false, emptyOutDir: false } as const;
+
+/** dist/service.html with /app.js and /app.css: the service allows no script and no style within a page. */
+const kService: UserConfig = {
+  base: '/',
+  build: {
+    ...kCommon,
+    assetsInlineLimit: 0,
+    rollupOptions: {
+      input: 'service.html',
+      output: { inlineDynamicImports: true, entryFileNames: 'app.js', assetFileNames: 'app[extname]' },
+    },
+  },
+};
+
+/**
+ * `vite build` makes report.html of index.html, `vite build --mode summary` summary.html, each one file;
+ * `vite build --mode service` the page of the service, three files.
+ */
 export default defineConfig(({ mode }) => {
+  if (mode === 'service') return kService;
   const summary = mode === 'summary';
   const source = summary ? 'summary.html' : 'index.html';
   return {
     base: './',
     plugins: [inlineEverything(source, summary ? 'summary.html' : 'report.html')],
     build: {
-      target: 'es2022',
+      ...kCommon,
       assetsInlineLimit: 1e8,
-      cssCodeSplit: false,
-      modulePreload: false,
-      emptyOutDir: false,
       rollupOptions: { input: source, output: { inlineDynamicImports: true } },
     },
   };

@@ -12,6 +12,9 @@ inline constexpr ParameterInfo kAsymmetry{
 /// (1 + s α).  MODEL.md eq. (48).
 struct AsymmetricFriction {
   static constexpr std::string_view kName = "asymmetric";
+  static constexpr std::string_view kTitle = "dry friction that depends on the direction";
+  static constexpr std::string_view kAbout =
+      "Dry friction that is larger one way than the other, as cables and brushes give.";
   static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, kCoulomb, kAsymmetry}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} (sgn(th') + {asymmetry})";
 

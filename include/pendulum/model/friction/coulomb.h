@@ -10,6 +10,10 @@ inline constexpr ParameterInfo kCoulomb{"coulomb", "τ_c", "N m", "1", 0.0, kUnb
 /// Viscous and dry friction:  T(ω) = b ω + s τ_c,  s = sign ω.  MODEL.md eq. (8).
 struct CoulombFriction {
   static constexpr std::string_view kName = "coulomb";
+  static constexpr std::string_view kTitle = "viscous and dry friction";
+  static constexpr std::string_view kAbout =
+      "Rubbing of dry surfaces besides, as in a potentiometer: each swing is smaller by the same angle, and the "
+      "pendulum comes to rest.";
   static constexpr std::array<ParameterInfo, 2> kParameters = {{kViscous, kCoulomb}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} sgn(th')";
 

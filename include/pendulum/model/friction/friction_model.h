@@ -11,7 +11,8 @@
 
 namespace pendulum {
 
-/// A friction law: a type without objects. It names itself and its parameters, gives the torque T(ω) that opposes
+/// A friction law: a type without objects. It names itself and its parameters, says in words what it is (kTitle) and
+/// where it is met (kAbout, for who has never heard of it), gives the torque T(ω) that opposes
 /// motion in direction s = ±1, and coefficient n of that torque's Taylor series along a swing, from the rate's
 /// coefficients 0..n. kFormula is T as text for the report's equation of motion: th' is the rate, {name} the value of a
 /// parameter. Torque and parameters are in units of the gravity torque G. Torque(0, 1, p) is the static torque: the
@@ -24,6 +25,8 @@ template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
   { F::kName } -> std::convertible_to<std::string_view>;
+  { F::kTitle } -> std::convertible_to<std::string_view>;
+  { F::kAbout } -> std::convertible_to<std::string_view>;
   { F::kParameters[0] } -> std::convertible_to<ParameterInfo>;
   { F::kFormula } -> std::convertible_to<std::string_view>;
   { F::template Torque<double>(x, x, p) } -> std::same_as<double>;

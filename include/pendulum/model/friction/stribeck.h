@@ -18,6 +18,9 @@ inline constexpr ParameterInfo kStribeckRate{
 /// τ_c.  MODEL.md eq. (47).
 struct StribeckFriction {
   static constexpr std::string_view kName = "stribeck";
+  static constexpr std::string_view kTitle = "friction with the Stribeck effect";
+  static constexpr std::string_view kAbout =
+      "Dry friction that is larger at rest than in motion, as in greased bearings that stick before they slide.";
   static constexpr std::array<ParameterInfo, 4> kParameters = {{kViscous, kCoulomb, kStiction, kStribeckRate}};
   static constexpr std::string_view kFormula =
       "{viscous} th' + ({coulomb} + ({stiction} - {coulomb}) exp(-(th'/{stribeck_rate})^2)) sgn(th')";

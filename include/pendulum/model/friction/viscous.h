@@ -15,6 +15,9 @@ inline constexpr ParameterInfo kViscous{
 /// Viscous friction alone:  T(ω) = b ω.  MODEL.md eq. (7).
 struct ViscousFriction {
   static constexpr std::string_view kName = "viscous";
+  static constexpr std::string_view kTitle = "viscous friction";
+  static constexpr std::string_view kAbout =
+      "Friction grows with speed, as in oil or a good bearing: each swing is smaller by the same share.";
   static constexpr std::array<ParameterInfo, 1> kParameters = {{kViscous}};
   static constexpr std::string_view kFormula = "{viscous} th'";
 

@@ -55,26 +55,35 @@ export function open(t, result, series, options = {}) {
 export const openSummary = (t, summary, options = {}) =>
   openFile(t, write(summaryTemplate, { '@SUMMARY@': summary }), options);
 
-/** Opens a report and fails on whatever it complains of or asks the network for. */
-export async function openFile(t, url, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options.context });
+/**
+ * An empty page that fails its test on whatever it complains of, or asks the network for where `mayAsk` says no;
+ * `expected` are complaints that belong to the test.
+ */
+export async function watchedPage(t, { context: wanted = {}, mayAsk, expected = () => false }) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...wanted });
   context.setDefaultTimeout(kPatience);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
-  page.on(
-    'request',
-    (request) =>
-      request.url() !== url && !request.url().startsWith('data:') && complaints.push(`request of ${request.url()}`),
-  );
+  page.on('request', (request) => mayAsk(request.url()) || complaints.push(`request of ${request.url()}`));
   page.on('dialog', (dialog) => complaints.push(`dialog ${dialog.message()}`));
-  await page.goto(url);
-  await page.waitForSelector('main section');
   t.after(async () => {
     await context.close();
-    assert.deepEqual(complaints, []);
+    assert.deepEqual(
+      complaints.filter((complaint) => !expected(complaint)),
+      [],
+    );
   });
+  return page;
+}
+
+/** Opens a report and fails on whatever it complains of or asks the network for. */
+export async function openFile(t, url, options = {}) {
+  const mayAsk = (asked) => asked === url || asked.startsWith('data:');
+  const page = await watchedPage(t, { context: options.context, mayAsk });
+  await page.goto(url);
+  await page.waitForSelector('main section');
   return page;
 }
 

@@ -15,6 +15,8 @@ export interface ForestRow {
   std_error: Num;
   interval95: [Num, Num] | null;
   z: Num;
+  /** Name of a colour in place of that of its kind. */
+  colour?: string;
 }
 
 function recordingRows(agreement: SharedAgreement, disagreeing: readonly number[]): ForestRow[] {

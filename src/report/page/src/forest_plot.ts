@@ -17,7 +17,7 @@ const percent = (share: number): string => `${Number((100 * share).toFixed(3))}%
 
 const kColours: Record<ForestRow['kind'], string> = { recording: 'curve-1', joint: 'ink', random: 'curve-4' };
 
-const colourOf = (row: ForestRow): string => `var(--${row.disagrees ? 'bad' : kColours[row.kind]})`;
+const colourOf = (row: ForestRow): string => `var(--${row.disagrees ? 'bad' : (row.colour ?? kColours[row.kind])})`;
 
 /** Paths about their place. */
 const kMarkers: Record<ForestRow['kind'] | 'disagrees', string> = {
@@ -116,9 +116,8 @@ export function clippedWords(rows: ForestRow[]): string {
     : `The intervals of ${inList(cut)} are longer than drawn (arrows); the table has them.`;
 }
 
-/** Null where nothing is known of the parameter. */
-export function forestPlot(sentence: string, rows: ForestRow[]): HTMLElement | null {
-  const range = forestRange(rows);
+/** Null where nothing is known of the parameter; `range`: of the axis. */
+export function forestPlot(sentence: string, rows: ForestRow[], range = forestRange(rows)): HTMLElement | null {
   if (!range) return null;
   const strip = el('div', { class: 'strip' });
   strip.append(picture(rows, range));

@@ -2,7 +2,7 @@
 /** Curves of all recordings of a joint fit on one clock. */
 
 import { fittedTrace } from './fit_section';
-import type { JointReport } from './joint';
+import type { JointResult } from './joint_types';
 import { recordingMark } from './marks';
 import { shownFit, type Report } from './report';
 import type { Trace } from './time_plot';
@@ -13,6 +13,12 @@ export interface Overlaid {
   measured: Trace;
   fitted: Trace | null;
   residual: Trace | null;
+}
+
+/** Recordings that can lie over each other: each as it is shown, and its data. */
+export interface Overlayable {
+  recordings: Report[];
+  result: Pick<JointResult, 'data'>;
 }
 
 /** The instant a recording counts from, s on its file's clock: its release, or its first used sample. */
@@ -58,7 +64,7 @@ function overlaid(report: Report, k: number): Overlaid | null {
 }
 
 /** Recordings whose reading has the unit of the first; `others`: numbers, from 1 on, of those that cannot lie over it. */
-export function overlay(report: JointReport): { curves: Overlaid[]; unit: string; others: number[] } {
+export function overlay(report: Overlayable): { curves: Overlaid[]; unit: string; others: number[] } {
   const unit = report.recordings.find((one) => one.samples)?.samples?.unit ?? 'rad';
   const curves: Overlaid[] = [];
   const others: number[] = [];

@@ -3,10 +3,10 @@
 
 import { details, el, toggle } from './dom';
 import { quantityOf } from './fit_section';
-import { inList, type JointReport } from './joint';
+import { inList } from './joint';
 import { swatch } from './marks';
 import { keyboardBox, navigationButtons } from './navigation';
-import { originWords, overlay, type Overlaid } from './overlay';
+import { originWords, overlay, type Overlaid, type Overlayable } from './overlay';
 import { fixed, significant } from './rounding';
 import { extent, lowerBound, medianInterval, rootMeanSquare } from './samples';
 import { absent, figure, section } from './section';
@@ -22,7 +22,7 @@ const kManySwings = 30;
 const kFirstSwings = 12;
 
 /** Of many swings the first ones, where differences can be seen. */
-function viewOf(curves: Overlaid[], report: JointReport): TimeView {
+function viewOf(curves: Overlaid[], report: Overlayable): TimeView {
   const [from, to] = extent(curves.map((curve) => curve.measured.time)) ?? [0, 1];
   const least = 8 * Math.min(...curves.map((curve) => medianInterval(curve.measured.time)));
   const view = new TimeView(from, to, least);
@@ -41,7 +41,7 @@ class OverlayPlots {
   constructor(
     private readonly curves: Overlaid[],
     private readonly unit: string,
-    report: JointReport,
+    report: Overlayable,
   ) {
     this.view = viewOf(curves, report);
     const words = originWords(curves.map((curve) => report.recordings[curve.k]));
@@ -177,7 +177,7 @@ class OverlayPlots {
   }
 }
 
-export function overlaySection(report: JointReport): HTMLElement {
+export function overlaySection(report: Overlayable): HTMLElement {
   const title = 'All recordings over each other';
   const { curves, unit, others } = overlay(report);
   if (curves.length === 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The frame of a report: header, contents, the choice of a model, and the sections. */
 
-import { choice, el } from './dom';
+import { append, choice, el } from './dom';
 import { startTheme, themeButton } from './theme';
 import type { Fit } from './types';
 
@@ -65,10 +65,8 @@ export function refill(element: HTMLElement, children: HTMLElement[]): void {
   window.scrollTo({ top });
 }
 
-/** Fills `root` with the report. */
-export function fillPage(root: HTMLElement, content: Content): void {
-  startTheme();
-  document.title = `${content.title} – ${content.kind.toLowerCase()}`;
+/** Contents beside the choice of a model and the sections, which go into `main` after what is there. */
+export function reportColumns(content: Content, main: HTMLElement): HTMLElement {
   const parts = el('div');
   const navigation = el('div', { class: 'side' });
   const changed = (): void => navigation.replaceChildren(contents(parts));
@@ -79,13 +77,15 @@ export function fillPage(root: HTMLElement, content: Content): void {
     refill(parts, content.sections(changed));
     changed();
   });
-  const page = el(
-    'div',
-    { class: 'page' },
-    el('a', { class: 'skip', href: '#main' }, 'Skip to the report'),
-    header(content),
-  );
-  const body = el('div', { class: 'columns' }, navigation, el('main', { id: 'main', class: 'report' }, chooser, parts));
-  page.append(body);
-  root.replaceChildren(page);
+  append(main, [chooser, parts]);
+  return el('div', { class: 'columns' }, navigation, main);
+}
+
+/** Fills `root` with the report. */
+export function fillPage(root: HTMLElement, content: Content): void {
+  startTheme();
+  document.title = `${content.title} – ${content.kind.toLowerCase()}`;
+  const skip = el('a', { class: 'skip', href: '#main' }, 'Skip to the report');
+  const columns = reportColumns(content, el('main', { id: 'main', class: 'report' }));
+  root.replaceChildren(el('div', { class: 'page' }, skip, header(content), columns));
 }

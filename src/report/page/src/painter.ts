@@ -105,6 +105,13 @@ export class Painter {
     this.ctx.fillRect(left, this.y(high), width, this.y(low) - this.y(high));
   }
 
+  /** A band between two places over the whole height. */
+  span(from: number, to: number, name: string): void {
+    const { top, height } = this.plot.bbox;
+    this.ctx.fillStyle = colour(name);
+    this.ctx.fillRect(this.x(from), top, this.x(to) - this.x(from), height);
+  }
+
   horizontal(y: number, name: string, dash: number[] = []): void {
     const { min = 0, max = 1 } = this.plot.scales.x;
     this.line([min, max], [y, y], { colour: name, dash, width: 1.25 });

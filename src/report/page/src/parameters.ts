@@ -10,7 +10,7 @@ import type { Fit, Parameter } from './types';
 import { inDegrees, spacedUnit, symbolOf, wordsOf } from './units';
 
 /** Parameters of the start and the sensor; the others are the pendulum's own. */
-const kCircumstances = new Set([
+export const kCircumstances = new Set([
   'release_angle',
   'release_time',
   'initial_angle',

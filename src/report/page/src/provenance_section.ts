@@ -32,7 +32,7 @@ function plain(value: unknown): string {
 }
 
 /** "angle = −49.6077 + 0.198544 x deg, x in counts" */
-function curveText(calibration: Loose): string | null {
+export function curveText(calibration: Loose): string | null {
   const { coefficients, angle_unit: unit, input } = calibration;
   if (!Array.isArray(coefficients) || coefficients.length === 0) return null;
   const powers = ['', ' x', ' x²', ' x³'];

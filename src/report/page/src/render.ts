@@ -37,14 +37,19 @@ const kSections: ((report: Report) => HTMLElement | null)[] = [
   provenanceSection,
 ];
 
-/** The report of one recording. */
-function content(result: Result, series: Series | null, command: Command | null): Content {
+/** The report of one recording, by the name of its file or another one. */
+export function reportContent(
+  result: Result,
+  series: Series | null,
+  command: Command | null,
+  name = fileName(result.data.path),
+): Content {
   const report = makeReport(result, series, command);
   const { data, fits, comparison } = result;
   return {
     kind: 'Pendulum report',
-    title: fileName(data.path),
-    heading: fileName(data.path),
+    title: name,
+    heading: name,
     facts: `${data.used_samples} of ${data.samples} samples · ${significant(data.duration_s, 4)} s · ${significant(data.sample_rate_hz, 4)} Hz`,
     models: fits,
     recommended: comparison?.recommended,
@@ -67,6 +72,6 @@ export function render(
 ): void {
   const made = isJoint(result)
     ? jointContent(result, Array.isArray(series) ? series : null, command)
-    : content(result, Array.isArray(series) ? null : series, command);
+    : reportContent(result, Array.isArray(series) ? null : series, command);
   fillPage(root, made);
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "pendulum/base/status.h"
+#include "pendulum/service/http.h"
+
+namespace pendulum {
+
+inline constexpr std::size_t kLongestIdempotencyKey = 255;  ///< bytes
+
+/// The Idempotency-Key of a request, as it stands there; empty where it has none.
+/// kInvalidArgument: it comes twice, is empty, longer than kLongestIdempotencyKey, or has other than visible ASCII.
+Result<std::string> IdempotencyKey(const HttpRequest& request);
+
+}  // namespace pendulum

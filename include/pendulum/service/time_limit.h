@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace pendulum {
+
+/// Stops what takes longer than it may. For any thread.
+class TimeLimit {
+ public:
+  explicit TimeLimit(std::chrono::milliseconds limit);
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+  TimeLimit(TimeLimit&&) = delete;
+  TimeLimit& operator=(TimeLimit&&) = delete;
+  ~TimeLimit() = default;
+
+  /// One piece of work, from now on until its end.
+  class Watch {
+   public:
+    explicit Watch(TimeLimit& limit);
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+    Watch(Watch&&) = delete;
+    Watch& operator=(Watch&&) = delete;
+    ~Watch();
+
+    /// Requested when the time is over, or StopAll is called.
+    std::stop_token token() const { return source_.get_token(); }
+
+   private:
+    friend class TimeLimit;
+    TimeLimit& limit_;
+    std::stop_source source_;
+    std::uint64_t number_;
+  };
+
+  /// Stops all there is, and what is still to come.
+  void StopAll();
+
+  std::chrono::milliseconds limit() const { return limit_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Running {
+    Clock::time_point end;
+    Watch* watch;
+  };
+
+  void Work(const std::stop_token& stop);
+
+  std::chrono::milliseconds limit_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable_any changed_;
+  std::map<std::uint64_t, Running> running_;  // by number; as the limit is one, those that end first stand first
+  std::uint64_t next_ = 0;
+  bool all_stopped_ = false;
+  std::jthread thread_;  // last, so that it ends before the rest goes
+};
+
+}  // namespace pendulum

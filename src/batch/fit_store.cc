@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/fit_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <SQLiteCpp/Savepoint.h>
+
+#include "batch/fit_store_queries.h"
+#include "batch/sqlite.h"
+#include "pendulum/base/sha256.h"
+#include "pendulum/batch/store_lock.h"
+
+namespace pendulum {
+namespace {
+
+using fit_store::BatchOf;
+using fit_store::FitOf;
+using fit_store::kBatches;
+using fit_store::kListedColumns;
+
+/// How many runs of a list are at most read at once.
+constexpr int kMostListed = 1000;
+
+/// How long an answer is known to those who ask again.
+constexpr const char* kForgetAnswers = "DELETE FROM answers WHERE datetime(created) < datetime('now', '-1 day')";
+
+tl::unexpected<Status> Unknown(const std::string& what, const std::string& id) {
+  return Error(StatusCode::kNotFound, "there is no " + what + " " + id + "; it may have been deleted");
+}
+
+/// Hashes that take their time, made before the store is held.
+struct FileHashes {
+  std::string data, rig, calibration;
+};
+
+Result<FileHashes> HashesOf(const RunFiles& files) {
+  const auto hash = [](const std::optional<NamedBytes>& file) -> Result<std::string> {
+    return file ? Sha256(file->bytes) : Result<std::string>("");
+  };
+  auto data = Sha256(files.data.bytes);
+  if (!data) return tl::unexpected(data.error());
+  auto rig = hash(files.rig);
+  if (!rig) return tl::unexpected(rig.error());
+  auto calibration = hash(files.calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
+  return FileHashes{*std::move(data), *std::move(rig), *std::move(calibration)};
+}
+
+}  // namespace
+
+struct FitStore::State {
+  State(Store writing, Store reading, StoreLock held)
+      : writer(std::move(writing)), reader(std::move(reading)), lock(std::move(held)) {}
+
+  /// Does the work in the transaction that is open, all or nothing of it, and returns once that is on the disk.
+  template <typename Work>
+  Result<void> Write(const Work& work);
+
+  /// Does the work without hindering those who write.
+  template <typename Work>
+  auto Read(const Work& work) -> decltype(work(std::declval<SQLite::Database&>())) {
+    const std::scoped_lock held(read_mutex);
+    return sqlite::Guard(reader.name(), [&] { return work(reader.database()); });
+  }
+
+  Result<void> WaitUntilCommitted(std::unique_lock<std::mutex>& held);
+  void EndRound(const Result<void>& done);
+  Result<void> AddRun(const FitOrder& order, const FileHashes& hashes, const std::optional<std::int64_t>& batch);
+  void KeepAnswer(const std::optional<RequestKey>& key, const std::string& location, const std::string& created);
+
+  /// What is committed together.
+  struct Round {
+    bool has_committer = false, is_over = false;
+    Result<void> done;
+  };
+
+  std::mutex write_mutex;  // of all below up to the reader
+  Store writer;
+  std::shared_ptr<Round> round = std::make_shared<Round>();
+  std::condition_variable over;
+  std::mutex read_mutex;  // of the reader
+  Store reader;
+  StoreLock lock;
+};
+
+template <typename Work>
+Result<void> FitStore::State::Write(const Work& work) {
+  std::unique_lock held(write_mutex);
+  auto done = writer.BeginWrite();
+  if (!done) return done;
+  done = sqlite::Guard(writer.name(), [&]() -> Result<void> {
+    SQLite::Savepoint savepoint(writer.database(), "request");
+    if (auto worked = work(writer.database()); !worked) return worked;
+    savepoint.release();
+    return {};
+  });
+  if (done) return WaitUntilCommitted(held);
+  // A disk that is full may have undone what others wait for, too.
+  if (::sqlite3_get_autocommit(writer.database().getHandle()) != 0) EndRound(done);
+  return done;
+}
+
+/// The first of those who wait commits for all whose work is done until it comes to that.
+Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& held) {
+  const std::shared_ptr<Round> mine = round;
+  if (!std::exchange(mine->has_committer, true)) {
+    constexpr std::chrono::microseconds kGathering{300};  // short beside a commit and beside a fit
+    over.wait_for(held, kGathering, [&] { return mine->is_over; });
+    if (!mine->is_over) EndRound(writer.Commit());
+  }
+  over.wait(held, [&] { return mine->is_over; });
+  return mine->done;
+}
+
+void FitStore::State::EndRound(const Result<void>& done) {
+  if (!done) writer.Rollback();
+  round->is_over = true;
+  round->done = done;
+  round = std::make_shared<Round>();
+  over.notify_all();
+}
+
+Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& hashes,
+                                     const std::optional<std::int64_t>& batch) {
+  const auto name = [](const std::optional<NamedBytes>& file) { return file ? file->name : std::string(); };
+  ManifestEntry entry;
+  entry.id = order.id;
+  entry.path = order.files.data.name;
+  entry.rig = name(order.files.rig);
+  entry.calibration = name(order.files.calibration);
+  const auto run = writer.Add(entry);
+  if (!run) return tl::unexpected(run.error());
+  SQLite::Database& database = writer.database();
+  const auto keep = [&](const std::optional<NamedBytes>& file, const std::string& sha256) {
+    return file ? std::optional(fit_store::KeepFile(database, file->bytes, sha256)) : std::nullopt;
+  };
+  SQLite::Statement add(database, "INSERT INTO requests VALUES(?, ?, ?, ?, ?, ?, ?)");
+  sqlite::Bind(add, *run, batch, order.created, order.flags,
+               fit_store::KeepFile(database, order.files.data.bytes, hashes.data), keep(order.files.rig, hashes.rig),
+               keep(order.files.calibration, hashes.calibration))
+      .exec();
+  return {};
+}
+
+void FitStore::State::KeepAnswer(const std::optional<RequestKey>& key, const std::string& location,
+                                 const std::string& created) {
+  if (!key) return;
+  writer.database().exec(kForgetAnswers);
+  SQLite::Statement add(writer.database(), "INSERT OR REPLACE INTO answers VALUES(?, ?, ?, ?)");
+  sqlite::Bind(add, key->key, key->request_sha256, location, created).exec();
+}
+
+FitStore::FitStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+/// One file is left, which can be copied as it is.
+FitStore::~FitStore() {
+  state_->writer.Rollback();
+  { const Store closing = std::move(state_->reader); }
+  (void)sqlite::Guard(state_->writer.name(), [&]() -> Result<void> {
+    state_->writer.database().exec("PRAGMA journal_mode = DELETE");
+    return {};
+  });
+}
+
+Result<std::unique_ptr<FitStore>> FitStore::Open(const std::filesystem::path& path) {
+  auto lock = StoreLock::Take(path);
+  if (!lock) return tl::unexpected(lock.error());
+  auto writer = Store::Open(path, Store::Mode::kWrite);
+  if (!writer) return tl::unexpected(writer.error());
+  const auto logged = sqlite::Guard(path.string(), [&]() -> Result<void> {
+    writer->database().exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+    return {};
+  });
+  if (!logged) return tl::unexpected(logged.error());
+  auto reader = Store::Open(path, Store::Mode::kRead);
+  if (!reader) return tl::unexpected(reader.error());
+  auto state = std::make_unique<State>(*std::move(writer), *std::move(reader), *std::move(lock));
+  return std::unique_ptr<FitStore>(new FitStore(std::move(state)));  // NOLINT: make_unique sees no private constructor
+}
+
+Result<void> FitStore::Add(const FitOrder& order, const RunOutcome& outcome, const std::optional<RequestKey>& key) {
+  const auto hashes = HashesOf(order.files);
+  if (!hashes) return tl::unexpected(hashes.error());
+  return state_->Write([&](SQLite::Database&) -> Result<void> {
+    if (auto added = state_->AddRun(order, *hashes, std::nullopt); !added) return added;
+    state_->KeepAnswer(key, "/v1/fits/" + order.id, order.created);
+    return state_->writer.Put(order.id, outcome);
+  });
+}
+
+Result<void> FitStore::AddBatch(const std::string& id, const std::string& created, const std::vector<FitOrder>& orders,
+                                const std::optional<RequestKey>& key) {
+  std::vector<FileHashes> hashes;
+  hashes.reserve(orders.size());
+  for (const FitOrder& order : orders) {
+    auto of_one = HashesOf(order.files);
+    if (!of_one) return tl::unexpected(of_one.error());
+    hashes.push_back(*std::move(of_one));
+  }
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement add(database, "INSERT INTO batches(id, created) VALUES(?, ?)");
+    sqlite::Bind(add, id, created).exec();
+    const std::int64_t batch = database.getLastInsertRowid();
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+      if (auto added = state_->AddRun(orders[i], hashes[i], batch); !added) return added;
+    }
+    state_->KeepAnswer(key, "/v1/batches/" + id, created);
+    return {};
+  });
+}
+
+Result<void> FitStore::Put(const std::string& id, const RunOutcome& outcome) {
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement find(database, "SELECT 1 FROM runs WHERE id = ?");
+    if (!sqlite::Bind(find, id).executeStep()) return Unknown("fit", id);
+    find.reset();
+    return state_->writer.Put(id, outcome);
+  });
+}
+
+Result<void> FitStore::DeleteFit(const std::string& id) {
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement find(database, "SELECT run FROM requests JOIN runs USING(run) WHERE id = ?");
+    if (!sqlite::Bind(find, id).executeStep()) return Unknown("fit", id);
+    const std::int64_t run = find.getColumn(0).getInt64();
+    find.reset();
+    fit_store::DeleteRuns(database, "run = " + std::to_string(run));
+    return {};
+  });
+}
+
+Result<void> FitStore::DeleteBatch(const std::string& id) {
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement find(database, "SELECT batch FROM batches WHERE id = ?");
+    if (!sqlite::Bind(find, id).executeStep()) return Unknown("batch", id);
+    const std::string batch = std::to_string(find.getColumn(0).getInt64());
+    find.reset();
+    fit_store::DeleteRuns(database, "batch = " + batch);
+    database.exec("DELETE FROM batches WHERE batch = " + batch);
+    return {};
+  });
+}
+
+Result<KeptFit> FitStore::Find(const std::string& id) {
+  return state_->Read([&](SQLite::Database& database) -> Result<KeptFit> {
+    SQLite::Statement row(database, std::string(kListedColumns) + "WHERE runs.id = ?");
+    if (!sqlite::Bind(row, id).executeStep()) return Unknown("fit", id);
+    KeptFit kept;
+    kept.fit = FitOf(row);
+    SQLite::Statement more(database,
+                           "SELECT flags, data, requests.rig, requests.calibration, runs.rig, runs.calibration, result "
+                           "FROM requests JOIN runs USING(run) WHERE run = ?");
+    sqlite::Bind(more, kept.fit.run).executeStep();
+    const auto file = [&](int column, const std::string& name) -> std::optional<NamedBytes> {
+      if (more.getColumn(column).isNull()) return std::nullopt;
+      return NamedBytes{name, fit_store::FileBytes(database, more.getColumn(column).getInt64())};
+    };
+    kept.order = {id, kept.fit.created, sqlite::Text(more, 0),
+                  RunFiles{*file(1, kept.fit.name), file(2, sqlite::Text(more, 4)), file(3, sqlite::Text(more, 5))}};
+    if (!more.getColumn(6).isNull()) kept.result = nlohmann::ordered_json::parse(sqlite::Text(more, 6));
+    return kept;
+  });
+}
+
+Result<std::vector<ListedFit>> FitStore::List(const FitFilter& filter) {
+  return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedFit>> {
+    // An empty text, or NULL, asks for nothing. instr knows no wildcards.
+    SQLite::Statement rows(database, std::string(kListedColumns) + R"sql(
+WHERE run < coalesce(?1, run + 1) AND (?2 = '' OR batches.id = ?2) AND (?3 = '' OR instr(lower(path), lower(?3)) > 0)
+  AND (?4 = '' OR datetime(requests.created) >= datetime(?4))
+  AND ((?5 = '' AND ?6 = '') OR EXISTS (SELECT 1 FROM fits WHERE fits.run = requests.run
+    AND (?5 = '' OR fits.model = ?5) AND (?6 = '' OR fits.status = ?6)))
+  ORDER BY run DESC LIMIT ?7)sql");
+    sqlite::Bind(rows, filter.before, filter.batch, filter.name, filter.since, filter.model, filter.status,
+                 std::min(filter.limit, kMostListed));
+    std::vector<ListedFit> fits;
+    while (rows.executeStep()) {
+      fits.push_back(FitOf(rows));
+      fits.back().models = fit_store::ModelsOf(database, fits.back().run);
+    }
+    return fits;
+  });
+}
+
+Result<ListedBatch> FitStore::FindBatch(const std::string& id) {
+  return state_->Read([&](SQLite::Database& database) -> Result<ListedBatch> {
+    SQLite::Statement row(database, std::string(kBatches) + "WHERE batches.id = ? GROUP BY batches.batch");
+    if (!sqlite::Bind(row, id).executeStep()) return Unknown("batch", id);
+    return BatchOf(row);
+  });
+}
+
+Result<std::vector<ListedBatch>> FitStore::ListBatches(int limit, const std::optional<std::int64_t>& before) {
+  return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedBatch>> {
+    SQLite::Statement rows(database, std::string(kBatches) +
+                                         "WHERE batches.batch < coalesce(?, batches.batch + 1) "
+                                         "GROUP BY batches.batch ORDER BY batches.batch DESC LIMIT ?");
+    sqlite::Bind(rows, before, std::min(limit, kMostListed));
+    std::vector<ListedBatch> batches;
+    while (rows.executeStep()) batches.push_back(BatchOf(rows));
+    return batches;
+  });
+}
+
+Result<std::vector<ListedFit>> FitStore::RunsOf(const std::string& batch) {
+  return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedFit>> {
+    SQLite::Statement rows(database, std::string(kListedColumns) + "WHERE batches.id = ? ORDER BY run");
+    sqlite::Bind(rows, batch);
+    std::vector<ListedFit> fits;
+    while (rows.executeStep()) fits.push_back(FitOf(rows));
+    return fits;
+  });
+}
+
+Result<std::vector<FitStore::Waiting>> FitStore::WaitingRuns() {
+  return state_->Read([&](SQLite::Database& database) -> Result<std::vector<Waiting>> {
+    SQLite::Statement rows(database,
+                           "SELECT runs.id, batches.id FROM requests JOIN runs USING(run) JOIN batches USING(batch) "
+                           "WHERE exit_code IS NULL ORDER BY run");
+    std::vector<Waiting> waiting;
+    while (rows.executeStep()) waiting.push_back({sqlite::Text(rows, 0), sqlite::Text(rows, 1)});
+    return waiting;
+  });
+}
+
+Result<std::optional<KnownAnswer>> FitStore::FindAnswer(const std::string& key) {
+  return state_->Read([&](SQLite::Database& database) -> Result<std::optional<KnownAnswer>> {
+    SQLite::Statement row(database, "SELECT request_sha256, location FROM answers WHERE key = ?");
+    if (!sqlite::Bind(row, key).executeStep()) return std::nullopt;
+    return KnownAnswer{sqlite::Text(row, 0), sqlite::Text(row, 1)};
+  });
+}
+
+}  // namespace pendulum

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Several fits side by side: which parameters they have, and how far apart these are. */
+
+import type { ForestRow } from '../forest';
+import { recordingMark } from '../marks';
+import { bestFit, type Report } from '../report';
+import { elided } from '../summary/words';
+import type { Fit, Parameter } from '../types';
+
+/** A fit to compare, with the model that is shown of it. */
+export interface Compared {
+  id: string;
+  name: string;
+  created: string;
+  report: Report;
+}
+
+/** The best model of each; a name stands for that model. */
+export const kBest = '';
+const kLabel = 16; // characters of a name in a plot
+
+export const fitOf = ({ report }: Compared): Fit | null => report.result.fits[report.shown] ?? null;
+
+/** Models that all of them have, in the order of the first. */
+export function commonModels(all: readonly Compared[]): string[] {
+  const of = ({ report }: Compared): string[] => report.result.fits.map((fit) => fit.model);
+  const [first, ...others] = all.map(of);
+  return (first ?? []).filter((model) => others.every((models) => models.includes(model)));
+}
+
+/** Shows that model of each, or the best one. */
+export function showModel(all: readonly Compared[], model: string): void {
+  for (const { report } of all) {
+    const found = report.result.fits.findIndex((fit) => fit.model === model);
+    report.shown = model === kBest || found < 0 ? bestFit(report.result) : found;
+  }
+}
+
+/** Names of all parameters of the models that are shown, in the order they come. */
+export const parameterNames = (all: readonly Compared[]): string[] => [
+  ...new Set(all.flatMap((one) => Object.keys(fitOf(one)?.parameters ?? {}))),
+];
+
+export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters?.[name] ?? null;
+
+/**
+ * (b - a) over its standard error, as of independent recordings; null where a unit differs, a value is missing or none
+ * has an error.
+ */
+export function differenceInErrors(a: Parameter | null, b: Parameter | null): number | null {
+  if (!a || !b || a.unit !== b.unit || a.estimate === null || b.estimate === null) return null;
+  const error = Math.hypot(a.std_error ?? 0, b.std_error ?? 0);
+  return error > 0 ? (b.estimate - a.estimate) / error : null;
+}
+
+/** True if two fits are of the same bytes. */
+export function shareRecording(all: readonly Compared[]): boolean {
+  const hashes = all.map(({ report }) => report.result.data.sha256);
+  return hashes.some((hash, i) => hash !== null && hashes.indexOf(hash) !== i);
+}
+
+/** "1 coulomb.csv" */
+export const labelOf = (one: Compared, k: number): string => `${k + 1} ${elided(one.name, kLabel)}`;
+
+/** Rows of the plot of a parameter; empty where fewer than two share a unit. */
+export function comparedRows(all: readonly Compared[], name: string): ForestRow[] {
+  const unit = all.map((one) => parameterOf(one, name)?.unit).find((found) => found !== undefined);
+  const rows = all.flatMap((one, k): ForestRow[] => {
+    const parameter = parameterOf(one, name);
+    if (!parameter || parameter.unit !== unit || parameter.estimate === null) return [];
+    const { estimate, std_error, interval95 } = parameter;
+    const { colour } = recordingMark(k);
+    return [
+      { kind: 'recording', label: labelOf(one, k), disagrees: false, estimate, std_error, interval95, z: null, colour },
+    ];
+  });
+  return rows.length > 1 ? rows : [];
+}
+
+/** The axis that holds all of each row. */
+export function wholeRange(rows: readonly ForestRow[]): [number, number] {
+  const ends = rows.flatMap(({ estimate, interval95 }) => [estimate, ...(interval95 ?? [])]).filter((x) => x !== null);
+  const [low, high] = [Math.min(...ends), Math.max(...ends)];
+  const margin = 0.05 * (high - low || Math.abs(low) || 1);
+  return [low - margin, high + margin];
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+/** What can be done with a fit: kept, linked to, compared, deleted. */
+
+import { button, details, el } from '../dom';
+import { ask } from './api';
+import { confirmed, showText } from './dialog';
+import { download, stem } from './download';
+import { attempt } from './problem_view';
+import { go } from './router';
+import { fitApi } from './routes';
+import { select, unselect } from './selection';
+import type { Place } from './shell';
+
+/** Words, part of the fit in the service, ending of the file. */
+const kParts: [string, string, string][] = [
+  ['Result (JSON)', '', '.json'],
+  ['Report (HTML page)', 'report', '.html'],
+  ['Report (Markdown)', 'markdown', '.md'],
+  ['Residuals (CSV)', 'residuals', '_residuals.csv'],
+  ['Series (JSON)', 'series', '_series.json'],
+  ['Recording as sent', 'recording', '.csv'],
+];
+
+function downloads(id: string, name: string, fitted: boolean, problems: HTMLElement, { signal }: Place): HTMLElement {
+  const list = el('ul', { class: 'downloads' });
+  for (const [words, part, ending] of fitted ? kParts : kParts.slice(-1)) {
+    const file = stem(name) + ending;
+    const press = button(words, () => void attempt(press, problems, () => download(fitApi(id, part), file, signal)));
+    list.append(el('li', {}, press));
+  }
+  const menu = details('Download', () => list);
+  document.addEventListener('pointerdown', (event) => menu.contains(event.target as Node) || (menu.open = false), {
+    signal,
+  });
+  menu.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || !menu.open) return;
+    menu.open = false;
+    menu.querySelector('summary')?.focus();
+  });
+  return menu;
+}
+
+async function copyLink(say: (words: string) => void): Promise<void> {
+  const address = location.href.split('#')[0];
+  try {
+    await navigator.clipboard.writeText(address);
+    say('The link is copied.');
+  } catch {
+    showText('The link to this fit', address);
+  }
+}
+
+async function remove(
+  id: string,
+  name: string,
+  control: HTMLButtonElement,
+  problems: HTMLElement,
+  place: Place,
+): Promise<void> {
+  const consequence = 'The result and the recording are removed from the service for good.';
+  if (!(await confirmed(`Delete “${name}”?`, consequence, 'Delete'))) return;
+  await attempt(control, problems, async () => {
+    await ask(fitApi(id), { method: 'DELETE', signal: place.signal });
+    unselect(id);
+    go('/fits', true);
+  });
+}
+
+/** The row of buttons under a fit's heading; `fitted`: there is a result. */
+export function fitDoors(id: string, name: string, fitted: boolean, problems: HTMLElement, place: Place): HTMLElement {
+  const copy = button('Copy link', () => void copyLink(say));
+  const said = el('span', { role: 'status', class: 'quiet' });
+  const say = (words: string): void => void (said.textContent = words);
+  const compare = button('Compare with …', () => {
+    select(id, name);
+    go('/fits');
+  });
+  const press = button('Delete', () => void remove(id, name, press, problems, place), { class: 'danger' });
+  compare.hidden = !fitted;
+  return el(
+    'div',
+    { class: 'actions doors' },
+    downloads(id, name, fitted, problems, place),
+    copy,
+    compare,
+    press,
+    said,
+  );
+}

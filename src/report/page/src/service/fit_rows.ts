@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Fits as rows of a table that becomes a list of cards where the page is narrow. */
+
+import { append, el, symbolElement, type Child } from '../dom';
+import { typeset } from '../prose';
+import { plusMinus } from '../rounding';
+import { symbolOf, unitText } from '../units';
+import { fitPath } from './routes';
+import type { FitItem, ItemModel } from './types';
+
+/** What a list shows of a fit, and how it calls it. */
+export const kParameters = [
+  ['inertia', 'Inertia'],
+  ['viscous', 'Viscous'],
+  ['coulomb', 'Dry'],
+] as const;
+
+/** The recommended model of a fit, else the first that converged, else the first. */
+export function mainModel(item: Pick<FitItem, 'recommended' | 'models'>): ItemModel | null {
+  const { models, recommended } = item;
+  const found =
+    models.find((model) => model.model === recommended) ?? models.find((model) => model.status === 'converged');
+  return found ?? models[0] ?? null;
+}
+
+/** "0.0790 ± 0.0028" and "kg m²", "G s²" without a rig; "–" where the model has no such parameter. */
+export function parameterWords(model: ItemModel | null, name: string): { value: string; unit: string } {
+  const parameter = model?.parameters?.[name];
+  if (!parameter || parameter.estimate === null) return { value: '–', unit: '' };
+  const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'G' : '';
+  const unit = [overG, unitText(parameter.unit)].filter((part) => part !== '').join('\u00a0');
+  return { value: plusMinus(parameter.estimate, parameter.std_error), unit };
+}
+
+function parameterCell(model: ItemModel | null, name: string, label: string): HTMLElement {
+  const { value, unit } = parameterWords(model, name);
+  return cell(label, value, ' ', unit !== '' && el('small', {}, unit));
+}
+
+export type State = 'good' | 'caution' | 'bad' | 'waiting';
+
+/** How a fit ended, in words. */
+export function stateOf(item: Pick<FitItem, 'state' | 'exit_code' | 'recommended' | 'models'>): {
+  words: string;
+  level: State;
+} {
+  if (item.state === 'waiting') return { words: 'waiting', level: 'waiting' };
+  const status = mainModel(item)?.status;
+  if (status === undefined)
+    return item.exit_code === 0 ? { words: 'closed forms', level: 'good' } : { words: 'not fitted', level: 'bad' };
+  if (status === 'converged') return { words: 'converged', level: 'good' };
+  return { words: status.replace(/_/g, ' '), level: status === 'failed' ? 'bad' : 'caution' };
+}
+
+/** A time of the service in the reader's own. */
+export function localTime(instant: string): HTMLElement {
+  const date = new Date(instant);
+  const words = Number.isNaN(date.getTime())
+    ? instant
+    : date.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+  return el('time', { datetime: instant }, words);
+}
+
+export function badge(words: string, level: State): HTMLElement {
+  return el('span', { class: `badge ${level}-badge` }, words);
+}
+
+function cell(label: string, ...children: Child[]): HTMLElement {
+  return el('td', { role: 'cell', 'data-label': label }, el('span', {}, ...children));
+}
+
+/** A fit's name as the link to it; a run that waits has none yet. */
+function nameCell(item: FitItem): HTMLElement {
+  const name = item.name || 'recording without a name';
+  const shown = el('bdi', {}, name);
+  const linked = item.state === 'waiting' ? shown : el('a', { href: fitPath(item.id) }, shown);
+  const why = item.models.length === 0 && item.reason !== '' && el('small', {}, typeset(item.reason));
+  return el('th', { scope: 'row', role: 'rowheader' }, linked, why);
+}
+
+/** Which rows are chosen; told when that changes. */
+export interface Selection {
+  ids: Map<string, string>;
+  changed: () => void;
+}
+
+function selectCell(item: FitItem, { ids, changed }: Selection): HTMLElement {
+  const input = el('input', { type: 'checkbox', 'aria-label': `Select ${item.name}` });
+  input.checked = ids.has(item.id);
+  input.disabled = item.state === 'waiting' || item.models.length === 0;
+  input.addEventListener('change', () => {
+    if (input.checked) ids.set(item.id, item.name);
+    else ids.delete(item.id);
+    changed();
+  });
+  return el('td', { role: 'cell', class: 'select-cell' }, el('label', { class: 'box' }, input));
+}
+
+export function fitRow(item: FitItem, selection: Selection, withDate = true): HTMLTableRowElement {
+  const model = mainModel(item);
+  const { words, level } = stateOf(item);
+  const row = el('tr', { role: 'row', 'data-id': item.id }, selectCell(item, selection), nameCell(item));
+  const values = kParameters.map(([name, label]) => parameterCell(model, name, label));
+  append(row, [withDate && cell('Date', localTime(item.created)), cell('Model', model?.model ?? '–'), ...values]);
+  row.append(cell('Status', badge(words, level)));
+  return row;
+}
+
+/** An empty table for such rows. */
+export function fitTable(caption: string, withDate = true): { element: HTMLElement; body: HTMLElement } {
+  const head = el('tr', { role: 'row' }, el('td', { role: 'cell' }));
+  const heading = (...words: Child[]): void =>
+    void head.append(el('th', { scope: 'col', role: 'columnheader' }, ...words));
+  heading('Recording');
+  if (withDate) heading('Date');
+  heading('Model');
+  for (const [name, label] of kParameters) heading(`${label} `, symbolElement(symbolOf(name) ?? name));
+  heading('Status');
+  const body = el('tbody', { role: 'rowgroup' });
+  const table = el(
+    'table',
+    { class: 'runs', role: 'table' },
+    el('caption', {}, caption),
+    el('thead', { role: 'rowgroup' }, head),
+    body,
+  );
+  return { element: el('div', { class: 'runs-box' }, table), body };
+}

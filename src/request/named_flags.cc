@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/request/named_flags.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "pendulum/request/flag_values.h"
+
+namespace pendulum {
+namespace {
+
+/// A member of a struct of flags and its name.
+template <typename Flags, typename Value>
+struct NamedFlag {
+  std::string_view name;
+  Value Flags::*member;
+};
+
+template <typename Value>
+using RunFlag = NamedFlag<RunFlags, Value>;
+template <typename Value>
+using SimulationFlag = NamedFlag<SimulationFlags, Value>;
+template <typename Value>
+using CalibrationFlag = NamedFlag<CalibrationFlags, Value>;
+
+constexpr std::array<RunFlag<std::string>, 20> kRunTexts = {{{"model", &RunFlags::model},
+                                                             {"models", &RunFlags::model},
+                                                             {"start", &RunFlags::start},
+                                                             {"release", &RunFlags::release},
+                                                             {"from", &RunFlags::from},
+                                                             {"to", &RunFlags::to},
+                                                             {"fix", &RunFlags::fix},
+                                                             {"init", &RunFlags::init},
+                                                             {"bounds", &RunFlags::bounds},
+                                                             {"prior", &RunFlags::prior},
+                                                             {"time_column", &RunFlags::time_column},
+                                                             {"value_column", &RunFlags::value_column},
+                                                             {"unit", &RunFlags::unit},
+                                                             {"sample_rate_hz", &RunFlags::sample_rate_hz},
+                                                             {"resolution", &RunFlags::resolution},
+                                                             {"range", &RunFlags::range},
+                                                             {"noise", &RunFlags::noise},
+                                                             {"loss", &RunFlags::loss},
+                                                             {"interval", &RunFlags::interval},
+                                                             {"seed", &RunFlags::seed}}};
+constexpr std::array<RunFlag<bool>, 1> kRunSwitches = {{{"closed_form_only", &RunFlags::closed_form_only}}};
+
+constexpr std::array<SimulationFlag<std::string>, 6> kSimulationTexts = {{{"model", &SimulationFlags::model},
+                                                                          {"gravity", &SimulationFlags::gravity},
+                                                                          {"set", &SimulationFlags::set},
+                                                                          {"spread", &SimulationFlags::spread},
+                                                                          {"unit", &SimulationFlags::unit},
+                                                                          {"range", &SimulationFlags::range}}};
+constexpr std::array<SimulationFlag<double>, 8> kSimulationNumbers = {
+    {{"duration", &SimulationFlags::duration},
+     {"rate", &SimulationFlags::rate},
+     {"jitter", &SimulationFlags::jitter},
+     {"start_time", &SimulationFlags::start_time},
+     {"noise", &SimulationFlags::noise},
+     {"noise_correlation", &SimulationFlags::noise_correlation},
+     {"noise_freedom", &SimulationFlags::noise_freedom},
+     {"resolution", &SimulationFlags::resolution}}};
+constexpr std::array<SimulationFlag<std::uint64_t>, 1> kSimulationWholes = {{{"seed", &SimulationFlags::seed}}};
+
+constexpr std::array<CalibrationFlag<std::string>, 1> kCalibrationTexts = {
+    {{"input_range", &CalibrationFlags::input_range}}};
+constexpr std::array<CalibrationFlag<int>, 2> kCalibrationWholes = {
+    {{"order", &CalibrationFlags::order}, {"bits", &CalibrationFlags::bits}}};
+
+Result<void> Parse(std::string_view /*flag*/, const std::string& text, std::string& value) {
+  value = text;
+  return {};
+}
+
+Result<void> Parse(std::string_view flag, const std::string& text, bool& value) {
+  if (text != "true" && text != "false")
+    return BadFlag(std::string(flag) + " is '" + text + "'; it must be true or false");
+  value = text == "true";
+  return {};
+}
+
+Result<void> Parse(std::string_view flag, const std::string& text, double& value) {
+  const auto number = ParseNumber(flag, text, "a number");
+  if (!number) return tl::unexpected(number.error());
+  value = *number;
+  return {};
+}
+
+template <typename Whole>
+Result<void> ParseWhole(std::string_view flag, const std::string& text, Whole& value) {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && rest == end) return {};
+  return BadFlag(std::string(flag) + " is '" + text + "'; it must be an integer");
+}
+
+Result<void> Parse(std::string_view flag, const std::string& text, int& value) { return ParseWhole(flag, text, value); }
+
+Result<void> Parse(std::string_view flag, const std::string& text, std::uint64_t& value) {
+  return ParseWhole(flag, text, value);
+}
+
+/// Sets the member that has the name, if one of the table has it.
+template <typename Flags, typename Table>
+Result<void> SetIfNamed(const Table& table, std::string_view name, const std::string& text, Flags& flags) {
+  for (const auto& flag : table) {
+    if (flag.name == name) return Parse("--" + std::string(name), text, flags.*flag.member);
+  }
+  return {};
+}
+
+template <typename... Tables>
+std::vector<std::string_view> NamesOf(const Tables&... tables) {
+  std::vector<std::string_view> names;
+  const auto add = [&](const auto& table) {
+    for (const auto& flag : table) names.push_back(flag.name);
+  };
+  (add(tables), ...);
+  return names;
+}
+
+/// The flags of all tables.
+template <typename Flags, typename... Tables>
+Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
+  const std::vector<std::string_view> names = NamesOf(tables...);
+  Flags flags;
+  for (const auto& [name, text] : texts) {
+    if (auto known = CheckFlagName(name, names); !known) return tl::unexpected(known.error());
+    if (text.empty()) return BadFlag("--" + name + " has an empty value; leave the flag out for its default");
+    Result<void> set;
+    const auto set_in = [&](const auto& table) {
+      if (set) set = SetIfNamed(table, name, text, flags);
+    };
+    (set_in(tables), ...);
+    if (!set) return tl::unexpected(set.error());
+  }
+  return flags;
+}
+
+}  // namespace
+
+std::vector<std::string_view> RunFlagNames() { return NamesOf(kRunTexts, kRunSwitches); }
+std::vector<std::string_view> SimulationFlagNames() {
+  return NamesOf(kSimulationTexts, kSimulationNumbers, kSimulationWholes);
+}
+std::vector<std::string_view> CalibrationFlagNames() { return NamesOf(kCalibrationTexts, kCalibrationWholes); }
+
+Result<void> CheckFlagName(std::string_view name, std::span<const std::string_view> names) {
+  if (std::ranges::find(names, name) != names.end()) return {};
+  const std::string nearest = NearestName(name, names);
+  return BadFlag("--" + std::string(name) + " is not a flag of this request; " +
+                 (nearest.empty() ? "GET /openapi.json lists the flags" : "did you mean --" + nearest + "?"));
+}
+
+Result<RunFlags> RunFlagsOf(const FlagTexts& texts) {
+  if (texts.contains("model") && texts.contains("models")) {
+    return BadFlag("--model and --models are one flag, and both are given; leave one of them out");
+  }
+  return FlagsOf<RunFlags>(texts, kRunTexts, kRunSwitches);
+}
+
+Result<SimulationFlags> SimulationFlagsOf(const FlagTexts& texts) {
+  return FlagsOf<SimulationFlags>(texts, kSimulationTexts, kSimulationNumbers, kSimulationWholes);
+}
+
+Result<CalibrationFlags> CalibrationFlagsOf(const FlagTexts& texts) {
+  return FlagsOf<CalibrationFlags>(texts, kCalibrationTexts, kCalibrationWholes);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers about batches.
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/json.h"
+#include "pendulum/service/fit_request.h"
+#include "service/answers.h"
+#include "service/asked_again.h"
+#include "service/service_state.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+HttpResponse BatchAnswer(ServiceState& state, const std::string& id, int status) {
+  const auto batch = state.store->FindBatch(id);
+  if (!batch) return ProblemAnswer(batch.error());
+  const auto runs = state.store->RunsOf(id);
+  if (!runs) return ProblemAnswer(runs.error());
+  Json fits = Json::array();
+  for (const ListedFit& fit : *runs) {
+    Json item = ItemOf(fit);
+    for (const char* key : {"created", "batch", "recommended", "models"}) item.erase(key);
+    fits.push_back(std::move(item));
+  }
+  Json json = ItemOf(*batch);
+  json["fits"] = std::move(fits);
+  return JsonAnswer(json, status);
+}
+
+std::vector<FitOrder> OrdersOf(FitRequest request) {
+  const std::string created = NowText(), flags = JsonText(JsonOf(request.flags));
+  std::vector<FitOrder> orders;
+  orders.reserve(request.data.size());
+  for (NamedBytes& data : request.data) {
+    orders.push_back({MakeId(), created, flags, {std::move(data), request.rig, request.calibration}});
+  }
+  return orders;
+}
+
+/// Events about a batch from a place on: what is done of it, then what becomes so.
+class BatchEvents {
+ public:
+  BatchEvents(std::shared_ptr<const BatchProgress> progress, std::size_t place)
+      : progress_(std::move(progress)), place_(place) {
+    for (std::size_t before = 0; before < place_; ++before) Count(before);
+  }
+
+  EventText Next() {
+    constexpr int kMostAtOnce = 500;
+    EventText events;
+    if (progress_->is_deleted()) return {"", true};
+    for (int i = 0; i < kMostAtOnce && place_ < progress_->runs(); ++i) {
+      const auto run = Count(place_);
+      if (!run) return events;
+      events.text += FitEvent(*run);
+    }
+    if (place_ < progress_->runs()) return events;
+    events.text +=
+        "event: done\ndata: " + JsonText({{"runs", progress_->runs()}, {"done", place_}, {"failed", failed_}}) + "\n\n";
+    events.is_last = true;
+    return events;
+  }
+
+ private:
+  std::optional<BatchProgress::Run> Count(std::size_t place) {
+    auto run = progress_->DoneAt(place);
+    if (!run) return run;
+    place_ = std::max(place_, place + 1);
+    if (!run->reason.empty()) ++failed_;
+    return run;
+  }
+
+  std::string FitEvent(const BatchProgress::Run& run) const {
+    const Json data = {{"id", run.id},   {"name", run.name},  {"exit_code", *run.exit_code}, {"reason", run.reason},
+                       {"done", place_}, {"failed", failed_}, {"runs", progress_->runs()}};
+    return "id: " + std::to_string(place_) + "\nevent: fit\ndata: " + JsonText(data) + "\n\n";
+  }
+
+  std::shared_ptr<const BatchProgress> progress_;
+  std::size_t place_;
+  std::size_t failed_ = 0;
+};
+
+/// Of a batch that nobody works on any more.
+Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& state, const std::string& id) {
+  if (const auto batch = state.store->FindBatch(id); !batch) return tl::unexpected(batch.error());
+  auto fits = state.store->RunsOf(id);
+  if (!fits) return tl::unexpected(fits.error());
+  std::vector<BatchProgress::Run> runs;
+  runs.reserve(fits->size());
+  for (ListedFit& fit : *fits) {
+    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code.value_or(0), std::move(fit.reason)});
+  }
+  return std::make_shared<const BatchProgress>(std::move(runs));
+}
+
+/// After which event a client wants to go on (WHATWG HTML, 9.2.4); 0 where it says none.
+std::size_t LastEvent(const HttpRequest& http) {
+  std::size_t last = 0;
+  const std::string_view text = http.Field("Last-Event-ID").value_or("");
+  std::from_chars(text.data(), text.data() + text.size(), last);
+  return last;
+}
+
+}  // namespace
+
+HttpResponse PostBatch(ServiceState& state, const Call& call) {
+  return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
+    auto request = ParseBatchRequest(call.http, call.target, state.options.limits);
+    if (!request) return ProblemResponse(request.error());
+    if (state.queue.waiting() + request->data.size() > state.options.limits.max_runs) {
+      return ProblemResponse(
+          RetryLater(ProblemKind::kTooManyRequests, std::to_string(state.queue.waiting()) +
+                                                        " recordings of batches wait already, and this service keeps " +
+                                                        std::to_string(state.options.limits.max_runs) + " at most"));
+    }
+    const std::vector<FitOrder> orders = OrdersOf(*std::move(request));
+    const std::string id = MakeId();
+    if (const auto kept = state.store->AddBatch(id, orders.front().created, orders, key); !kept) {
+      return ProblemAnswer(kept.error());
+    }
+    state.queue.Add(id, orders);
+    HttpResponse response = BatchAnswer(state, id, 202);
+    response.fields.push_back({"Location", "/v1/batches/" + id});
+    return response;
+  });
+}
+
+HttpResponse ListBatches(ServiceState& state, const Call& call) {
+  if (auto checked = CheckQuery(call.target, {"limit", "before"}); !checked) return ProblemAnswer(checked.error());
+  constexpr std::int64_t kUsual = 50;
+  const auto limit = QueryNumber(call.target, "limit", kUsual);
+  if (!limit) return ProblemAnswer(limit.error());
+  const auto before = QueryNumber(call.target, "before", 0);
+  if (!before) return ProblemAnswer(before.error());
+  const int most = static_cast<int>(std::min(*limit, kMostListed));
+  const auto batches = state.store->ListBatches(most, *before > 0 ? std::optional(*before) : std::nullopt);
+  if (!batches) return ProblemAnswer(batches.error());
+  Json items = Json::array();
+  for (const ListedBatch& batch : *batches) items.push_back(ItemOf(batch));
+  const bool is_full = static_cast<int>(batches->size()) == most;
+  return JsonAnswer({{"batches", std::move(items)}, {"next", is_full ? Json(batches->back().batch) : Json(nullptr)}});
+}
+
+HttpResponse GetBatch(ServiceState& state, const Call& call) { return BatchAnswer(state, call.id, 200); }
+
+HttpResponse GetBatchEvents(ServiceState& state, const Call& call) {
+  std::shared_ptr<const BatchProgress> progress = state.queue.ProgressOf(call.id);
+  if (!progress) {
+    auto done = ProgressFromStore(state, call.id);
+    if (!done) return ProblemAnswer(done.error());
+    progress = *std::move(done);
+  }
+  const std::size_t last = std::min(LastEvent(call.http), progress->runs());
+  HttpResponse response;
+  response.events = [events = std::make_shared<BatchEvents>(std::move(progress), last)] { return events->Next(); };
+  return response;
+}
+
+HttpResponse DeleteBatch(ServiceState& state, const Call& call) {
+  if (const auto deleted = state.store->DeleteBatch(call.id); !deleted) return ProblemAnswer(deleted.error());
+  state.queue.Delete(call.id);
+  return {204, {}, "", {}};
+}
+
+}  // namespace pendulum

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/batch/fit_store.h"
+#include "service/fitter.h"
+#include "service/service_metrics.h"
+
+namespace pendulum {
+
+/// How far a batch is, run by run in the order they were sent. For any thread.
+class BatchProgress {
+ public:
+  struct Run {
+    std::string id, name;
+    std::optional<int> exit_code;  ///< None: it waits.
+    std::string reason;
+  };
+
+  explicit BatchProgress(std::vector<Run> runs);
+
+  void Done(const std::string& id, int exit_code, const std::string& reason);
+
+  /// The run at a place, once it and all before it are done; none before that.
+  std::optional<Run> DoneAt(std::size_t place) const;
+
+  /// There will be no more of it.
+  void Delete();
+  bool is_deleted() const;
+
+  std::size_t runs() const { return runs_.size(); }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Run> runs_;
+  std::map<std::string, std::size_t, std::less<>> places_;  // of ids
+  mutable std::size_t done_ = 0;                            // all runs before this place are done
+  bool is_deleted_ = false;
+};
+
+/// Works off the runs of batches that wait in the store, first come, first served, beside requests that want their
+/// answer at once and with less of the processor than these. Whatever ends it, what is in the store goes on next time.
+class BatchQueue {
+ public:
+  BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics, int threads);
+  BatchQueue(const BatchQueue&) = delete;
+  BatchQueue& operator=(const BatchQueue&) = delete;
+  BatchQueue(BatchQueue&&) = delete;
+  BatchQueue& operator=(BatchQueue&&) = delete;
+  ~BatchQueue();
+
+  /// Takes up what waits in the store. Errors: of the store.
+  Result<void> Begin();
+
+  /// Takes up a batch that has been stored.
+  void Add(const std::string& batch, const std::vector<FitOrder>& orders);
+
+  /// Passes over what waits of a batch.
+  void Delete(const std::string& batch);
+
+  /// Of a batch that is being worked on; null of any other.
+  std::shared_ptr<BatchProgress> ProgressOf(const std::string& batch) const;
+
+  std::size_t waiting() const;
+
+  /// No more runs; those under way are left for the next time.
+  void Stop();
+
+ private:
+  void Work();
+  std::optional<FitStore::Waiting> Take();
+  void FitOne(const FitStore::Waiting& run);
+  void Finish(const FitStore::Waiting& run, int exit_code, const std::string& reason);
+
+  FitStore& store_;
+  Fitter& fitter_;
+  ServiceMetrics& metrics_;
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  std::deque<FitStore::Waiting> waiting_;
+  struct Batch {
+    std::shared_ptr<BatchProgress> progress;
+    std::size_t left = 0;  // runs that are not done
+  };
+  std::map<std::string, Batch, std::less<>> batches_;
+  bool is_stopping_ = false;
+  std::vector<std::jthread> threads_;  // last, so that they end before the rest goes
+};
+
+}  // namespace pendulum

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <utility>
+
+namespace pendulum::wire {
+
+/// Bytes of bodies that may be in memory, of all connections together. For any thread.
+class ByteBudget {
+ public:
+  explicit ByteBudget(std::size_t most) : most_(most) {}
+
+  bool is_full() const { return taken_ >= most_; }
+  bool is_exceeded() const { return taken_ > most_; }  ///< By answers.
+  std::size_t taken() const { return taken_; }
+
+ private:
+  friend class HeldBytes;
+
+  std::size_t most_;
+  std::atomic<std::size_t> taken_ = 0;
+};
+
+/// Bytes that one body has of a budget, until it goes.
+class HeldBytes {
+ public:
+  explicit HeldBytes(ByteBudget& budget) : budget_(&budget) {}
+  HeldBytes(HeldBytes&& other) noexcept : budget_(other.budget_), bytes_(std::exchange(other.bytes_, 0)) {}
+  HeldBytes& operator=(HeldBytes&& other) noexcept {
+    std::swap(budget_, other.budget_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  HeldBytes(const HeldBytes&) = delete;
+  HeldBytes& operator=(const HeldBytes&) = delete;
+  ~HeldBytes() { Release(); }
+
+  /// Takes more; false, and nothing is taken, where the budget does not have it.
+  bool Take(std::size_t bytes) {
+    if (budget_->taken_.fetch_add(bytes) + bytes > budget_->most_) {
+      budget_->taken_ -= bytes;
+      return false;
+    }
+    bytes_ += bytes;
+    return true;
+  }
+
+  /// Takes more, come what may: of an answer that is there.
+  void Add(std::size_t bytes) {
+    budget_->taken_ += bytes;
+    bytes_ += bytes;
+  }
+
+  void Release() { budget_->taken_ -= std::exchange(bytes_, 0); }
+
+ private:
+  ByteBudget* budget_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace pendulum::wire

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "pendulum/service/http.h"
+#include "pendulum/service/server.h"
+#include "service/channel.h"
+
+namespace pendulum::wire {
+
+/// Server-sent events on a channel until the last, until the client goes, or until it is told to end. Asks for more
+/// only once the client has taken what there was, so that nothing piles up.
+class EventStream : public std::enable_shared_from_this<EventStream> {
+ public:
+  /// `done` is called once, whatever ends it; true: all of it was taken.
+  EventStream(std::shared_ptr<Channel> channel, NextEvents next, bool is_chunked, const ServerOptions& options,
+              std::function<void(bool)> done);
+
+  /// Sends the answer's head, and what there is.
+  void Start(std::string head);
+
+  /// Ends as after the last event, or, if the client does not take what is on its way, soon.
+  void End();
+
+ private:
+  void Watch();
+  void Wait();
+  void Ask();
+  void Send(std::string text);
+  void Finish(bool is_whole);
+
+  std::shared_ptr<Channel> channel_;
+  NextEvents next_;
+  const bool is_chunked_;
+  const ServerOptions& options_;
+  std::function<void(bool)> done_;
+  asio::steady_timer timer_;
+  std::chrono::steady_clock::time_point spoke_;
+  bool is_last_ = false;
+  bool is_waiting_ = false;  ///< For the timer, so that nothing is being sent.
+  std::array<char, 512> unasked_ = {};
+};
+
+}  // namespace pendulum::wire

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers about single fits.
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pendulum/base/json.h"
+#include "pendulum/base/sha256.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/read_recording.h"
+#include "pendulum/report/json_parts.h"
+#include "pendulum/report/markdown.h"
+#include "pendulum/report/page.h"
+#include "pendulum/report/series.h"
+#include "pendulum/service/fit_request.h"
+#include "pendulum/service/thinning.h"
+#include "service/answers.h"
+#include "service/asked_again.h"
+#include "service/service_state.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+HttpResponse Located(HttpResponse response, const std::string& id) {
+  response.fields.push_back({"Location", "/v1/fits/" + id});
+  return response;
+}
+
+/// The answer of a run that could not be fitted: as that of its exit code, for its sentence is all that was kept.
+HttpResponse UnfittedAnswer(const ListedFit& fit) {
+  const int exit_code = fit.exit_code.value_or(0);
+  for (const StatusCode code : {StatusCode::kInvalidArgument, StatusCode::kDataLoss, StatusCode::kFailedPrecondition,
+                                StatusCode::kTryAgain, StatusCode::kInternal}) {
+    if (ExitCode(code) != exit_code) continue;
+    const bool is_slow = code == StatusCode::kTryAgain;
+    return is_slow ? ProblemResponse(RetryLater(ProblemKind::kTimedOut, fit.reason))
+                   : ProblemAnswer({code, fit.reason});
+  }
+  return ProblemAnswer({StatusCode::kInternal, fit.reason});
+}
+
+/// Why there is no result of a run yet, or none at all.
+std::optional<HttpResponse> WithoutResult(const KeptFit& kept) {
+  if (!kept.fit.exit_code) {
+    return ProblemResponse(
+        RetryLater(ProblemKind::kConflict, "the fit " + kept.fit.id + " waits for its turn in a batch"));
+  }
+  if (kept.result.is_null()) return UnfittedAnswer(kept.fit);
+  return std::nullopt;
+}
+
+HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
+  if (state.is_stopping) return ProblemResponse(RetryLater(ProblemKind::kStopping, "the service is being stopped"));
+  return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message));
+}
+
+/// Fits what is asked and keeps it.
+HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
+  const auto begin = std::chrono::steady_clock::now();
+  FitOrder order{MakeId(),
+                 NowText(),
+                 JsonText(JsonOf(request.flags)),
+                 {std::move(request.data.front()), std::move(request.rig), std::move(request.calibration)}};
+  FittedRun fitted = state.fitter.Fit(request.options, order.files);
+  state.metrics.CountFit("request", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
+  if (fitted.is_stopped) return StoppedAnswer(state, *fitted.error);
+  if (fitted.error) return ProblemAnswer(*fitted.error);
+  if (const auto kept = state.store->Add(order, fitted.outcome, key); !kept) return ProblemAnswer(kept.error());
+  state.fitter.Remember(order.id, fitted.run);
+  return Located(JsonAnswer(fitted.outcome.result), order.id);
+}
+
+/// What a function makes of the fit of a kept run and its name, which is made once more unless it is remembered.
+template <typename Make>
+HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
+  auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  const auto options = OptionsOf(kept->order);
+  if (!options) return ProblemAnswer(options.error());
+  const auto run = state.fitter.FitOf(call.id, *options, std::move(kept->order.files));
+  if (run) return make(**run, kept->fit.name);
+  return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
+}
+
+/// The report as people keep it, with the name of its recording.
+RunReport NamedReport(const FitRun& run, const std::string& name) {
+  RunReport report = run.report;
+  report.data.path = name;
+  return report;
+}
+
+Json FileJson(const std::optional<NamedBytes>& file) {
+  if (!file) return nullptr;
+  auto json = ParseJsonObject(file->bytes, file->name, "file", "{}");
+  return json ? *std::move(json) : Json(nullptr);
+}
+
+/// The samples of a recording as they were read, as many as a plot shows.
+Json SamplesJson(const Recording& recording) {
+  constexpr Eigen::Index kMostShown = 4000;
+  const auto size = static_cast<std::size_t>(recording.size());
+  const auto shown = Thin({recording.time.data(), size}, {recording.value.data(), size}, kMostShown);
+  Json time = Json::array(), measured = Json::array();
+  for (const Eigen::Index i : shown) {
+    time.push_back(recording.time[i]);
+    measured.push_back(NumberOrNull(recording.value[i]));
+  }
+  return {{"time_s", std::move(time)},
+          {"measured", std::move(measured)},
+          {"unit", recording.unit},
+          {"samples", recording.size()}};
+}
+
+}  // namespace
+
+HttpResponse PostFit(ServiceState& state, const Call& call) {
+  return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
+    auto request = ParseFitRequest(call.http, call.target, state.options.limits);
+    if (!request) return ProblemResponse(request.error());
+    return FitAndKeep(state, *std::move(request), key);
+  });
+}
+
+HttpResponse PostRefit(ServiceState& state, const Call& call) {
+  return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
+    auto kept = state.store->Find(call.id);
+    if (!kept) return ProblemAnswer(kept.error());
+    auto flags = FlagsOf(kept->order);
+    if (!flags) return ProblemAnswer(flags.error());
+    auto request = ParseRefitRequest(call.http, call.target, *std::move(flags), std::move(kept->order.files));
+    if (!request) return ProblemResponse(request.error());
+    return FitAndKeep(state, *std::move(request), key);
+  });
+}
+
+HttpResponse ListFits(ServiceState& state, const Call& call) {
+  if (auto checked = CheckQuery(call.target, {"limit", "before", "model", "status", "name", "batch", "since"});
+      !checked) {
+    return ProblemAnswer(checked.error());
+  }
+  FitFilter filter;
+  const auto limit = QueryNumber(call.target, "limit", filter.limit);
+  if (!limit) return ProblemAnswer(limit.error());
+  const auto before = QueryNumber(call.target, "before", 0);
+  if (!before) return ProblemAnswer(before.error());
+  filter.limit = static_cast<int>(std::min<std::int64_t>(*limit, kMostListed));
+  if (*before > 0) filter.before = *before;
+  filter.model = QueryValue(call.target, "model");
+  filter.status = QueryValue(call.target, "status");
+  filter.name = QueryValue(call.target, "name");
+  filter.batch = QueryValue(call.target, "batch");
+  filter.since = QueryValue(call.target, "since");
+  const auto fits = state.store->List(filter);
+  if (!fits) return ProblemAnswer(fits.error());
+  Json items = Json::array();
+  for (const ListedFit& fit : *fits) items.push_back(ItemOf(fit));
+  const bool is_full = static_cast<int>(fits->size()) == filter.limit;
+  return JsonAnswer({{"fits", std::move(items)}, {"next", is_full ? Json(fits->back().run) : Json(nullptr)}});
+}
+
+HttpResponse GetFit(ServiceState& state, const Call& call) {
+  const auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  return JsonAnswer(kept->result);
+}
+
+HttpResponse DeleteFit(ServiceState& state, const Call& call) {
+  if (const auto deleted = state.store->DeleteFit(call.id); !deleted) return ProblemAnswer(deleted.error());
+  return {204, {}, "", {}};
+}
+
+HttpResponse GetFitRequest(ServiceState& state, const Call& call) {
+  const auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  const auto flags = FlagsOf(kept->order);
+  if (!flags) return ProblemAnswer(flags.error());
+  const auto sha256 = Sha256(kept->order.files.data.bytes);
+  if (!sha256) return ProblemAnswer(sha256.error());
+  return JsonAnswer({{"id", call.id},
+                     {"name", kept->fit.name},
+                     {"created", kept->fit.created},
+                     {"batch", kept->fit.batch ? Json(*kept->fit.batch) : Json(nullptr)},
+                     {"options", JsonOf(*flags)},
+                     {"rig", FileJson(kept->order.files.rig)},
+                     {"calibration", FileJson(kept->order.files.calibration)},
+                     {"data_sha256", *sha256}});
+}
+
+HttpResponse GetRecording(ServiceState& state, const Call& call) {
+  auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  return FileAnswer("text/csv; charset=utf-8", std::move(kept->order.files.data.bytes), kept->fit.name);
+}
+
+HttpResponse GetSamples(ServiceState& state, const Call& call) {
+  const auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  auto options = OptionsOf(kept->order);
+  if (!options) return ProblemAnswer(options.error());
+  const RunFiles& files = kept->order.files;
+  if (files.calibration) {
+    auto calibration = ParseCalibration(files.calibration->bytes, files.calibration->name);
+    if (!calibration) return ProblemAnswer(calibration.error());
+    options->read.calibration = *std::move(calibration);
+  }
+  const auto recording = ParseRecording(files.data.bytes, files.data.name, options->read);
+  if (!recording) return ProblemAnswer(recording.error());
+  return JsonAnswer(SamplesJson(*recording));
+}
+
+HttpResponse GetSeries(ServiceState& state, const Call& call) {
+  return WithFit(state, call, [](const FitRun& run, const std::string&) {
+    return TextAnswer("application/json", ToSeriesJsonText(run.used, run.report));
+  });
+}
+
+HttpResponse GetResiduals(ServiceState& state, const Call& call) {
+  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
+    if (run.report.fits.empty()) {
+      return ProblemAnswer({StatusCode::kNotFound, "there are closed forms only, and no fit that leaves residuals"});
+    }
+    return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run.used.front(), run.report, run.report.MainFit()),
+                      "residuals of " + name);
+  });
+}
+
+HttpResponse GetReport(ServiceState& state, const Call& call) {
+  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
+    return FileAnswer("text/html; charset=utf-8", ToHtml(run.used, NamedReport(run, name), ""), name + ".html");
+  });
+}
+
+HttpResponse GetMarkdown(ServiceState& state, const Call& call) {
+  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
+    return FileAnswer("text/markdown; charset=utf-8", ToMarkdown(NamedReport(run, name)), name + ".md");
+  });
+}
+
+}  // namespace pendulum

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/service/fit_request.h"
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
+#include "pendulum/batch/source.h"
+#include "pendulum/service/form_data.h"
+#include "pendulum/service/media_type.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestName = 200;  // bytes
+constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
+
+/// What a client calls a file, without the folders that old browsers send along.
+std::string NameOf(std::string_view filename) {
+  const std::size_t slash = filename.find_last_of("/\\");
+  if (slash != std::string_view::npos) filename.remove_prefix(slash + 1);
+  if (filename.empty()) return kUnnamed;
+  if (filename.size() <= kLongestName) return std::string(filename);
+  std::size_t end = kLongestName;
+  while (end > 0 && (static_cast<unsigned char>(filename[end]) & 0xC0U) == 0x80U) --end;  // within a UTF-8 character
+  return std::string(filename.substr(0, end));
+}
+
+Result<void> CheckName(const std::string& name) {
+  if (!name.empty() && name.size() <= kLongestName) return {};
+  return Error(StatusCode::kInvalidArgument,
+               "name has " + std::to_string(name.size()) + " bytes; it must have 1 to " + std::to_string(kLongestName));
+}
+
+/// Adds a flag that the other place did not give.
+Result<void> AddFlag(const std::string& name, const std::string& text, FlagTexts& flags) {
+  if (flags.emplace(name, text).second) return {};
+  return Error(StatusCode::kInvalidArgument,
+               "--" + name + " is given in the query and in options; leave one of them out");
+}
+
+Result<void> AddOptions(const Json& object, FlagTexts& flags) {
+  const auto texts = FlagTextsOf(object);
+  if (!texts) return tl::unexpected(texts.error());
+  for (const auto& [name, text] : *texts) {
+    if (auto added = AddFlag(name, text, flags); !added) return added;
+  }
+  return {};
+}
+
+/// What the query of a request gives, before its body is looked at.
+struct Query {
+  FlagTexts flags;
+  std::string name;  ///< Empty where there is none.
+};
+
+Result<Query> QueryOf(const RequestTarget& target) {
+  Query query;
+  for (const auto& [name, value] : target.query) {
+    if (name == "name") {
+      if (auto checked = CheckName(value); !checked) return tl::unexpected(checked.error());
+      query.name = value;
+    } else {
+      query.flags.emplace(name, value);
+    }
+  }
+  return query;
+}
+
+/// The parts of a form, into the request.
+class FormReader {
+ public:
+  explicit FormReader(FitRequest& request) : request_(request) {}
+
+  Result<void> Take(const FormPart& part) {
+    if (part.name == "data") {
+      request_.data.push_back({NameOf(part.filename), std::string(part.content)});
+      return {};
+    }
+    if (part.name == "rig") return TakeFile(part, request_.rig);
+    if (part.name == "calibration") return TakeFile(part, request_.calibration);
+    if (part.name == "options") return TakeOptions(part);
+    return Error(StatusCode::kInvalidArgument,
+                 "the form has a part " + Quoted(part.name) + "; it may have data, rig, calibration and options");
+  }
+
+ private:
+  static Result<void> TakeFile(const FormPart& part, std::optional<NamedBytes>& file) {
+    if (file) return Twice(part.name);
+    file = NamedBytes{part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)};
+    return {};
+  }
+
+  Result<void> TakeOptions(const FormPart& part) {
+    if (std::exchange(has_options_, true)) return Twice(part.name);
+    const auto object = ParseJsonObject(part.content, "options", "set of options", R"({"model": "coulomb"})");
+    if (!object) return Error(StatusCode::kInvalidArgument, object.error().message);
+    return AddOptions(*object, request_.flags);
+  }
+
+  static Result<void> Twice(const std::string& name) {
+    return Error(StatusCode::kInvalidArgument, "the form has two parts " + name + "; leave one of them out");
+  }
+
+  FitRequest& request_;
+  bool has_options_ = false;
+};
+
+Result<void> ReadForm(std::string_view content_type, const std::string& body, FitRequest& request) {
+  const auto parts = ParseFormData(content_type, body);
+  if (!parts) return tl::unexpected(parts.error());
+  FormReader reader(request);
+  for (const FormPart& part : *parts) {
+    if (auto taken = reader.Take(part); !taken) return taken;
+  }
+  return {};
+}
+
+/// A rig or calibration of a JSON body; null is none.
+Result<void> ReadObject(const std::string& name, const Json& value, std::optional<NamedBytes>& file) {
+  file.reset();
+  if (value.is_null()) return {};
+  if (!value.is_object()) {
+    return Error(StatusCode::kInvalidArgument, name + " is " + ShownJson(value) + "; it must be an object or null");
+  }
+  file = NamedBytes{name, JsonText(value)};
+  return {};
+}
+
+Result<void> ReadMember(const std::string& name, const Json& value, FitRequest& request) {
+  if (name == "rig") return ReadObject(name, value, request.rig);
+  if (name == "calibration") return ReadObject(name, value, request.calibration);
+  if (name == "options" && value.is_object()) return AddOptions(value, request.flags);
+  if ((name == "data" || name == "name") && value.is_string()) return {};
+  return Error(StatusCode::kInvalidArgument, Quoted(name) + " is " + ShownJson(value) +
+                                                 "; the body may have data and name (texts), rig, " +
+                                                 "calibration and options (objects)");
+}
+
+Result<Json> ParseBody(const std::string& body) {
+  auto json = ParseJsonObject(body, "the body", "request", kFormOfJson, body.size());
+  if (!json) return Error(StatusCode::kInvalidArgument, json.error().message);
+  return json;
+}
+
+Result<void> ReadJson(const std::string& body, FitRequest& request) {
+  auto json = ParseBody(body);
+  if (!json) return tl::unexpected(json.error());
+  for (const auto& [name, value] : json->items()) {
+    if (auto read = ReadMember(name, value, request); !read) return read;
+  }
+  if (!json->contains("data")) return {};
+  std::string name = kUnnamed;
+  if (json->contains("name")) {
+    name = (*json)["name"].get<std::string>();
+    if (auto checked = CheckName(name); !checked) return checked;
+  }
+  request.data.push_back({std::move(name), std::move((*json)["data"].get_ref<std::string&>())});
+  return {};
+}
+
+tl::unexpected<Problem> WrongKind(std::string_view type, std::string_view wanted) {
+  std::string detail = type.empty() ? "the body has no Content-Type" : "the Content-Type is " + Quoted(type);
+  if (type == "application/x-www-form-urlencoded") detail += ", which curl sets unless it is told otherwise";
+  return Refused(ProblemKind::kUnsupportedMediaType, detail + "; it must be " + std::string(wanted));
+}
+
+bool IsText(std::string_view type) {
+  return type.starts_with("text/") || type == "application/octet-stream" || type == "application/csv" ||
+         type == "application/vnd.ms-excel";  // what Windows calls CSV
+}
+
+/// The type of a body, in lower case; empty where it has none or an impossible one.
+std::string TypeOf(const HttpRequest& request) {
+  const auto field = request.Field("Content-Type");
+  const auto type = field ? ParseMediaType(*field) : Result<MediaType>(MediaType{});
+  return type ? type->type : "";
+}
+
+OrProblem<void> CheckCoding(const HttpRequest& request) {
+  const auto coding = request.Field("Content-Encoding");
+  if (!coding || LowerCase(WithoutBlanks(*coding)) == "identity") return {};
+  return Refused(ProblemKind::kUnsupportedMediaType,
+                 "the body has Content-Encoding " + Quoted(*coding) + "; send it as it is, without one");
+}
+
+OrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
+  const auto lines = static_cast<std::size_t>(std::ranges::count(data.bytes, '\n'));
+  if (lines <= limits.max_samples && data.bytes.size() <= kMostRecordingBytes) return {};
+  return Refused(ProblemKind::kTooLarge, data.name + ": the recording has " + std::to_string(lines) +
+                                             " lines, and this service takes " + std::to_string(limits.max_samples) +
+                                             " samples at most; send a part of it, or use fit_pendulum");
+}
+
+/// The options of what was read, and whether there is not too much of it.
+OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
+  auto options = RunOptionsOf(request.flags, request.calibration);
+  if (!options) return Refused(options.error());
+  request.options = *std::move(options);
+  for (const NamedBytes& data : request.data) {
+    if (auto checked = CheckSize(data, limits); !checked) return tl::unexpected(checked.error());
+  }
+  return request;
+}
+
+OrProblem<FitRequest> Begin(const HttpRequest& http, const RequestTarget& target, std::string& name) {
+  if (auto checked = CheckCoding(http); !checked) return tl::unexpected(checked.error());
+  auto query = QueryOf(target);
+  if (!query) return Refused(query.error());
+  FitRequest request;
+  request.flags = std::move(query->flags);
+  name = std::move(query->name);
+  return request;
+}
+
+}  // namespace
+
+Result<FlagTexts> FlagTextsOf(const Json& object) {
+  FlagTexts flags;
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_structured() || value.is_null()) {
+      return Error(StatusCode::kInvalidArgument,
+                   "--" + name + " is " + ShownJson(value) + "; it must be a text, a number, true or false");
+    }
+    flags.emplace(name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return flags;
+}
+
+Json JsonOf(const FlagTexts& flags) {
+  Json object = Json::object();
+  for (const auto& [name, text] : flags) object[name] = text;
+  return object;
+}
+
+Result<RunOptions> RunOptionsOf(const FlagTexts& texts, const std::optional<NamedBytes>& calibration) {
+  auto flags = RunFlagsOf(texts);
+  if (!flags) return tl::unexpected(flags.error());
+  if (calibration) flags->calibration = calibration->name;
+  auto options = MakeRunOptions(*flags);
+  if (!options) return options;
+  if (options->swing.release == SwingChoice::kAll) {
+    return Error(StatusCode::kInvalidArgument,
+                 "--release all makes several results of a recording; a request has one, so give the number of one");
+  }
+  options->fit.threads = 1;  // of many requests at a time each has its own
+  return options;
+}
+
+Result<FlagTexts> FlagsOf(const FitOrder& order) {
+  const auto json = ParseJsonObject(order.flags, "flags", "set of flags", "{}");
+  if (!json) return tl::unexpected(json.error());
+  return FlagTextsOf(*json);
+}
+
+Result<RunOptions> OptionsOf(const FitOrder& order) {
+  const auto flags = FlagsOf(order);
+  if (!flags) return tl::unexpected(flags.error());
+  return RunOptionsOf(*flags, order.files.calibration);
+}
+
+OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
+                                      const RequestLimits& limits) {
+  std::string name;
+  auto request = Begin(http, target, name);
+  if (!request) return request;
+  const std::string type = TypeOf(http);
+  Result<void> read;
+  if (type == "multipart/form-data") {
+    read = ReadForm(*http.Field("Content-Type"), http.body, *request);
+  } else if (type == "application/json") {
+    read = ReadJson(http.body, *request);
+  } else if (IsText(type)) {
+    request->data.push_back({kUnnamed, http.body});
+  } else {
+    return WrongKind(type, "text/csv, multipart/form-data or application/json");
+  }
+  if (!read) return Refused(read.error());
+  if (request->data.size() != 1) {
+    return Refused(ProblemKind::kWrongRequest, "the request has " + std::to_string(request->data.size()) +
+                                                   " recordings (parts data); a fit has one, and POST /v1/batches "
+                                                   "takes several");
+  }
+  if (!name.empty()) request->data.front().name = name;
+  return Finish(*std::move(request), limits);
+}
+
+OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
+                                        const RequestLimits& limits) {
+  std::string name;
+  auto request = Begin(http, target, name);
+  if (!request) return request;
+  const std::string type = TypeOf(http);
+  if (type != "multipart/form-data") return WrongKind(type, "multipart/form-data");
+  if (auto read = ReadForm(*http.Field("Content-Type"), http.body, *request); !read) return Refused(read.error());
+  if (!name.empty()) return Refused(ProblemKind::kWrongRequest, "name is of one fit; the parts of a batch have names");
+  if (request->data.empty()) return Refused(ProblemKind::kWrongRequest, "the form has no part data; a batch has some");
+  if (request->data.size() > limits.max_runs) {
+    return Refused(ProblemKind::kTooLarge, "the batch has " + std::to_string(request->data.size()) +
+                                               " recordings, and this service takes " +
+                                               std::to_string(limits.max_runs) + " at most; send several batches");
+  }
+  return Finish(*std::move(request), limits);
+}
+
+OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
+                                        RunFiles files) {
+  std::string name;
+  auto changes = Begin(http, target, name);
+  if (!changes) return changes;
+  FitRequest& request = *changes;
+  request.rig = std::move(files.rig);
+  request.calibration = std::move(files.calibration);
+  if (!http.body.empty()) {
+    const std::string type = TypeOf(http);
+    if (type != "application/json") return WrongKind(type, "application/json, or the body empty");
+    if (auto read = ReadJson(http.body, request); !read) return Refused(read.error());
+  }
+  if (!request.data.empty()) {
+    return Refused(ProblemKind::kWrongRequest, "a refit has the recording that is there; leave data out");
+  }
+  if (request.flags.contains("models") || request.flags.contains("model")) {
+    flags.erase("model");
+    flags.erase("models");
+  }
+  for (const auto& [flag, text] : request.flags) flags.insert_or_assign(flag, text);
+  std::erase_if(flags, [](const auto& flag) { return flag.second.empty(); });
+  request.flags = std::move(flags);
+  request.data.push_back(std::move(files.data));
+  if (!name.empty()) request.data.front().name = name;
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  return Finish(std::move(request), {.max_samples = kAny, .max_runs = kAny});
+}
+
+}  // namespace pendulum

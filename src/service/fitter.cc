@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/fitter.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/sha256.h"
+#include "pendulum/base/version.h"
+#include "pendulum/batch/provenance.h"
+#include "pendulum/report/json.h"
+
+namespace pendulum {
+namespace {
+
+/// An exception is our bug or the memory's end, and costs this run only.
+Result<FitRun> TryFit(const RunOptions& options, RunFiles files) {
+  try {
+    return FitBytes(options, std::move(files));
+  } catch (const std::exception& error) {
+    return Error(StatusCode::kInternal, std::string("internal error: ") + error.what());
+  }
+}
+
+std::string HashOf(const std::string& bytes) { return Sha256(bytes).value_or(""); }
+
+std::string HashOf(const std::optional<NamedBytes>& file) { return file ? HashOf(file->bytes) : ""; }
+
+Provenance ProvenanceOf(const RunOptions& options, const RunFiles& files) {
+  return {HashOf(files.data.bytes),     HashOf(files.rig),     HashOf(files.calibration),
+          HashOf(OptionsJson(options)), std::string(kVersion), CpuType()};
+}
+
+Status TookTooLong(std::chrono::milliseconds limit) {
+  return {StatusCode::kTryAgain,
+          "the fit was not done after " + NumberText(std::chrono::duration<double>(limit).count()) +
+              " s, the most that one may take here; choose fewer models, a shorter window (from, to) or intervals by "
+              "covariance, or use fit_pendulum"};
+}
+
+}  // namespace
+
+FittedRun Fitter::Fit(const RunOptions& asked, RunFiles files) {
+  const TimeLimit::Watch watch(limit_);
+  RunOptions options = asked;
+  options.fit.stop = watch.token();
+  FittedRun fitted;
+  fitted.outcome.provenance = ProvenanceOf(asked, files);
+  fitted.outcome.models = asked.models;
+  Result<FitRun> run = TryFit(options, std::move(files));
+  fitted.is_stopped = watch.token().stop_requested() && !run;
+  if (!run) {
+    fitted.error = fitted.is_stopped ? TookTooLong(limit()) : run.error();
+    fitted.outcome.exit_code = ExitCode(fitted.error->code);
+    fitted.outcome.reason = fitted.error->message;
+    return fitted;
+  }
+  run->report.data.path.clear();
+  fitted.outcome.exit_code = ExitCodeOf(*run);
+  fitted.outcome.result = ToJson(run->report);
+  fitted.run = std::make_shared<const FitRun>(*std::move(run));
+  return fitted;
+}
+
+Result<std::shared_ptr<const FitRun>> Fitter::FitOf(const std::string& id, const RunOptions& options, RunFiles files) {
+  if (auto run = Find(id)) return run;
+  FittedRun fitted = Fit(options, std::move(files));
+  if (fitted.error) return tl::unexpected(*fitted.error);
+  Remember(id, fitted.run);
+  return fitted.run;
+}
+
+void Fitter::Remember(const std::string& id, std::shared_ptr<const FitRun> run) {
+  Eigen::Index samples = 0;
+  for (const Recording& used : run->used) samples += used.size();
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(remembered_, [&](const Remembered& other) { return other.id == id; });
+  remembered_.push_front({id, std::move(run), samples});
+  Eigen::Index total = 0;
+  const auto too_many = std::ranges::find_if(
+      remembered_, [&](const Remembered& one) { return (total += one.samples) > kMostRemembered; });
+  remembered_.erase(too_many, remembered_.end());
+}
+
+std::shared_ptr<const FitRun> Fitter::Find(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = std::ranges::find(remembered_, id, &Remembered::id);
+  if (found == remembered_.end()) return nullptr;
+  remembered_.splice(remembered_.begin(), remembered_, found);
+  return remembered_.front().run;
+}
+
+}  // namespace pendulum

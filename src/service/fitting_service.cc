@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/service/fitting_service.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/service/problem.h"
+#include "pendulum/service/request_target.h"
+#include "service/answers.h"
+#include "service/routes.h"
+#include "service/service_state.h"
+
+namespace pendulum {
+namespace {
+
+/// Everything of the page comes from here, as files: whatever else gets into it is not run.
+constexpr const char* kPagePolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What is no page runs nothing, even where a browser is made to show it.
+constexpr const char* kDataPolicy = "default-src 'none'; frame-ancestors 'none'; sandbox";
+
+/// What every answer says to browsers.
+HttpResponse Guarded(HttpResponse response) {
+  const auto type = std::ranges::find(response.fields, "Content-Type", &HttpField::name);
+  const bool is_file =
+      std::ranges::find(response.fields, "Content-Disposition", &HttpField::name) != response.fields.end();
+  const bool is_page = type != response.fields.end() && type->value.starts_with("text/html") && !is_file;
+  response.fields.push_back({"Content-Security-Policy", is_page ? kPagePolicy : kDataPolicy});
+  response.fields.push_back({"X-Content-Type-Options", "nosniff"});
+  response.fields.push_back({"Referrer-Policy", "no-referrer"});
+  response.fields.push_back({"Cross-Origin-Resource-Policy", "same-origin"});
+  if (std::ranges::find(response.fields, "Cache-Control", &HttpField::name) == response.fields.end()) {
+    response.fields.push_back({"Cache-Control", "no-store"});
+  }
+  return response;
+}
+
+HttpResponse GuardedProblem(const Problem& problem) { return Guarded(ProblemResponse(problem)); }
+
+/// The server hands HEAD on as GET and keeps the content to itself.
+std::string_view MethodOf(const HttpRequest& request) {
+  return request.method == "HEAD" ? "GET" : std::string_view(request.method);
+}
+
+}  // namespace
+
+FittingService::FittingService(std::unique_ptr<ServiceState> state) : state_(std::move(state)) {}
+
+FittingService::~FittingService() = default;
+
+Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptions& options,
+                                                              std::unique_ptr<FitStore> store) {
+  auto state = std::make_unique<ServiceState>(options, std::move(store));
+  if (auto begun = state->queue.Begin(); !begun) return tl::unexpected(begun.error());
+  return std::unique_ptr<FittingService>(new FittingService(std::move(state)));  // NOLINT: the constructor is private
+}
+
+Lane FittingService::LaneOf(const HttpRequest& request) const {
+  const auto target = ParseTarget(request.target);
+  if (!target) return Lane::kQuick;
+  const Match match = FindRoute(MethodOf(request), target->path);
+  return match.route == nullptr ? Lane::kQuick : match.route->lane;
+}
+
+std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& request) const {
+  const auto target = ParseTarget(request.target);
+  const Match match = target ? FindRoute(MethodOf(request), target->path) : Match{};
+  // Who may not ask is not told what there is.
+  const Audience audience = match.route == nullptr ? Audience::kTokenHolders : match.route->audience;
+  if (const auto refused = RefuseAccess(request, state_->options.access, audience)) return GuardedProblem(*refused);
+  if (!target) return GuardedProblem(ProblemOf(target.error()));
+  if (match.allowed.empty()) {
+    return GuardedProblem({ProblemKind::kNotFound,
+                           "there is nothing at " + target->path + "; GET /openapi.json lists what there is",
+                           {}});
+  }
+  if (match.route == nullptr) return GuardedProblem(MethodNotAllowed(request.method, match.allowed));
+  if (match.route->query == QueryKind::kOwn) return std::nullopt;
+  if (const auto checked = CheckQuery(*target, {}); !checked) return GuardedProblem(ProblemOf(checked.error()));
+  return std::nullopt;
+}
+
+HttpResponse FittingService::Handle(const HttpRequest& request) {
+  if (auto refused = RefuseHead(request)) return *std::move(refused);
+  auto target = ParseTarget(request.target);
+  const Match match = FindRoute(MethodOf(request), target->path);
+  return Guarded(match.route->answer(*state_, {request, *std::move(target), match.id}));
+}
+
+HttpResponse FittingService::Refusal(int status, const std::string& detail) const {
+  return GuardedProblem(ProblemOf(status, detail));
+}
+
+void FittingService::Count(const Answered& answered) {
+  constexpr std::array<std::string_view, 4> kMethods = {"GET", "HEAD", "POST", "DELETE"};
+  const bool is_known = std::ranges::find(kMethods, answered.method) != kMethods.end();
+  const auto target = ParseTarget(answered.target);
+  state_->metrics.CountAnswer(is_known ? answered.method : "other",
+                              std::string(target ? PatternOf(target->path) : "other"), answered.status, answered.time);
+}
+
+void FittingService::CountServer(std::function<ServerCounts()> counts) {
+  state_->metrics.set_server(std::move(counts));
+}
+
+void FittingService::Stop() {
+  state_->is_stopping = true;
+  state_->queue.Stop();
+}
+
+void FittingService::StopFits() { state_->fitter.StopAll(); }
+
+}  // namespace pendulum

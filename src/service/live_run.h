@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string_view>
+#include <vector>
+
+#include "service/live_points.h"
+#include "service/live_rows.h"
+
+namespace pendulum {
+
+/// What has been read of a run.
+struct LiveRun {
+  static constexpr std::size_t kMostLatest = 4000;  // 80 s of them: a listener that is later begins again
+
+  LiveRows rows;
+  WholeRun whole;
+  SparsePoints sparse;
+  std::deque<LivePoint> latest;
+  std::uint64_t samples = 0;
+  std::uint64_t latest_begin = 0;  // number of the first of the latest points
+
+  std::uint64_t latest_end() const { return latest_begin + latest.size(); }
+
+  void Keep(const std::vector<LivePoint>& points) {
+    latest.insert(latest.end(), points.begin(), points.end());
+    for (; latest.size() > kMostLatest; ++latest_begin) latest.pop_front();
+  }
+
+  void Take(std::string_view lines) {
+    std::vector<LivePoint> settled;
+    while (!lines.empty()) {
+      const std::string_view line = lines.substr(0, lines.find('\n'));
+      lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+      const auto point = rows.Take(line);
+      if (!point) continue;
+      ++samples;
+      whole.Take(*point);
+      sparse.Take(*point, settled);
+    }
+    Keep(settled);
+  }
+
+  /// What waits for more samples of its block, where none come.
+  void Settle() {
+    std::vector<LivePoint> settled;
+    sparse.Flush(settled);
+    Keep(settled);
+  }
+};
+
+}  // namespace pendulum

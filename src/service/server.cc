@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/service/server.h"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "service/connection.h"
+
+namespace pendulum {
+namespace {
+
+namespace asio = boost::asio;
+using boost::asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+/// After an accept that failed, such as for want of file descriptors, which does not change by asking again.
+constexpr std::chrono::milliseconds kAfterFailedAccept{100};
+
+/// Connections beyond the limit that are told so at a time; more are closed without a word.
+constexpr std::size_t kMaxTurnedAway = 64;
+
+std::size_t ThreadsOf(int threads) {
+  return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+}
+
+}  // namespace
+
+struct Server::State {
+  State(ServerOptions wanted, HttpHandler& handler, std::function<void(const Answered&)> answered)
+      : options(std::move(wanted)),
+        budget(options.max_buffered),
+        acceptor(io),
+        pause(io),
+        stop_timer(io),
+        work(io.get_executor()),
+        quick(ThreadsOf(options.quick_threads), options.max_queue),
+        fits(ThreadsOf(options.fit_threads), options.max_queue),
+        serving{options, handler, std::move(answered), io, budget, quick, fits, [this](const auto& c) { Forget(c); }} {}
+
+  Result<void> Bind();
+  void Accept();
+  void Take(tcp::socket socket);
+  void Forget(const std::shared_ptr<wire::Connection>& connection);
+  void BeginStop();
+  void EndStop();
+  void DropAll();
+
+  // In an order that lets everything go before what it refers to.
+  const ServerOptions options;
+  wire::ByteBudget budget;
+  asio::io_context io{1};
+  tcp::acceptor acceptor;
+  asio::steady_timer pause, stop_timer;
+  std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
+  std::set<std::shared_ptr<wire::Connection>> connections, turned_away;
+  std::atomic<std::size_t> open = 0;
+  std::atomic<std::uint64_t> accepted = 0;
+  std::uint16_t port = 0;
+  wire::WorkQueue quick, fits;
+  wire::Serving serving;
+};
+
+Result<void> Server::State::Bind() {
+  const std::string name = options.address + ":" + std::to_string(options.port);
+  ErrorCode code;
+  const asio::ip::address address = asio::ip::make_address(options.address, code);
+  if (code) {
+    return Error(StatusCode::kInvalidArgument,
+                 "address \"" + options.address + "\": not an IPv4 or IPv6 address; give one such as 127.0.0.1 or ::1");
+  }
+  const tcp::endpoint endpoint(address, options.port);
+  acceptor.open(endpoint.protocol(), code);
+  if (!code) acceptor.set_option(tcp::acceptor::reuse_address(true), code);
+  if (!code) acceptor.bind(endpoint, code);
+  if (!code) acceptor.listen(asio::socket_base::max_listen_connections, code);
+  if (!code) port = acceptor.local_endpoint(code).port();
+  if (!code) return {};
+  return Error(StatusCode::kCannotWrite,
+               name + ": cannot be listened on, " + code.message() + "; choose another address or port");
+}
+
+void Server::State::Accept() {
+  acceptor.async_accept([this](const ErrorCode& code, tcp::socket socket) {
+    if (!acceptor.is_open()) return;
+    if (!code) {
+      Take(std::move(socket));
+      return Accept();
+    }
+    pause.expires_after(kAfterFailedAccept);
+    pause.async_wait([this](const ErrorCode&) {
+      if (acceptor.is_open()) Accept();
+    });
+  });
+}
+
+void Server::State::Take(tcp::socket socket) {
+  ++accepted;
+  const bool is_one_too_many = connections.size() >= options.max_connections;
+  if (is_one_too_many && turned_away.size() >= kMaxTurnedAway) return;
+  const auto connection = std::make_shared<wire::Connection>(std::move(socket), serving);
+  (is_one_too_many ? turned_away : connections).insert(connection);
+  open = connections.size();
+  if (!is_one_too_many) return connection->Start();
+  connection->TurnAway(503, "too many connections are open; try again later");
+}
+
+void Server::State::Forget(const std::shared_ptr<wire::Connection>& connection) {
+  connections.erase(connection);
+  turned_away.erase(connection);
+  open = connections.size();
+  EndStop();
+}
+
+void Server::State::BeginStop() {
+  ErrorCode ignored;
+  acceptor.close(ignored);
+  pause.cancel();
+  stop_timer.expires_after(options.stop_time);
+  stop_timer.async_wait([this](const ErrorCode& code) {
+    if (!code) DropAll();
+  });
+  const auto all = connections;
+  for (const auto& connection : all) connection->Finish();
+  EndStop();
+}
+
+void Server::State::EndStop() {
+  if (acceptor.is_open() || !connections.empty()) return;
+  stop_timer.cancel();
+  work.reset();
+}
+
+void Server::State::DropAll() {
+  auto all = connections;
+  all.merge(turned_away);
+  for (const auto& connection : all) connection->Close();
+  io.stop();
+}
+
+Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, HttpHandler& handler,
+                                               std::function<void(const Answered&)> answered) {
+  try {
+    auto state = std::make_unique<State>(options, handler, std::move(answered));
+    if (auto bound = state->Bind(); !bound) return tl::unexpected(bound.error());
+    return std::unique_ptr<Server>(new Server(std::move(state)));
+  } catch (const std::exception& error) {
+    return Error(StatusCode::kTryAgain, std::string("the server cannot start, ") + error.what() +
+                                            "; ask for fewer threads, or let other processes end");
+  }
+}
+
+Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Server::~Server() {
+  state_->quick.Close();
+  state_->fits.Close();
+}
+
+std::uint16_t Server::port() const { return state_->port; }
+
+void Server::Run() {
+  state_->Accept();
+  for (bool is_done = false; !is_done;) {
+    try {
+      state_->io.run();
+      is_done = true;
+    } catch (const std::exception&) {  // no memory for one: its limit will close it
+      continue;
+    }
+  }
+  state_->quick.Close();
+  state_->fits.Close();
+}
+
+void Server::Stop() {
+  if (state_->serving.is_stopping.exchange(true)) return;
+  asio::post(state_->io, [state = state_.get()] { state->BeginStop(); });
+}
+
+bool Server::is_stopping() const { return state_->serving.is_stopping; }
+
+ServerCounts Server::Count() const {
+  const State& state = *state_;
+  return {.connections = state.open,
+          .waiting = state.quick.waiting() + state.fits.waiting(),
+          .running = state.quick.running() + state.fits.running(),
+          .streams = state.serving.streams,
+          .buffered = state.budget.taken(),
+          .accepted = state.accepted,
+          .answered = state.serving.answers,
+          .refused = state.serving.refusals};
+}
+
+}  // namespace pendulum

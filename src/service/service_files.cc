@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/service_files.h"
+
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace pendulum {
+
+std::span<const Example> Examples() {
+  static const std::array<Example, 3> examples = {{
+      {"recorded", "A run to rest",
+       "A potentiometer on an Arduino, 46 s at 200 Hz until the pendulum rests: viscous and dry friction.",
+       "viscous,coulomb,drag", RecordedRecording(), RecordedRig()},
+      {"coulomb", "Twenty seconds with dry friction",
+       "Simulated at 100 Hz with a 10-bit converter: does the decay look like a straight line or a curve?",
+       "viscous,coulomb,drag", CoulombRecording(), TextbookRig()},
+      {"textbook", "The textbook's rig", "Simulated with viscous friction alone, as textbooks have it.",
+       "viscous,coulomb", TextbookRecording(), TextbookRig()},
+  }};
+  return examples;
+}
+
+std::string OpenApiDocument() {
+  nlohmann::ordered_json document = nlohmann::ordered_json::parse(OpenApiTemplate());
+  document["components"]["schemas"]["Result"] = nlohmann::ordered_json::parse(ResultSchema());
+  constexpr int kIndent = 2;
+  return document.dump(kIndent) + "\n";
+}
+
+}  // namespace pendulum

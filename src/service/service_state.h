@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "pendulum/batch/fit_store.h"
+#include "pendulum/service/fitting_service.h"
+#include "pendulum/service/http.h"
+#include "pendulum/service/live_recording.h"
+#include "pendulum/service/request_target.h"
+#include "service/batch_queue.h"
+#include "service/fitter.h"
+#include "service/service_metrics.h"
+
+namespace pendulum {
+
+/// Keys of requests that are being worked on.
+class KeysUnderWay {
+ public:
+  /// False: another request with the key is being worked on.
+  bool Begin(const std::string& key) {
+    const std::scoped_lock lock(mutex_);
+    return keys_.insert(key).second;
+  }
+
+  void End(const std::string& key) {
+    const std::scoped_lock lock(mutex_);
+    keys_.erase(key);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> keys_;
+};
+
+/// What all requests of a service share.
+struct ServiceState {
+  ServiceState(ServiceOptions given, std::unique_ptr<FitStore> kept)
+      : options(std::move(given)),
+        store(std::move(kept)),
+        fitter(options.fit_time),
+        queue(*store, fitter, metrics, options.threads) {
+    if (!options.live.empty()) live.emplace(options.live);
+  }
+
+  ServiceOptions options;
+  std::unique_ptr<FitStore> store;
+  ServiceMetrics metrics;
+  Fitter fitter;
+  KeysUnderWay keys;
+  std::optional<LiveRecording> live;
+  std::atomic<bool> is_stopping = false;
+  BatchQueue queue;  // last: its threads use what stands above
+};
+
+/// One request on its way to an answer.
+struct Call {
+  const HttpRequest& http;
+  RequestTarget target;
+  std::string id;  ///< What stands for {id} or {name} in the path.
+};
+
+using Answer = HttpResponse (*)(ServiceState& state, const Call& call);
+
+// ---- Answers
+// ---------------------------------------------------------------------------------------------------------
+
+HttpResponse PostFit(ServiceState& state, const Call& call);
+HttpResponse PostRefit(ServiceState& state, const Call& call);
+HttpResponse ListFits(ServiceState& state, const Call& call);
+HttpResponse GetFit(ServiceState& state, const Call& call);
+HttpResponse DeleteFit(ServiceState& state, const Call& call);
+HttpResponse GetFitRequest(ServiceState& state, const Call& call);
+HttpResponse GetRecording(ServiceState& state, const Call& call);
+HttpResponse GetSamples(ServiceState& state, const Call& call);
+HttpResponse GetSeries(ServiceState& state, const Call& call);
+HttpResponse GetResiduals(ServiceState& state, const Call& call);
+HttpResponse GetReport(ServiceState& state, const Call& call);
+HttpResponse GetMarkdown(ServiceState& state, const Call& call);
+
+HttpResponse PostBatch(ServiceState& state, const Call& call);
+HttpResponse ListBatches(ServiceState& state, const Call& call);
+HttpResponse GetBatch(ServiceState& state, const Call& call);
+HttpResponse GetBatchEvents(ServiceState& state, const Call& call);
+HttpResponse DeleteBatch(ServiceState& state, const Call& call);
+
+HttpResponse PostSimulation(ServiceState& state, const Call& call);
+HttpResponse PostCalibration(ServiceState& state, const Call& call);
+HttpResponse GetModels(ServiceState& state, const Call& call);
+HttpResponse ListExamples(ServiceState& state, const Call& call);
+HttpResponse GetExample(ServiceState& state, const Call& call);
+HttpResponse GetLive(ServiceState& state, const Call& call);
+HttpResponse GetLiveEvents(ServiceState& state, const Call& call);
+HttpResponse GetLiveRecording(ServiceState& state, const Call& call);
+HttpResponse GetHealth(ServiceState& state, const Call& call);
+HttpResponse GetMetrics(ServiceState& state, const Call& call);
+HttpResponse GetOpenApi(ServiceState& state, const Call& call);
+HttpResponse GetPage(ServiceState& state, const Call& call);
+HttpResponse GetScript(ServiceState& state, const Call& call);
+HttpResponse GetStyle(ServiceState& state, const Call& call);
+
+}  // namespace pendulum

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/service/time_limit.h"
+
+namespace pendulum {
+
+TimeLimit::TimeLimit(std::chrono::milliseconds limit)
+    : limit_(limit), thread_([this](const std::stop_token& stop) { Work(stop); }) {}
+
+TimeLimit::Watch::Watch(TimeLimit& limit) : limit_(limit) {
+  const std::scoped_lock lock(limit_.mutex_);
+  number_ = limit_.next_++;
+  limit_.running_.emplace(number_, Running{Clock::now() + limit_.limit_, this});
+  if (limit_.all_stopped_) source_.request_stop();
+  limit_.changed_.notify_one();
+}
+
+TimeLimit::Watch::~Watch() {
+  const std::scoped_lock lock(limit_.mutex_);
+  limit_.running_.erase(number_);
+}
+
+void TimeLimit::StopAll() {
+  const std::scoped_lock lock(mutex_);
+  all_stopped_ = true;
+  for (const auto& [number, running] : running_) running.watch->source_.request_stop();
+}
+
+void TimeLimit::Work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    std::uint64_t due = next_;  // the first that has not been stopped
+    Clock::time_point end = Clock::time_point::max();
+    for (const auto& [number, running] : running_) {
+      if (running.watch->source_.stop_requested()) continue;
+      due = number;
+      end = running.end;
+      break;
+    }
+    if (end == Clock::time_point::max()) {
+      changed_.wait(lock, stop, [&] { return next_ != due; });
+    } else if (Clock::now() < end) {
+      changed_.wait_until(lock, stop, end, [] { return false; });
+    } else if (const auto found = running_.find(due); found != running_.end()) {
+      found->second.watch->source_.request_stop();
+    }
+  }
+}
+
+}  // namespace pendulum

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pendulum::wire {
+
+/// Work for a few threads, first come first served, of which only so much may wait. For any thread.
+class WorkQueue {
+ public:
+  /// Throws std::system_error where threads cannot be had.
+  WorkQueue(std::size_t threads, std::size_t max_waiting);
+  WorkQueue(const WorkQueue&) = delete;
+  WorkQueue& operator=(const WorkQueue&) = delete;
+  WorkQueue(WorkQueue&&) = delete;
+  WorkQueue& operator=(WorkQueue&&) = delete;
+  ~WorkQueue();
+
+  /// False where all threads are busy and no more may wait, or it is closed. `work` must not throw.
+  bool Offer(std::function<void()> work);
+
+  /// Drops what waits and returns once what runs has run.
+  void Close();
+
+  std::size_t waiting() const;
+  std::size_t running() const;
+
+ private:
+  void Run();
+
+  const std::size_t most_;  ///< That run and wait.
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;
+  std::size_t running_ = 0;
+  bool is_closed_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace pendulum::wire

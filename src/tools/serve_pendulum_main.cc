@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Serves fits over HTTP, and the page: flags, signals, log and exit codes.
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include "pendulum/batch/fit_store.h"
+#include "pendulum/service/fitting_service.h"
+#include "pendulum/service/server.h"
+#include "tools/run_tool.h"
+#include "tools/serve_pendulum_options.h"
+
+DEFINE_int32(port, 8080, "Port to listen at; 0 takes any free one, and says which; default 8080.");
+DEFINE_string(address, "127.0.0.1",
+              "Address to listen at, IPv4 or IPv6; default 127.0.0.1, so that only this machine can ask.");
+DEFINE_string(store, "", "File that keeps the fits (SQLite, as refit_pendulums has it); made if it is not there.");
+DEFINE_int32(threads, 0, "Fits at a time; default 0, as many as there are cores.");
+DEFINE_string(
+    token_file, "",
+    "File whose first line is the token that a client must know; default the environment's PENDULUM_TOKEN, or "
+    "none. Needed for an --address that other machines reach.");
+DEFINE_string(allowed_hosts, "",
+              "Names by which clients may ask besides localhost, between commas, such as a proxy's; default none, and "
+              "any with a token.");
+DEFINE_int32(max_body_mb, 32, "Largest body of a request, MiB; default 32.");
+DEFINE_int32(max_samples, 200000, "Longest recording, in samples; default 200000.");
+DEFINE_int32(fit_seconds, 30, "Longest time of one fit, s; default 30.");
+DEFINE_int32(max_queue, 64, "Requests that may wait for a thread; one more is refused with 429; default 64.");
+DEFINE_int32(max_batch_runs, 10000, "Recordings of batches that may wait; default 10000.");
+DEFINE_int32(max_connections, 512, "Connections at a time; default 512.");
+DEFINE_int32(request_seconds, 30, "Longest time for a request to come in, s; default 30.");
+DEFINE_int32(stop_seconds, 20, "How long fits that are under way may take when it is stopped, s; default 20.");
+DEFINE_string(live, "",
+              "The file that a running record_pendulum --out writes, to be shown live on the page; default none.");
+
+namespace pendulum {
+namespace {
+
+constexpr std::string_view kName = "serve_pendulum";
+
+constexpr const char* kUsage =
+    "Fits recordings of a pendulum for whoever asks over HTTP, and shows a page for it.\n"
+    "\n"
+    "  serve_pendulum --store fits.sqlite\n"
+    "\n"
+    "Then http://localhost:8080 is the page, and curl --data-binary @run.csv --header 'Content-Type: text/csv'\n"
+    "http://localhost:8080/v1/fits?model=coulomb gives the JSON of fit_pendulum; /openapi.json tells the rest.\n"
+    "SIGTERM or Ctrl-C ends it once what is under way is answered; batches go on at the next start.\n"
+    "\n"
+    "Exit codes: 0 stopped, 2 wrong flags, 3 token file not found, 4 a store or token file that cannot be read, 70 a\n"
+    "bug, 73 the port or the store cannot be had, 75 another process writes to the store.\n"
+    "\n";
+
+ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
+  ServePendulumFlags flags;
+  flags.port = FLAGS_port;
+  flags.address = FLAGS_address;
+  flags.store = FLAGS_store;
+  flags.threads = FLAGS_threads;
+  flags.token_file = FLAGS_token_file;
+  flags.allowed_hosts = FLAGS_allowed_hosts;
+  flags.max_body_mb = FLAGS_max_body_mb;
+  flags.max_samples = FLAGS_max_samples;
+  flags.fit_seconds = FLAGS_fit_seconds;
+  flags.max_queue = FLAGS_max_queue;
+  flags.max_batch_runs = FLAGS_max_batch_runs;
+  flags.max_connections = FLAGS_max_connections;
+  flags.request_seconds = FLAGS_request_seconds;
+  flags.stop_seconds = FLAGS_stop_seconds;
+  flags.live = FLAGS_live;
+  flags.positional = positional;
+  return flags;
+}
+
+sigset_t EndingSignals() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGINT);
+  ::sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+/// Waits for SIGINT or SIGTERM, which all threads block, and stops; fits that then take longer than they may are
+/// stopped too. At the second signal the process ends at once.
+void StopAtSignal(Server& server, FittingService& service, int stop_seconds) {
+  const auto wait = [&server, &service, stop_seconds] {
+    const sigset_t signals = EndingSignals();
+    int signal = 0;
+    ::sigwait(&signals, &signal);
+    LOG(INFO) << "stopping";
+    service.Stop();
+    server.Stop();
+    const timespec patience{stop_seconds, 0};
+    if (::sigtimedwait(&signals, nullptr, &patience) >= 0) ::_exit(kInterrupted);
+    service.StopFits();
+    ::sigwait(&signals, &signal);
+    ::_exit(kInterrupted);
+  };
+  std::thread(wait).detach();  // it waits as long as the process lives
+}
+
+/// One line for each answer, without what was sent.
+void Log(const Answered& answered) {
+  constexpr std::size_t kMostShown = 200;
+  LOG(INFO) << answered.peer << ' ' << answered.method << ' '
+            << answered.target.substr(0, std::min(answered.target.find('?'), kMostShown)) << ' ' << answered.status
+            << ' ' << answered.bytes << " B " << answered.time.count() / 1000 << " ms";
+}
+
+std::string AddressText(const ServerOptions& options, std::uint16_t port) {
+  const bool is_v6 = options.address.find(':') != std::string::npos;
+  return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" + std::to_string(port);
+}
+
+Result<int> Work(const std::vector<std::string>& positional) {
+  const ServePendulumFlags flags = CurrentFlags(positional);
+  const auto token = ReadToken(flags.token_file, std::getenv("PENDULUM_TOKEN"));
+  if (!token) return tl::unexpected(token.error());
+  const auto options = MakeServePendulumOptions(flags, *token);
+  if (!options) return tl::unexpected(options.error());
+  const sigset_t signals = EndingSignals();
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before there are threads, which all inherit it
+  auto store = FitStore::Open(options->store);
+  if (!store) return tl::unexpected(store.error());
+  const auto service = FittingService::Begin(options->service, *std::move(store));
+  if (!service) return tl::unexpected(service.error());
+  const auto server = Server::Listen(options->server, **service, [&](const Answered& answered) {
+    (*service)->Count(answered);
+    Log(answered);
+  });
+  if (!server) return tl::unexpected(server.error());
+  (*service)->CountServer([&] { return (*server)->Count(); });
+  StopAtSignal(**server, **service, flags.stop_seconds);
+  FLAGS_minloglevel = google::GLOG_INFO;
+  std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << std::endl;
+  (*server)->Run();
+  return 0;
+}
+
+}  // namespace
+}  // namespace pendulum
+
+int main(int argc, char** argv) {
+  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/serve_pendulum_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/file.h"
+#include "pendulum/request/flag_values.h"
+
+namespace pendulum {
+namespace {
+
+/// A number that a flag gives, and what it may be.
+struct NumberFlag {
+  std::string_view name;
+  int value, least, most;
+};
+
+Result<void> CheckNumbers(const ServePendulumFlags& flags) {
+  constexpr int kDay = 86'400;
+  const std::array numbers = {
+      NumberFlag{"--port", flags.port, 0, 65'535},
+      NumberFlag{"--threads", flags.threads, 0, 256},
+      NumberFlag{"--max_body_mb", flags.max_body_mb, 1, 512},
+      NumberFlag{"--max_samples", flags.max_samples, 100, 10'000'000},
+      NumberFlag{"--fit_seconds", flags.fit_seconds, 1, kDay},
+      NumberFlag{"--max_queue", flags.max_queue, 1, 100'000},
+      NumberFlag{"--max_batch_runs", flags.max_batch_runs, 1, 10'000'000},
+      NumberFlag{"--max_connections", flags.max_connections, 2, 100'000},
+      NumberFlag{"--request_seconds", flags.request_seconds, 1, kDay},
+      NumberFlag{"--stop_seconds", flags.stop_seconds, 0, kDay},
+  };
+  for (const NumberFlag& number : numbers) {
+    if (number.value >= number.least && number.value <= number.most) continue;
+    return BadFlag(std::string(number.name) + " is " + std::to_string(number.value) + "; it must be " +
+                   std::to_string(number.least) + " to " + std::to_string(number.most));
+  }
+  return {};
+}
+
+bool IsLoopbackAddress(const std::string& address) { return address.starts_with("127.") || address == "::1"; }
+
+Result<void> CheckAudience(const ServePendulumFlags& flags, const std::string& token) {
+  if (!token.empty() || IsLoopbackAddress(flags.address)) return {};
+  return BadFlag("--address " + flags.address +
+                 " lets other machines ask, so a token is needed: give a file that has one with --token_file, or set "
+                 "PENDULUM_TOKEN; 127.0.0.1 is this machine alone");
+}
+
+ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
+  constexpr std::size_t kMegabyte = std::size_t{1} << 20U;
+  ServerOptions server;
+  server.address = flags.address;
+  server.port = static_cast<std::uint16_t>(flags.port);
+  server.fit_threads = flags.threads;
+  server.max_queue = static_cast<std::size_t>(flags.max_queue);
+  server.max_connections = static_cast<std::size_t>(flags.max_connections);
+  server.max_body = static_cast<std::size_t>(flags.max_body_mb) * kMegabyte;
+  constexpr std::size_t kBodiesAtOnce = 4;
+  server.max_buffered = std::max(server.max_buffered, kBodiesAtOnce * server.max_body);
+  server.request_time = std::chrono::seconds(flags.request_seconds);
+  server.stop_time = std::chrono::seconds(flags.stop_seconds);
+  return server;
+}
+
+ServiceOptions ServiceOptionsOf(const ServePendulumFlags& flags, const std::string& token) {
+  ServiceOptions service;
+  service.limits.max_samples = static_cast<std::size_t>(flags.max_samples);
+  service.limits.max_runs = static_cast<std::size_t>(flags.max_batch_runs);
+  service.access = {token, Split(flags.allowed_hosts, ',')};
+  service.fit_time = std::chrono::seconds(flags.fit_seconds);
+  service.threads = flags.threads;
+  service.live = flags.live;
+  return service;
+}
+
+}  // namespace
+
+Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& flags, const std::string& token) {
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (flags.store.empty()) {
+    return BadFlag("--store is missing: the file that keeps the fits, which is made if it is not there");
+  }
+  if (const auto checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckAudience(flags, token); !checked) return tl::unexpected(checked.error());
+  return ServePendulumOptions{flags.store, ServerOptionsOf(flags), ServiceOptionsOf(flags, token)};
+}
+
+Result<std::string> ReadToken(const std::string& token_file, const char* from_environment) {
+  std::string token = from_environment == nullptr ? "" : from_environment;
+  std::string where = "PENDULUM_TOKEN";
+  if (!token_file.empty()) {
+    constexpr std::uintmax_t kMostBytes = 4096;
+    auto text = ReadFile(token_file, "token", kMostBytes);
+    if (!text) return text;
+    token = text->substr(0, text->find_first_of("\r\n"));
+    where = token_file;
+    if (token.empty()) return BadFlag(where + ": the first line is empty; it must be the token");
+  }
+  if (token.empty()) return token;
+  constexpr std::size_t kShortest = 16;
+  const bool is_visible = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
+  if (token.size() >= kShortest && is_visible) return token;
+  return BadFlag(where + ": the token must have at least " + std::to_string(kShortest) +
+                 " visible ASCII characters, and no blanks; openssl rand -hex 32 makes one");
+}
+
+}  // namespace pendulum
