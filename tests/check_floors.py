@@ -36,8 +36,8 @@ LIBRARY_FLOORS = {
     "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis", "batch", "service"},
     "ceres": {"fitting"},
     "csv.h": {"batch"},
-    "gflags": {"tools", "service"},
-    "glog": {"tools", "service"},
+    "gflags": {"tools"},
+    "glog": {"tools"},
     "pendulum_logger": {"acquisition", "tools"},
     "nlohmann": {"base", "recording", "model", "report", "batch", "request", "service", "tools"},
     "openssl": {"base", "recording", "service"},
@@ -52,7 +52,7 @@ TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}
 FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "packages"}
 
 # What only the floors that talk to people may do.
-TALKING_FLOORS = {"tools", "service"}
+TALKING_FLOORS = {"tools"}
 FORBIDDEN_BELOW = {
     "a stream of the process": r"\b(?:cout|cerr|clog)\b",
     "printf": r"\b(?:f|v|vf)?printf\s*\(",
@@ -123,13 +123,16 @@ def check_words(root, path):
 
 
 def check_companions(root, path):
-    """src/F/x.cc has include/pendulum/F/x.h (src/F/x.h where F has no public interface), which it includes before all
-    others so that it is known to compile on its own, and tests/F/x_test.cc."""
+    """src/F/x.cc has include/pendulum/F/x.h, or src/F/x.h where it is private, which it includes before all others so
+    that it is known to compile on its own. What is public, or a tool's, has tests/F/x_test.cc; what else is private is
+    tested through that."""
     if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
         return
     inner = path.relative_to("src").with_suffix("")
-    headers = "src" if floor_of(path) in TALKING_FLOORS else "include/pendulum"
-    for companion in (f"{headers}/{inner}.h", f"tests/{inner}_test.cc"):
+    is_private = (root / f"src/{inner}.h").exists()
+    headers = "src" if is_private or floor_of(path) in TALKING_FLOORS else "include/pendulum"
+    needs_test = not is_private or floor_of(path) in TALKING_FLOORS
+    for companion in (f"{headers}/{inner}.h", *([f"tests/{inner}_test.cc"] if needs_test else [])):
         if not (root / companion).exists():
             yield f"{path}:1: {companion} is missing"
     own = f"{headers}/{inner}.h".removeprefix("include/").removeprefix("src/")
@@ -222,8 +225,8 @@ BAD_TREE = {
     "include/pendulum/report/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to report"),
     "tests/trajectory/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to trajectory"),
     "tests/closed_form/jet.h": ("#include <ceres/jet.h>\n", "ceres belongs to fitting, not to closed_form"),
-    "include/pendulum/fitting/log.h": ("#include <glog/logging.h>\n", "glog belongs to service, tools"),
-    "tests/fitting/flag.h": ("#include <gflags/gflags.h>\n", "gflags belongs to service, tools"),
+    "include/pendulum/fitting/log.h": ("#include <glog/logging.h>\n", "glog belongs to tools"),
+    "tests/fitting/flag.h": ("#include <gflags/gflags.h>\n", "gflags belongs to tools"),
     "include/pendulum/base/cout.h": ("auto& s = std::cout;\n", "a stream of the process has no place"),
     "include/pendulum/base/cerr.h": ("auto& s = std::cerr;\n", "a stream of the process has no place"),
     "include/pendulum/base/printf.h": ('void f() { fprintf(stderr, "x"); }\n', "printf has no place"),

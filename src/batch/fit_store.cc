@@ -181,7 +181,7 @@ Result<std::unique_ptr<FitStore>> FitStore::Open(const std::filesystem::path& pa
   auto reader = Store::Open(path, Store::Mode::kRead);
   if (!reader) return tl::unexpected(reader.error());
   auto state = std::make_unique<State>(*std::move(writer), *std::move(reader), *std::move(lock));
-  return std::unique_ptr<FitStore>(new FitStore(std::move(state)));  // NOLINT: make_unique sees no private constructor
+  return std::make_unique<FitStore>(std::move(state));
 }
 
 Result<void> FitStore::Add(const FitOrder& order, const RunOutcome& outcome, const std::optional<RequestKey>& key) {

@@ -9,6 +9,8 @@
 #include "pendulum/service/idempotency_key.h"
 #include "pendulum/service/media_type.h"
 #include "service/answers.h"
+#include "service/batch_answers.h"
+#include "service/fit_answers.h"
 
 namespace pendulum {
 namespace {

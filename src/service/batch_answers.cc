@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers about batches.
+#include "service/batch_answers.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
@@ -12,7 +13,6 @@
 #include "pendulum/service/fit_request.h"
 #include "service/answers.h"
 #include "service/asked_again.h"
-#include "service/service_state.h"
 
 namespace pendulum {
 namespace {

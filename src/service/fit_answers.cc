@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers about single fits.
+#include "service/fit_answers.h"
+
+#include <algorithm>
 #include <chrono>
 #include <optional>
+#include <regex>
 #include <string>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
-#include "pendulum/model/rig.h"
+#include "pendulum/model/motion_model.h"
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
@@ -17,7 +21,6 @@
 #include "pendulum/service/thinning.h"
 #include "service/answers.h"
 #include "service/asked_again.h"
-#include "service/service_state.h"
 
 namespace pendulum {
 namespace {
@@ -111,8 +114,51 @@ Json SamplesJson(const Recording& recording) {
   }
   return {{"time_s", std::move(time)},
           {"measured", std::move(measured)},
-          {"unit", recording.unit},
+          {"unit", recording.value_unit()},
           {"samples", recording.size()}};
+}
+
+/// A value that must be one of some words; empty where it is not asked for.
+Result<std::string> OneOf(const RequestTarget& target, std::string_view name,
+                          const std::vector<std::string_view>& words) {
+  std::string value = QueryValue(target, name);
+  if (value.empty() || std::ranges::find(words, value) != words.end()) return value;
+  return Error(StatusCode::kInvalidArgument,
+               std::string(name) + " is '" + value + "'; it must be one of " + NameList(words));
+}
+
+/// "2026-11-23T21:40:05Z", or with an offset from UTC or fractions of a second, or a day alone (RFC 3339).
+Result<std::string> SinceOf(const RequestTarget& target) {
+  static const std::regex form(
+      R"(\d{4}-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01])([T ]([01]\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d{1,9})?)?(Z|[+-]([01]\d|2[0-3]):[0-5]\d)?)?)");
+  std::string value = QueryValue(target, "since");
+  if (value.empty() || std::regex_match(value, form)) return value;
+  return Error(StatusCode::kInvalidArgument,
+               "since is '" + value + "'; it must be a time as 2026-11-23T21:40:05Z, or a day");
+}
+
+Result<FitFilter> FilterOf(const RequestTarget& target) {
+  FitFilter filter;
+  const auto limit = QueryNumber(target, "limit", filter.limit);
+  if (!limit) return tl::unexpected(limit.error());
+  const auto before = QueryNumber(target, "before", 0);
+  if (!before) return tl::unexpected(before.error());
+  std::vector<std::string_view> models;
+  for (const MotionModel& model : MotionModels()) models.push_back(model.name);
+  auto model = OneOf(target, "model", models);
+  if (!model) return tl::unexpected(model.error());
+  auto status = OneOf(target, "status", {"converged", "not_converged", "not_identifiable", "failed"});
+  if (!status) return tl::unexpected(status.error());
+  auto since = SinceOf(target);
+  if (!since) return tl::unexpected(since.error());
+  filter.limit = static_cast<int>(std::min<std::int64_t>(*limit, kMostListed));
+  if (*before > 0) filter.before = *before;
+  filter.model = *std::move(model);
+  filter.status = *std::move(status);
+  filter.since = *std::move(since);
+  filter.name = QueryValue(target, "name");
+  filter.batch = QueryValue(target, "batch");
+  return filter;
 }
 
 }  // namespace
@@ -142,23 +188,13 @@ HttpResponse ListFits(ServiceState& state, const Call& call) {
       !checked) {
     return ProblemAnswer(checked.error());
   }
-  FitFilter filter;
-  const auto limit = QueryNumber(call.target, "limit", filter.limit);
-  if (!limit) return ProblemAnswer(limit.error());
-  const auto before = QueryNumber(call.target, "before", 0);
-  if (!before) return ProblemAnswer(before.error());
-  filter.limit = static_cast<int>(std::min<std::int64_t>(*limit, kMostListed));
-  if (*before > 0) filter.before = *before;
-  filter.model = QueryValue(call.target, "model");
-  filter.status = QueryValue(call.target, "status");
-  filter.name = QueryValue(call.target, "name");
-  filter.batch = QueryValue(call.target, "batch");
-  filter.since = QueryValue(call.target, "since");
-  const auto fits = state.store->List(filter);
+  const auto filter = FilterOf(call.target);
+  if (!filter) return ProblemAnswer(filter.error());
+  const auto fits = state.store->List(*filter);
   if (!fits) return ProblemAnswer(fits.error());
   Json items = Json::array();
   for (const ListedFit& fit : *fits) items.push_back(ItemOf(fit));
-  const bool is_full = static_cast<int>(fits->size()) == filter.limit;
+  const bool is_full = static_cast<int>(fits->size()) == filter->limit;
   return JsonAnswer({{"fits", std::move(items)}, {"next", is_full ? Json(fits->back().run) : Json(nullptr)}});
 }
 

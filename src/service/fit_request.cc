@@ -2,7 +2,9 @@
 #include "pendulum/service/fit_request.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -67,6 +69,7 @@ Result<Query> QueryOf(const RequestTarget& target) {
       if (auto checked = CheckName(value); !checked) return tl::unexpected(checked.error());
       query.name = value;
     } else {
+      if (auto known = CheckFlagName(name, RunFlagNames()); !known) return tl::unexpected(known.error());
       query.flags.emplace(name, value);
     }
   }
@@ -149,19 +152,21 @@ Result<Json> ParseBody(const std::string& body) {
   return json;
 }
 
-Result<void> ReadJson(const std::string& body, FitRequest& request) {
+/// `name` gets the recording's, if it is given.
+Result<void> ReadJson(const std::string& body, FitRequest& request, std::string& name) {
   auto json = ParseBody(body);
   if (!json) return tl::unexpected(json.error());
-  for (const auto& [name, value] : json->items()) {
-    if (auto read = ReadMember(name, value, request); !read) return read;
+  for (const auto& [key, value] : json->items()) {
+    if (auto read = ReadMember(key, value, request); !read) return read;
   }
-  if (!json->contains("data")) return {};
-  std::string name = kUnnamed;
   if (json->contains("name")) {
+    if (!name.empty()) return Error(StatusCode::kInvalidArgument, "name is given in the query and in the body");
     name = (*json)["name"].get<std::string>();
     if (auto checked = CheckName(name); !checked) return checked;
   }
-  request.data.push_back({std::move(name), std::move((*json)["data"].get_ref<std::string&>())});
+  if (json->contains("data")) {
+    request.data.push_back({kUnnamed, std::move((*json)["data"].get_ref<std::string&>())});
+  }
   return {};
 }
 
@@ -172,8 +177,9 @@ tl::unexpected<Problem> WrongKind(std::string_view type, std::string_view wanted
 }
 
 bool IsText(std::string_view type) {
-  return type.starts_with("text/") || type == "application/octet-stream" || type == "application/csv" ||
-         type == "application/vnd.ms-excel";  // what Windows calls CSV
+  constexpr std::array<std::string_view, 5> kTypes = {"text/csv", "text/plain", "text/tab-separated-values",
+                                                      "application/octet-stream", "application/vnd.ms-excel"};
+  return std::ranges::find(kTypes, type) != kTypes.end();  // the last is what Windows calls CSV
 }
 
 /// The type of a body, in lower case; empty where it has none or an impossible one.
@@ -265,6 +271,13 @@ Result<RunOptions> OptionsOf(const FitOrder& order) {
   return RunOptionsOf(*flags, order.files.calibration);
 }
 
+OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types) {
+  if (auto checked = CheckCoding(request); !checked) return checked;
+  const std::string type = TypeOf(request);
+  if (std::ranges::find(types, type) != types.end()) return {};
+  return WrongKind(type, NameList(types));
+}
+
 OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                       const RequestLimits& limits) {
   std::string name;
@@ -275,7 +288,7 @@ OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarg
   if (type == "multipart/form-data") {
     read = ReadForm(*http.Field("Content-Type"), http.body, *request);
   } else if (type == "application/json") {
-    read = ReadJson(http.body, *request);
+    read = ReadJson(http.body, *request, name);
   } else if (IsText(type)) {
     request->data.push_back({kUnnamed, http.body});
   } else {
@@ -320,7 +333,7 @@ OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTa
   if (!http.body.empty()) {
     const std::string type = TypeOf(http);
     if (type != "application/json") return WrongKind(type, "application/json, or the body empty");
-    if (auto read = ReadJson(http.body, request); !read) return Refused(read.error());
+    if (auto read = ReadJson(http.body, request, name); !read) return Refused(read.error());
   }
   if (!request.data.empty()) {
     return Refused(ProblemKind::kWrongRequest, "a refit has the recording that is there; leave data out");

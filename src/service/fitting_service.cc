@@ -56,7 +56,7 @@ Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptio
                                                               std::unique_ptr<FitStore> store) {
   auto state = std::make_unique<ServiceState>(options, std::move(store));
   if (auto begun = state->queue.Begin(); !begun) return tl::unexpected(begun.error());
-  return std::unique_ptr<FittingService>(new FittingService(std::move(state)));  // NOLINT: the constructor is private
+  return std::make_unique<FittingService>(std::move(state));
 }
 
 Lane FittingService::LaneOf(const HttpRequest& request) const {

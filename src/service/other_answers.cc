@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers about everything but fits and batches: simulations, calibrations, models, examples, the live recording, the
-// service itself and its page.
-#include <algorithm>
-#include <cmath>
+#include "service/other_answers.h"
+
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,7 +24,6 @@
 #include "pendulum/service/fit_request.h"
 #include "service/answers.h"
 #include "service/service_files.h"
-#include "service/service_state.h"
 
 namespace pendulum {
 namespace {
@@ -60,12 +58,11 @@ Result<SimulationRequest> ParseSimulationRequest(const Call& call) {
   return request;
 }
 
-Result<void> CheckSimulatedSamples(const SimulationFlags& flags, const RequestLimits& limits) {
+OrProblem<void> CheckSimulatedSamples(const SimulationFlags& flags, const RequestLimits& limits) {
   const double samples = flags.duration * flags.rate;
   if (!(samples > static_cast<double>(limits.max_samples))) return {};
-  return Error(StatusCode::kInvalidArgument, "--duration times --rate makes more samples than this service takes, " +
-                                                 std::to_string(limits.max_samples) +
-                                                 "; use simulate_pendulum for more");
+  return Refused(ProblemKind::kTooLarge, "--duration times --rate makes more samples than this service takes, " +
+                                             std::to_string(limits.max_samples) + "; use simulate_pendulum for more");
 }
 
 bool WantsCsv(const HttpRequest& http) {
@@ -143,12 +140,16 @@ HttpResponse PageFile(const Call& call, std::string_view type, std::string_view 
 }  // namespace
 
 HttpResponse PostSimulation(ServiceState& state, const Call& call) {
+  constexpr std::array<std::string_view, 1> kTypes = {"application/json"};
+  if (auto checked = call.http.body.empty() ? OrProblem<void>() : CheckKind(call.http, kTypes); !checked) {
+    return ProblemResponse(checked.error());
+  }
   const auto request = ParseSimulationRequest(call);
   if (!request) return ProblemAnswer(request.error());
   const auto flags = SimulationFlagsOf(request->flags);
   if (!flags) return ProblemAnswer(flags.error());
   if (auto checked = CheckSimulatedSamples(*flags, state.options.limits); !checked) {
-    return ProblemAnswer(checked.error());
+    return ProblemResponse(checked.error());
   }
   const auto simulation = MakeSimulation(*flags, request->rig);
   if (!simulation) return ProblemAnswer(simulation.error());
@@ -161,6 +162,8 @@ HttpResponse PostSimulation(ServiceState& state, const Call& call) {
 }
 
 HttpResponse PostCalibration(ServiceState& /*state*/, const Call& call) {
+  constexpr std::array<std::string_view, 2> kTypes = {"text/csv", "text/plain"};
+  if (auto checked = CheckKind(call.http, kTypes); !checked) return ProblemResponse(checked.error());
   const auto flags = CalibrationFlagsOf(QueryFlags(call.target));
   if (!flags) return ProblemAnswer(flags.error());
   const auto options = MakeCalibrationOptions(*flags);

@@ -3,6 +3,10 @@
 
 #include <optional>
 
+#include "service/batch_answers.h"
+#include "service/fit_answers.h"
+#include "service/other_answers.h"
+
 namespace pendulum {
 namespace {
 

@@ -2,8 +2,12 @@
 #include "service/service_files.h"
 
 #include <array>
+#include <cstddef>
+#include <utility>
 
 #include <nlohmann/json.hpp>
+
+#include "pendulum/base/version.h"
 
 namespace pendulum {
 
@@ -22,8 +26,18 @@ std::span<const Example> Examples() {
 }
 
 std::string OpenApiDocument() {
-  nlohmann::ordered_json document = nlohmann::ordered_json::parse(OpenApiTemplate());
-  document["components"]["schemas"]["Result"] = nlohmann::ordered_json::parse(ResultSchema());
+  // References of the schema are to its own definitions, wherever it stands.
+  std::string schema(ResultSchema());
+  constexpr std::string_view kOwn = "\"#/$defs/", kInDocument = "\"#/components/schemas/Result/$defs/";
+  for (std::size_t at = 0; (at = schema.find(kOwn, at)) != std::string::npos; at += kInDocument.size()) {
+    schema.replace(at, kOwn.size(), kInDocument);
+  }
+  auto result = nlohmann::ordered_json::parse(schema);
+  result.erase("$schema");
+  result.erase("$id");
+  auto document = nlohmann::ordered_json::parse(OpenApiTemplate());
+  document["components"]["schemas"]["Result"] = std::move(result);
+  document["info"]["version"] = kVersion;
   constexpr int kIndent = 2;
   return document.dump(kIndent) + "\n";
 }

@@ -78,7 +78,7 @@ struct ServiceMetrics::State {
   Family<Counter>& fits = BuildCounter().Name("pendulum_fits_total").Help("Fits that were made.").Register(registry);
   Family<Histogram>& fit_seconds =
       BuildHistogram().Name("pendulum_fit_duration_seconds").Help("Time that a fit took.").Register(registry);
-  Gauge& connections = AddGauge("pendulum_http_connections", "Open connections.");
+  Gauge& connections = AddGauge("pendulum_http_open_connections", "Open connections.");
   Gauge& waiting = AddGauge("pendulum_http_requests_waiting", "Requests that wait for a thread.");
   Gauge& running = AddGauge("pendulum_http_requests_running", "Requests that are being worked on.");
   Gauge& streams = AddGauge("pendulum_http_event_streams", "Open streams of events.");

@@ -68,41 +68,4 @@ struct Call {
 
 using Answer = HttpResponse (*)(ServiceState& state, const Call& call);
 
-// ---- Answers
-// ---------------------------------------------------------------------------------------------------------
-
-HttpResponse PostFit(ServiceState& state, const Call& call);
-HttpResponse PostRefit(ServiceState& state, const Call& call);
-HttpResponse ListFits(ServiceState& state, const Call& call);
-HttpResponse GetFit(ServiceState& state, const Call& call);
-HttpResponse DeleteFit(ServiceState& state, const Call& call);
-HttpResponse GetFitRequest(ServiceState& state, const Call& call);
-HttpResponse GetRecording(ServiceState& state, const Call& call);
-HttpResponse GetSamples(ServiceState& state, const Call& call);
-HttpResponse GetSeries(ServiceState& state, const Call& call);
-HttpResponse GetResiduals(ServiceState& state, const Call& call);
-HttpResponse GetReport(ServiceState& state, const Call& call);
-HttpResponse GetMarkdown(ServiceState& state, const Call& call);
-
-HttpResponse PostBatch(ServiceState& state, const Call& call);
-HttpResponse ListBatches(ServiceState& state, const Call& call);
-HttpResponse GetBatch(ServiceState& state, const Call& call);
-HttpResponse GetBatchEvents(ServiceState& state, const Call& call);
-HttpResponse DeleteBatch(ServiceState& state, const Call& call);
-
-HttpResponse PostSimulation(ServiceState& state, const Call& call);
-HttpResponse PostCalibration(ServiceState& state, const Call& call);
-HttpResponse GetModels(ServiceState& state, const Call& call);
-HttpResponse ListExamples(ServiceState& state, const Call& call);
-HttpResponse GetExample(ServiceState& state, const Call& call);
-HttpResponse GetLive(ServiceState& state, const Call& call);
-HttpResponse GetLiveEvents(ServiceState& state, const Call& call);
-HttpResponse GetLiveRecording(ServiceState& state, const Call& call);
-HttpResponse GetHealth(ServiceState& state, const Call& call);
-HttpResponse GetMetrics(ServiceState& state, const Call& call);
-HttpResponse GetOpenApi(ServiceState& state, const Call& call);
-HttpResponse GetPage(ServiceState& state, const Call& call);
-HttpResponse GetScript(ServiceState& state, const Call& call);
-HttpResponse GetStyle(ServiceState& state, const Call& call);
-
 }  // namespace pendulum

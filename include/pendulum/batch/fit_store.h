@@ -85,10 +85,13 @@ struct ListedBatch {
 /// open no other process may write, and readers of other processes hinder nobody (write-ahead log). Errors of all
 /// functions: as Store's; kNotFound where an id is unknown.
 class FitStore {
+  struct State;
+
  public:
   /// Makes one that is not there. kTryAgain: another process writes to it.
   static Result<std::unique_ptr<FitStore>> Open(const std::filesystem::path& path);
 
+  explicit FitStore(std::unique_ptr<State> state);
   FitStore(FitStore&&) = delete;
   FitStore(const FitStore&) = delete;
   FitStore& operator=(FitStore&&) = delete;
@@ -126,9 +129,6 @@ class FitStore {
   Result<std::optional<KnownAnswer>> FindAnswer(const std::string& key);
 
  private:
-  struct State;
-  explicit FitStore(std::unique_ptr<State> state);
-
   std::unique_ptr<State> state_;
 };
 

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -63,6 +66,9 @@ OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& request, const Reques
 /// What flags ask of one run of the service, which has that calibration. Errors as RunFlagsOf and MakeRunOptions;
 /// kInvalidArgument: release all.
 Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const std::optional<NamedBytes>& calibration);
+
+/// kUnsupportedMediaType: the body is of none of these types, or in some coding.
+OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
 
 /// The flags of a run that was kept, and what they ask of it. kDataLoss: the store has other than it was given.
 Result<FlagTexts> FlagsOf(const FitOrder& order);

@@ -33,6 +33,7 @@ class FittingService : public HttpHandler {
   /// Takes up the batches that wait in the store. Errors: of the store.
   static Result<std::unique_ptr<FittingService>> Begin(const ServiceOptions& options, std::unique_ptr<FitStore> store);
 
+  explicit FittingService(std::unique_ptr<ServiceState> state);
   FittingService(const FittingService&) = delete;
   FittingService& operator=(const FittingService&) = delete;
   FittingService(FittingService&&) = delete;
@@ -57,8 +58,6 @@ class FittingService : public HttpHandler {
   void StopFits();
 
  private:
-  explicit FittingService(std::unique_ptr<ServiceState> state);
-
   std::unique_ptr<ServiceState> state_;
 };
 

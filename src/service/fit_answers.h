@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "service/service_state.h"
+
+/// Answers to requests about single fits (openapi.json): one function for each method of a path.
+namespace pendulum {
+
+HttpResponse PostFit(ServiceState& state, const Call& call);
+HttpResponse PostRefit(ServiceState& state, const Call& call);
+HttpResponse ListFits(ServiceState& state, const Call& call);
+HttpResponse GetFit(ServiceState& state, const Call& call);
+HttpResponse DeleteFit(ServiceState& state, const Call& call);
+HttpResponse GetFitRequest(ServiceState& state, const Call& call);
+HttpResponse GetRecording(ServiceState& state, const Call& call);
+HttpResponse GetSamples(ServiceState& state, const Call& call);
+HttpResponse GetSeries(ServiceState& state, const Call& call);
+HttpResponse GetResiduals(ServiceState& state, const Call& call);
+HttpResponse GetReport(ServiceState& state, const Call& call);
+HttpResponse GetMarkdown(ServiceState& state, const Call& call);
+
+}  // namespace pendulum
