@@ -140,6 +140,7 @@ HttpResponse PageFile(const Call& call, std::string_view type, std::string_view 
 }  // namespace
 
 HttpResponse PostSimulation(ServiceState& state, const Call& call) {
+  if (auto checked = CheckQuery(call.target, SimulationFlagNames()); !checked) return ProblemAnswer(checked.error());
   constexpr std::array<std::string_view, 1> kTypes = {"application/json"};
   if (auto checked = call.http.body.empty() ? OrProblem<void>() : CheckKind(call.http, kTypes); !checked) {
     return ProblemResponse(checked.error());
@@ -162,6 +163,7 @@ HttpResponse PostSimulation(ServiceState& state, const Call& call) {
 }
 
 HttpResponse PostCalibration(ServiceState& /*state*/, const Call& call) {
+  if (auto checked = CheckQuery(call.target, CalibrationFlagNames()); !checked) return ProblemAnswer(checked.error());
   constexpr std::array<std::string_view, 2> kTypes = {"text/csv", "text/plain"};
   if (auto checked = CheckKind(call.http, kTypes); !checked) return ProblemResponse(checked.error());
   const auto flags = CalibrationFlagsOf(QueryFlags(call.target));

@@ -155,7 +155,7 @@ Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, Htt
   try {
     auto state = std::make_unique<State>(options, handler, std::move(answered));
     if (auto bound = state->Bind(); !bound) return tl::unexpected(bound.error());
-    return std::unique_ptr<Server>(new Server(std::move(state)));
+    return std::make_unique<Server>(std::move(state));
   } catch (const std::exception& error) {
     return Error(StatusCode::kTryAgain, std::string("the server cannot start, ") + error.what() +
                                             "; ask for fewer threads, or let other processes end");

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/work_queue.h"
 
+#include <system_error>
 #include <utility>
 
 namespace pendulum::wire {
 
-WorkQueue::WorkQueue(std::size_t threads, std::size_t max_waiting) : most_(threads + max_waiting) {
+WorkQueue::WorkQueue(std::size_t threads, std::size_t max_waiting) {
   threads_.reserve(threads);
   try {
     while (threads_.size() < threads) threads_.emplace_back([this] { Run(); });
-  } catch (...) {
-    Close();
-    throw;
+  } catch (const std::system_error&) {
+    // Those that there are will do.
   }
+  most_ = threads_.empty() ? 0 : threads_.size() + max_waiting;
 }
 
 WorkQueue::~WorkQueue() { Close(); }

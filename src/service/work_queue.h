@@ -34,7 +34,7 @@ class WorkQueue {
  private:
   void Run();
 
-  const std::size_t most_;  ///< That run and wait.
+  std::size_t most_ = 0;  ///< That run and wait.
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;

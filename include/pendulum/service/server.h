@@ -54,12 +54,15 @@ struct Answered {
 /// HTTP/1.1 (RFC 9112) by Boost.Beast: one thread moves the bytes of all connections, others calculate, so that who
 /// sends or takes slowly holds no thread. What a handler throws is answered with Refusal(500, what it says).
 class Server {
+  struct State;
+
  public:
   /// Binds and listens; `handler` must outlive the server. `answered`, if any, is called on the thread of Run.
   /// kInvalidArgument: not an address; kCannotWrite: the port is taken or not permitted.
   static Result<std::unique_ptr<Server>> Listen(const ServerOptions& options, HttpHandler& handler,
                                                 std::function<void(const Answered&)> answered);
 
+  explicit Server(std::unique_ptr<State> state);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   Server(Server&&) = delete;
@@ -82,9 +85,6 @@ class Server {
   ServerCounts Count() const;
 
  private:
-  struct State;
-  explicit Server(std::unique_ptr<State> state);
-
   std::unique_ptr<State> state_;
 };
 
