@@ -158,7 +158,7 @@ void FitStore::State::KeepAnswer(const std::optional<RequestKey>& key, const std
 
 FitStore::FitStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-/// One file is left, which can be copied as it is.
+/// One file is left, which can be copied as it is, unless somebody reads it.
 FitStore::~FitStore() {
   state_->writer.Rollback();
   { const Store closing = std::move(state_->reader); }
@@ -171,13 +171,8 @@ FitStore::~FitStore() {
 Result<std::unique_ptr<FitStore>> FitStore::Open(const std::filesystem::path& path) {
   auto lock = StoreLock::Take(path);
   if (!lock) return tl::unexpected(lock.error());
-  auto writer = Store::Open(path, Store::Mode::kWrite);
+  auto writer = Store::Open(path, Store::Mode::kServe);
   if (!writer) return tl::unexpected(writer.error());
-  const auto logged = sqlite::Guard(path.string(), [&]() -> Result<void> {
-    writer->database().exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
-    return {};
-  });
-  if (!logged) return tl::unexpected(logged.error());
   auto reader = Store::Open(path, Store::Mode::kRead);
   if (!reader) return tl::unexpected(reader.error());
   auto state = std::make_unique<State>(*std::move(writer), *std::move(reader), *std::move(lock));

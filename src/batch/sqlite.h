@@ -65,7 +65,7 @@ auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
 /// Binds values to the first places of a statement, in their order; an empty optional, and what is left, is NULL.
 template <typename... Values>
 SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
-  statement.reset();
+  (void)statement.tryReset();  // what its last step said has been told
   statement.clearBindings();
   int place = 0;
   const auto bind = [&](const auto& value) {

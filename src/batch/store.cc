@@ -8,6 +8,7 @@
 #include "batch/entry_row.h"
 #include "batch/result_rows.h"
 #include "batch/sqlite.h"
+#include "batch/store_queries.h"
 #include "batch/store_schema.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
@@ -21,31 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kBatchTable = R"sql(
-CREATE TEMP TABLE batch(position INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, path TEXT, rig TEXT, calibration TEXT,
-  from_s REAL, to_s REAL, models TEXT, columns TEXT, place TEXT))sql";
-
-constexpr const char* kTakeRuns = R"sql(
-INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
-  SELECT id, position, path, rig, calibration, from_s, to_s, models, columns FROM batch WHERE true ORDER BY position
-  ON CONFLICT(id) DO UPDATE SET position = excluded.position, path = excluded.path, rig = excluded.rig,
-    calibration = excluded.calibration, from_s = excluded.from_s, to_s = excluded.to_s, models = excluded.models,
-    columns = excluded.columns)sql";
-
-constexpr const char* kNextRuns = R"sql(
-SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_s, batch.to_s, batch.models,
-    batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
-  FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
-
-// Rows are numbered as they come, so that the number is a position behind all others.
-constexpr const char* kAddRun = R"sql(
-INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
-  VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
-
-constexpr const char* kPutRun = R"sql(
-UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
-  options_sha256 = ?, version = ?, cpu = ?, result = ? WHERE run = ?)sql";
 
 /// The JSON line of an entry that the manifest's hash is made of: the same whether it came from CSV or from a pack.
 std::string EntryLine(const ManifestEntry& entry) {
@@ -84,7 +60,7 @@ Result<void> CheckKind(const std::string& name, SQLite::Database& database, Stor
   const int id = database.execAndGet("PRAGMA application_id").getInt();
   const int version = database.execAndGet("PRAGMA user_version").getInt();
   const bool empty = database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
-  if (empty && mode == Store::Mode::kWrite) return {};
+  if (empty && mode != Store::Mode::kRead) return {};
   if (id != kStoreId) {
     return Fault(name, "this is no result store of refit_pendulums; name one, or a file that is not there yet");
   }
@@ -107,6 +83,7 @@ struct Store::State {
                  mode == Mode::kRead ? SQLite::OPEN_READWRITE : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
                  kReaderPatienceMs) {
     if (mode == Mode::kWrite) ::sqlite3_busy_handler(database.getHandle(), Wait, this);
+    if (mode == Mode::kServe) database.setBusyTimeout(kServerPatienceMs);
   }
 
   /// What SQLite asks of a writer whom readers keep waiting, for the so-and-so-many-th time: whether to go on waiting.
@@ -148,7 +125,8 @@ struct Store::State {
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const RunOutcome& outcome, std::int64_t run);
 
-  static constexpr int kReaderPatienceMs = 10000, kWriterPatienceMs = 600000, kStoppedPatienceMs = 2000, kStepMs = 20;
+  static constexpr int kReaderPatienceMs = 10000, kWriterPatienceMs = 600000, kStoppedPatienceMs = 2000,
+                       kServerPatienceMs = 2000, kStepMs = 20;
 
   std::string name;
   SQLite::Database database;
@@ -186,17 +164,19 @@ Result<std::string> Store::State::TakeBatch(const Source& source) {
 /// Leaves what is not of the shard out of the batch, and out of the store.
 void Store::State::TakeShard(const std::optional<Shard>& shard, StoreMeta& meta) {
   meta.runs = database.execAndGet("SELECT count(*) FROM batch").getInt64();
+  // What a service was asked for is of no manifest.
+  const std::string other_manifest = "id NOT IN (SELECT id FROM batch) AND run NOT IN (SELECT run FROM requests)";
   if (!shard) {  // of what the manifest names no more, results stay
-    database.exec("DELETE FROM runs WHERE exit_code IS NULL AND id NOT IN (SELECT id FROM batch)");
-    database.exec("UPDATE runs SET position = -1 WHERE position <> -1 AND id NOT IN (SELECT id FROM batch)");
+    database.exec("DELETE FROM runs WHERE exit_code IS NULL AND " + other_manifest);
+    database.exec("UPDATE runs SET position = -1 WHERE position <> -1 AND " + other_manifest);
     return;
   }
   SQLite::Statement leave_out(database, "DELETE FROM batch WHERE position < ? OR position >= ?");
   sqlite::Bind(leave_out, shard->Begin(meta.runs), shard->End(meta.runs)).exec();
   // The store of a shard may have begun as that of another.
   for (const char* table : {"quantities", "fits", "runs"}) {
-    database.exec(std::string("DELETE FROM ") + table +
-                  " WHERE run IN (SELECT run FROM runs WHERE id NOT IN (SELECT id FROM batch))");
+    database.exec(std::string("DELETE FROM ") + table + " WHERE run IN (SELECT run FROM runs WHERE " + other_manifest +
+                  ")");
   }
 }
 
@@ -250,7 +230,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   if (mode == Mode::kRead && !fs::exists(path, unknown)) {
     return Error(StatusCode::kNotFound, name + ": there is no such store; check the path");
   }
-  if (const auto checked = CheckFolderOf(path); mode == Mode::kWrite && !checked) {
+  if (const auto checked = CheckFolderOf(path); mode != Mode::kRead && !checked) {
     return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
@@ -261,8 +241,11 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     auto state = std::make_unique<State>(name, mode);
     if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
     if (mode == Mode::kRead) return Store(std::move(state));
-    // A rollback journal, for it does without shared memory, on any file system; the folder is synchronised too.
-    state->database.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
+    // A rollback journal does without shared memory, on any file system, and EXTRA synchronises the folder too. With a
+    // write-ahead log nobody waits for readers, but whoever changes from one to the other.
+    state->database.exec(mode == Mode::kServe
+                             ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -32768"
+                             : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
     const int version = state->database.execAndGet("PRAGMA user_version").getInt();
     if (version < static_cast<int>(kStoreMigrations.size())) Migrate(state->database, version);
     return Store(std::move(state));

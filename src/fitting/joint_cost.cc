@@ -72,6 +72,10 @@ bool JointCost::ComesToRest(std::span<const double> parameters, double torque_ch
   return false;
 }
 
+bool JointCost::is_stopped() const {
+  return std::ranges::any_of(terms_, [](const JointTerm& term) { return term.cost->is_stopped(); });
+}
+
 int JointCost::traces() const {
   return std::transform_reduce(terms_.begin(), terms_.end(), 0, std::plus<>(),
                                [](const JointTerm& term) { return term.cost->traces(); });

@@ -104,8 +104,7 @@ using Generator = std::mt19937_64;
 
 /// Where on a line, and the log-density there.
 struct Point {
-  double x;
-  double log;
+  double x, log;
 };
 
 /// One step of slice sampling. density(x, floor) may return anything less than `floor` where it is less.
@@ -143,9 +142,7 @@ constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolu
 class Chain {
  public:
   Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop);
-
-  /// Without meaning when stopped.
-  Draws Run(int rounds);
+  Draws Run(int rounds);  ///< Without meaning when stopped.
 
   /// Turns to coordinates in which these draws are white.
   void Whiten(const Draws& draws);
@@ -379,9 +376,8 @@ Draws RunUntilEnough(Chain& chain) {
   constexpr double kEnoughDraws = 500;
   Draws draws = chain.Run(kRounds);
   while (!chain.is_stopped() && LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
-    const Draws more = chain.Run(kRounds);
     draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
-    draws.bottomRows(kRounds) = more;
+    draws.bottomRows(kRounds) = chain.Run(kRounds);
   }
   return draws;
 }

@@ -60,6 +60,7 @@ class EndEarly final : public ceres::IterationCallback {
       : cost_(cost), parameters_(parameters), options_(options), held_(held) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (cost_.is_stopped()) return ceres::SOLVER_ABORT;
     const bool begins = summary.iteration == 0;
     if (!begins && !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
     const bool at_bound = !AtBound(parameters_, options_, held_).empty();
@@ -173,7 +174,7 @@ Solution Solve(LeastSquares& cost, const std::vector<double>& start, const Solve
   std::vector<bool> held = options.fixed;
   // A parameter is held and let go once or twice; one that is so again and again lies on its bound to rounding.
   const std::size_t most_runs = 4 * start.size();
-  for (std::size_t run = 0; run < most_runs; ++run) {
+  for (std::size_t run = 0; run < most_runs && !cost.is_stopped(); ++run) {
     Run(cost, options, held, solution);
     if (!solution.usable || cost.traces() >= options.max_traces) break;
     const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
@@ -190,6 +191,7 @@ Solution Solve(LeastSquares& cost, const std::vector<double>& start, const Solve
     if (pulled < 0) break;
     held[pulled] = false;
   }
+  if (cost.is_stopped()) solution.usable = false;
   return solution;
 }
 

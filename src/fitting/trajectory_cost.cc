@@ -97,7 +97,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
-    if (IsStopped()) return false;
+    if (is_stopped()) return false;
     if (!last_.IsAt(p, *this)) {
       if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
       last_.SetAt(p, *this, *sums);
@@ -108,7 +108,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
-    if (IsStopped()) return false;
+    if (is_stopped()) return false;
     readings->resize(static_cast<Eigen::Index>(used_samples_));
     const auto read = [&](const double* row, std::size_t first, int count) {
       Read(p, row, first, count, readings->data() + first);
@@ -137,7 +137,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
   TraceSummary Trace(std::span<const double> p) const override {
-    if (IsStopped()) return {};
+    if (is_stopped()) return {};
     if (traced_.IsAt(p, *this)) return traced_.value;
     ++traces_;
     TraceOptions options = Options();
@@ -147,6 +147,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     traced_.SetAt(p, *this, TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
     return traced_.value;
   }
+
+  bool is_stopped() const override { return data_.stop.stop_requested(); }
 
   /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be
   /// safe.
@@ -283,12 +285,10 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return options;
   }
 
-  bool IsStopped() const { return data_.stop.stop_requested(); }
-
   /// A motion of a short period and few samples takes minutes: the tracer refuses it as soon as it may make no more
   /// steps.
   void GiveUpIfStopped(TraceOptions& options) const {
-    if (IsStopped()) options.max_steps = 0;
+    if (is_stopped()) options.max_steps = 0;
   }
 
   bool IsAdmissible(std::span<const double> p) const {
@@ -300,7 +300,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
-    if (IsStopped() || !IsAdmissible(p)) return false;
+    if (is_stopped() || !IsAdmissible(p)) return false;
     samples.Restart({data_.time.data(), used_samples_}, threads_);
     TraceOptions options = Options();
     const auto visit = [&](const Segment<T>& segment) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/sha256.h"
+#include "pendulum/service/form_data.h"
 #include "pendulum/service/idempotency_key.h"
 #include "pendulum/service/media_type.h"
 #include "service/answers.h"
@@ -15,26 +16,28 @@
 namespace pendulum {
 namespace {
 
-std::string Without(std::string_view part, std::string_view text) {
-  if (part.empty()) return std::string(text);
-  std::string rest;
-  rest.reserve(text.size());
-  for (std::size_t next = text.find(part); next != std::string_view::npos; next = text.find(part)) {
-    rest += text.substr(0, next);
-    text.remove_prefix(next + part.size());
+/// A text as part of a longer one, from which it can be told where it ends.
+std::string Framed(std::string_view text) { return std::to_string(text.size()) + ":" + std::string(text); }
+
+/// What a form says, whatever boundary it is sent with, which is another each time.
+Result<std::string> FormText(std::string_view content_type, std::string_view body) {
+  const auto parts = ParseFormData(content_type, body);
+  if (!parts) return tl::unexpected(parts.error());
+  std::string text;
+  for (const FormPart& part : *parts) {
+    text += Framed(part.name) + Framed(part.filename) + Framed(part.content_type) + Framed(part.content);
   }
-  return rest.append(text);
+  return text;
 }
 
 /// What makes two requests the same.
 Result<std::string> HashOf(const HttpRequest& http) {
-  const std::string head = http.method + " " + http.target + "\n";
-  const auto field = http.Field("Content-Type");
-  const auto type = field ? ParseMediaType(*field) : Result<MediaType>(MediaType{});
-  if (!type) return tl::unexpected(type.error());
-  // A form has a boundary of its own each time it is sent.
-  const std::string_view boundary = type->Parameter("boundary").value_or("");
-  return Sha256(head + type->type + "\n" + Without(boundary, http.body));
+  const std::string_view type = http.Field("Content-Type").value_or("");
+  const std::string head = Framed(http.method) + Framed(http.target);
+  if (!LowerCase(type).starts_with("multipart/form-data")) return Sha256(head + Framed(type) + http.body);
+  const auto form = FormText(type, http.body);
+  if (!form) return tl::unexpected(form.error());
+  return Sha256(head + *form);
 }
 
 /// The answer that a request got before.

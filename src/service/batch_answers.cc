@@ -20,10 +20,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 HttpResponse BatchAnswer(ServiceState& state, const std::string& id, int status) {
-  const auto batch = state.store->FindBatch(id);
+  auto batch = state.store->FindBatch(id);
   if (!batch) return ProblemAnswer(batch.error());
   const auto runs = state.store->RunsOf(id);
   if (!runs) return ProblemAnswer(runs.error());
+  batch->done = std::ranges::count_if(*runs, [](const ListedFit& fit) { return fit.exit_code.has_value(); });
+  batch->failed = std::ranges::count_if(*runs, [](const ListedFit& fit) { return !fit.reason.empty(); });
   Json fits = Json::array();
   for (const ListedFit& fit : *runs) {
     Json item = ItemOf(fit);

@@ -174,15 +174,18 @@ void Connection::Dispatch() {
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
   WorkQueue& queue = lane == Lane::kFit ? serving_.fits : serving_.quick;
-  const bool is_taken = queue.Offer([self = shared_from_this()] {
-    auto response = std::make_shared<HttpResponse>(self->Handle());
+  const bool is_taken = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
+    auto response = std::make_shared<HttpResponse>(self->Handle(offered));
     asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
   });
   if (!is_taken) Refuse({429, "too many requests are waiting; try again later"});
 }
 
 /// On a thread of a lane, to which the request belongs meanwhile.
-HttpResponse Connection::Handle() {
+HttpResponse Connection::Handle(std::chrono::steady_clock::time_point offered) {
+  if (std::chrono::steady_clock::now() - offered > serving_.options.wait_time) {
+    return MakeRefusal({408, "the request waited too long for its turn; try again later"});
+  }
   const auto failed = [&](const std::string& what) { return MakeRefusal({500, what}); };
   if (serving_.budget.is_exceeded()) return MakeRefusal({429, kTooMuch});
   HttpResponse response = Guarded([&] { return serving_.handler.Handle(parser_->request()); }, failed);

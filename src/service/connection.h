@@ -63,7 +63,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void AskForBody();
   void ParseBody();
   void Dispatch();
-  HttpResponse Handle();
+  HttpResponse Handle(std::chrono::steady_clock::time_point offered);
 
   HttpResponse MakeRefusal(const Refused& refused) const;
   void Refuse(const Refused& refused);

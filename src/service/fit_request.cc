@@ -12,6 +12,8 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/batch/source.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/sensor.h"
 #include "pendulum/service/form_data.h"
 #include "pendulum/service/media_type.h"
 
@@ -23,8 +25,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLongestName = 200;  // bytes
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
-/// What a client calls a file, without the folders that old browsers send along.
-std::string NameOf(std::string_view filename) {
+bool IsControl(char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }
+
+/// What a client calls a file, without the folders that old browsers send along and what is no text.
+std::string NameOf(std::string filename_as_sent) {
+  std::ranges::replace_if(filename_as_sent, IsControl, ' ');
+  std::string_view filename = filename_as_sent;
   const std::size_t slash = filename.find_last_of("/\\");
   if (slash != std::string_view::npos) filename.remove_prefix(slash + 1);
   if (filename.empty()) return kUnnamed;
@@ -35,6 +41,9 @@ std::string NameOf(std::string_view filename) {
 }
 
 Result<void> CheckName(const std::string& name) {
+  if (std::ranges::any_of(name, IsControl)) {
+    return Error(StatusCode::kInvalidArgument, "name " + Quoted(name) + " has control characters; leave them out");
+  }
   if (!name.empty() && name.size() <= kLongestName) return {};
   return Error(StatusCode::kInvalidArgument,
                "name has " + std::to_string(name.size()) + " bytes; it must have 1 to " + std::to_string(kLongestName));
@@ -182,11 +191,12 @@ bool IsText(std::string_view type) {
   return std::ranges::find(kTypes, type) != kTypes.end();  // the last is what Windows calls CSV
 }
 
-/// The type of a body, in lower case; empty where it has none or an impossible one.
+/// The type of a body, in lower case, or as it stands where it is none; empty where it is not there.
 std::string TypeOf(const HttpRequest& request) {
   const auto field = request.Field("Content-Type");
-  const auto type = field ? ParseMediaType(*field) : Result<MediaType>(MediaType{});
-  return type ? type->type : "";
+  if (!field) return "";
+  const auto type = ParseMediaType(*field);
+  return type ? type->type : std::string(*field);
 }
 
 OrProblem<void> CheckCoding(const HttpRequest& request) {
@@ -208,6 +218,13 @@ OrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
 OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
   auto options = RunOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
+  if (request.rig) {
+    if (const auto rig = ParseRig(request.rig->bytes, request.rig->name); !rig) return Refused(rig.error());
+  }
+  if (request.calibration) {
+    const auto calibration = ParseCalibration(request.calibration->bytes, request.calibration->name);
+    if (!calibration) return Refused(calibration.error());
+  }
   request.options = *std::move(options);
   for (const NamedBytes& data : request.data) {
     if (auto checked = CheckSize(data, limits); !checked) return tl::unexpected(checked.error());

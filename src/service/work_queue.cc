@@ -27,13 +27,14 @@ bool WorkQueue::Offer(std::function<void()> work) {
 }
 
 void WorkQueue::Close() {
-  std::deque<std::function<void()>> dropped;  // and destroyed without the lock
+  std::deque<std::function<void()>> dropped;  // goes without the lock, and before what runs is awaited
   {
     const std::lock_guard lock(mutex_);
     is_closed_ = true;
     dropped.swap(waiting_);
     changed_.notify_all();
   }
+  dropped.clear();
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves fits over HTTP, and the page: flags, signals, log and exit codes.
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -11,10 +14,10 @@
 #include <vector>
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 #include <pthread.h>
 #include <unistd.h>
 
+#include "pendulum/base/staged_file.h"
 #include "pendulum/batch/fit_store.h"
 #include "pendulum/service/fitting_service.h"
 #include "pendulum/service/server.h"
@@ -83,6 +86,16 @@ ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
+/// One line on standard error, at once and whole, whoever else writes there.
+void SayAtTime(const std::string& words) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> time{};
+  const std::size_t size = std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ ", &utc);
+  (void)WriteAll(STDERR_FILENO, std::string(time.data(), size) + words + "\n");
+}
+
 sigset_t EndingSignals() {
   sigset_t signals;
   ::sigemptyset(&signals);
@@ -98,7 +111,7 @@ void StopAtSignal(Server& server, FittingService& service, int stop_seconds) {
     const sigset_t signals = EndingSignals();
     int signal = 0;
     ::sigwait(&signals, &signal);
-    LOG(INFO) << "stopping";
+    SayAtTime("stopping");
     service.Stop();
     server.Stop();
     const timespec patience{stop_seconds, 0};
@@ -113,9 +126,9 @@ void StopAtSignal(Server& server, FittingService& service, int stop_seconds) {
 /// One line for each answer, without what was sent.
 void Log(const Answered& answered) {
   constexpr std::size_t kMostShown = 200;
-  LOG(INFO) << answered.peer << ' ' << answered.method << ' '
-            << answered.target.substr(0, std::min(answered.target.find('?'), kMostShown)) << ' ' << answered.status
-            << ' ' << answered.bytes << " B " << answered.time.count() / 1000 << " ms";
+  const std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMostShown));
+  SayAtTime(answered.peer + " " + answered.method + " " + path + " " + std::to_string(answered.status) + " " +
+            std::to_string(answered.bytes) + " B " + std::to_string(answered.time.count() / 1000) + " ms");
 }
 
 std::string AddressText(const ServerOptions& options, std::uint16_t port) {
@@ -142,7 +155,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!server) return tl::unexpected(server.error());
   (*service)->CountServer([&] { return (*server)->Count(); });
   StopAtSignal(**server, **service, flags.stop_seconds);
-  FLAGS_minloglevel = google::GLOG_INFO;
   std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << std::endl;
   (*server)->Run();
   return 0;

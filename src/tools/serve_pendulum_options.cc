@@ -62,6 +62,7 @@ ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
   constexpr std::size_t kBodiesAtOnce = 4;
   server.max_buffered = std::max(server.max_buffered, kBodiesAtOnce * server.max_body);
   server.request_time = std::chrono::seconds(flags.request_seconds);
+  server.wait_time = std::chrono::seconds(flags.fit_seconds);
   server.stop_time = std::chrono::seconds(flags.stop_seconds);
   return server;
 }

@@ -122,7 +122,7 @@ TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;
   [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, bounds, priors, noise, loss,
-                          interval, seed, threads, progress, max_trace_error, max_iterations, max_traces] = fit;
+                          interval, seed, threads, progress, stop, max_trace_error, max_iterations, max_traces] = fit;
 }
 
 TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Debian packages say what they are and hold it: debian_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
+import os
 import pathlib
 import re
 import subprocess
@@ -10,12 +11,9 @@ import tempfile
 import unittest
 
 import empty_root
+from packed import output, tool_names
 
 PACKAGES = BIN = pathlib.Path()
-
-
-def output(*command, cwd=None):
-    return subprocess.run(command, check=True, capture_output=True, text=True, cwd=cwd).stdout
 
 
 class DebianTest(unittest.TestCase):
@@ -61,16 +59,32 @@ class DebianTest(unittest.TestCase):
 
     def test_package_of_the_tools(self):
         self.check_fields(self.tools, Package="pendulum", Section="science")
-        self.check_contents(self.tools, [r"\./usr/bin/[a-z_]+", r"\./usr/share/doc/pendulum/(?:copyright|README\.md)",
-                                         r"\./usr/share/pendulum/.*"])
-        self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libssl3", "libstdc++6"})
+        self.check_contents(self.tools, [r"\./usr/bin/[a-z_]+", r"\./usr/share/man/man1/[a-z_]+\.1\.gz", r"\./usr/share/pendulum/.*",
+                                         r"\./usr/share/doc/pendulum/(?:changelog\.gz|copyright|examples/nginx\.conf|README\.md)",
+                                         r"\./etc/default/serve_pendulum", r"\./lib/systemd/system/serve_pendulum\.service"])
+        self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libprometheus-cpp-core1.0", "libssl3", "libstdc++6"})
+        self.assertEqual({path.name for path in (self.root / "usr/bin").iterdir()}, tool_names())
+
+    def test_configuration_is_the_administrators(self):
+        self.assertEqual(output("dpkg-deb", "--info", self.tools, "conffiles"), "/etc/default/serve_pendulum\n")
+
+    def test_changelog_is_of_this_version(self):
+        log = empty_root.TOP / "src/packages/debian/changelog"
+        self.assertEqual(output("dpkg-parsechangelog", "--file", log, "--show-field", "Version"),
+                         output("dpkg-deb", "--field", self.tools, "Version"))
+
+    def test_lintian_finds_no_error_and_warns_of_nothing(self):
+        root = ["--allow-root"] if os.geteuid() == 0 else []
+        done = subprocess.run(["lintian", *root, "--fail-on", "error,warning", self.tools, self.development],
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
 
     def test_package_of_the_libraries(self):
         self.check_fields(self.development, Package="libpendulum-dev", Section="libdevel")
         self.check_contents(self.development, [r"\./usr/include/pendulum/.*\.(?:h|json)",
                                               r"\./usr/include/pendulum_logger/frame\.h", r"\./usr/lib/libpendulum_\w+\.a",
                                                r"\./usr/lib/cmake/pendulum/pendulum\w+(?:-\w+)?\.cmake",
-                                               r"\./usr/share/doc/libpendulum-dev/copyright"])
+                                               r"\./usr/share/doc/libpendulum-dev/(?:changelog\.gz|copyright)"])
         self.check_dependencies(self.development, {"libceres-dev", "libeigen3-dev"})
 
     def test_every_header_is_in_it(self):

@@ -84,7 +84,7 @@ TEST_F(ManifestTest, GivesEachRecordingItsOwnTruth) {
   const SimulateOptions options = Options();
   const Manifest manifest(options);
   EXPECT_NE(manifest.Row(0)->substr(0, 40), manifest.Row(1)->substr(0, 40));
-  const auto second = OptionsOfRecording(options, 1);
+  const auto second = SimulationOfRecording(options, 1);
   ASSERT_TRUE(second);
   // The field reads back as the very number.
   const std::string row = *manifest.Row(1);

@@ -74,10 +74,11 @@ struct StoreCounts {
 /// permission; kTryAgain, another process has the file; kDataLoss, it is damaged.
 class Store {
  public:
-  enum class Mode { kRead, kWrite };
+  enum class Mode { kRead, kWrite, kServe };
 
-  /// kRead: kNotFound, no such file. kWrite makes one that is not there. kDataLoss: no store, or one of a newer
-  /// version; older ones are brought up to date by kWrite.
+  /// kRead: kNotFound, no such file. The others make one that is not there, and bring older ones up to date; kServe
+  /// keeps a log beside it while it is open, so that writing waits for no reader. kDataLoss: no store, or one of a
+  /// newer version.
   static Result<Store> Open(const std::filesystem::path& path, Mode mode);
 
   Store(Store&& other) noexcept;

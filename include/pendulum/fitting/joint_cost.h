@@ -34,6 +34,7 @@ class JointCost final : public LeastSquares {
   bool ComesToRest(std::span<const double> parameters, double torque_change) const override;
   int traces() const override;
   int runs() const override { return static_cast<int>(terms_.size()); }
+  bool is_stopped() const override;
 
   const std::vector<PriorTerm>& priors() const { return priors_; }
 

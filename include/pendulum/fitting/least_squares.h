@@ -61,6 +61,9 @@ class LeastSquares {
 
   /// Recordings: what a search may cost goes by them.
   virtual int runs() const { return 1; }
+
+  /// Whether a stop was requested, so that every function returns false: there is nothing to be solved any more.
+  virtual bool is_stopped() const { return false; }
 };
 
 }  // namespace pendulum

@@ -19,7 +19,8 @@ struct ServerOptions {
   std::uint16_t port = 8080;          ///< 0: any free one.
   int fit_threads = 0;                ///< Requests of Lane::kFit at a time; 0: cores.
   int quick_threads = 2;
-  std::size_t max_queue = 64;         ///< Requests that wait in a lane; one more is 429.
+  std::size_t max_queue = 64;                   ///< Requests that wait in a lane; one more is 429.
+  std::chrono::milliseconds wait_time{30'000};  ///< That a request may wait there; then it is 408.
   std::size_t max_connections = 512;  ///< One more gets 503 and is closed; half as many streams of events, then 429.
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more is 431.
   std::size_t max_body = std::size_t{32} << 20;       ///< Bytes; more is 413.

@@ -89,11 +89,7 @@ const views = () => [
     `/batches/${batch}`,
     (page) => page.getByText('3 of 4 recordings fitted, 1 could not be fitted.').waitFor(),
   ],
-  [
-    'nothing',
-    '/nothing/here',
-    (page) => page.getByRole('heading', { name: 'There is nothing at this address' }).waitFor(),
-  ],
+  ['a fit that is not there', '/fits/nothing', (page) => page.locator('.problem').waitFor()],
 ];
 
 for (const colorScheme of ['light', 'dark']) {

@@ -3,7 +3,7 @@
 
 import { button, details, el, text } from '../dom';
 import { curveText } from '../provenance_section';
-import { plusMinus, significant } from '../rounding';
+import { fixed, plusMinus, significant } from '../rounding';
 import { section } from '../section';
 import { scrollBox, table } from '../table';
 import { unitText } from '../units';
@@ -38,9 +38,10 @@ const kOrders: [string, string][] = [
 ];
 
 function coefficientTable({ calibration }: CalibrationAnswer): HTMLElement {
+  const one = calibration.input === 'volts' ? 'V' : 'count';
   const covariance = calibration.covariance as number[][] | null;
   const rows = calibration.coefficients.map((c, k) => {
-    const unit = unitText(calibration.angle_unit) + (k === 0 ? '' : `/${calibration.input}${k === 1 ? '' : `^${k}`}`);
+    const unit = unitText(calibration.angle_unit) + (k === 0 ? '' : unitText(`/${one}${k === 1 ? '' : `^${k}`}`));
     const variance = covariance?.[k]?.[k] ?? 0;
     return [`c${k}`, `${plusMinus(c, variance > 0 ? Math.sqrt(variance) : null)} ${unit}`];
   });
@@ -55,9 +56,12 @@ function pointTable({ calibration, points }: CalibrationAnswer): HTMLElement {
   const unit = unitText(calibration.angle_unit);
   const number = 'number' as const;
   const heads = [`Angle [${unit}]`, `Curve [${unit}]`, `Residual [${unit}]`, `Left out [${unit}]`];
+  const decimals = calibration.angle_unit === 'deg' ? 2 : 4;
   const rows = points.map((point) => [
     significant(point.reading, 6),
-    ...[point.angle, point.fitted, point.residual, point.left_out].map((value) => significant(value, 4)),
+    ...[point.angle, point.fitted, point.residual, point.left_out].map((value) =>
+      value === null ? '–' : fixed(value, decimals),
+    ),
   ]);
   return table(
     'Points',

@@ -39,15 +39,18 @@ function parameterCell(model: ItemModel | null, name: string, label: string): HT
 
 export type State = 'good' | 'caution' | 'bad' | 'waiting';
 
+/** True of a run that has no result: 0 and 1 are the exit codes of fits. */
+const isUnfitted = ({ exit_code: code }: Pick<FitItem, 'exit_code'>): boolean => (code ?? 0) > 1;
+
 /** How a fit ended, in words. */
 export function stateOf(item: Pick<FitItem, 'state' | 'exit_code' | 'recommended' | 'models'>): {
   words: string;
   level: State;
 } {
   if (item.state === 'waiting') return { words: 'waiting', level: 'waiting' };
+  if (isUnfitted(item)) return { words: 'not fitted', level: 'bad' };
   const status = mainModel(item)?.status;
-  if (status === undefined)
-    return item.exit_code === 0 ? { words: 'closed forms', level: 'good' } : { words: 'not fitted', level: 'bad' };
+  if (status === undefined) return { words: 'closed forms', level: 'good' };
   if (status === 'converged') return { words: 'converged', level: 'good' };
   return { words: status.replace(/_/g, ' '), level: status === 'failed' ? 'bad' : 'caution' };
 }
@@ -74,7 +77,7 @@ function nameCell(item: FitItem): HTMLElement {
   const name = item.name || 'recording without a name';
   const shown = el('bdi', {}, name);
   const linked = item.state === 'waiting' ? shown : el('a', { href: fitPath(item.id) }, shown);
-  const why = item.models.length === 0 && item.reason !== '' && el('small', {}, typeset(item.reason));
+  const why = isUnfitted(item) && item.reason !== '' && el('small', {}, typeset(item.reason));
   return el('th', { scope: 'row', role: 'rowheader' }, linked, why);
 }
 
@@ -87,7 +90,7 @@ export interface Selection {
 function selectCell(item: FitItem, { ids, changed }: Selection): HTMLElement {
   const input = el('input', { type: 'checkbox', 'aria-label': `Select ${item.name}` });
   input.checked = ids.has(item.id);
-  input.disabled = item.state === 'waiting' || item.models.length === 0;
+  input.disabled = item.state === 'waiting' || isUnfitted(item);
   input.addEventListener('change', () => {
     if (input.checked) ids.set(item.id, item.name);
     else ids.delete(item.id);

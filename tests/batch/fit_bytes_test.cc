@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/fit_bytes.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/batch/run_parts.h"
+#include "pendulum/recording/sensor.h"
+#include "pendulum/report/json.h"
+#include "tests/batch/small_batch.h"
+
+namespace pendulum::fit_bytes_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string FileText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+RunOptions OptionsFor(const std::vector<std::string>& models) {
+  RunOptions options;
+  options.models = models;
+  options.fit.model = models.front();
+  options.fit.threads = 1;
+  return options;
+}
+
+/// A short swing in counts of the sensor of kCalibration.
+constexpr const char* kCalibration =
+    R"({"input": "counts", "angle_unit": "deg", "coefficients": [-50, 0.2], "input_range": [0, 1023]})";
+
+std::string CountsText() {
+  SyntheticOptions truth = small_batch::Truth(1);
+  const auto recording = SimulateRecording(truth);
+  std::string text = "time_s,adc_counts\n";
+  for (Eigen::Index i = 0; i < recording->size(); ++i) {
+    constexpr double kCountsPerRad = 180 / 3.14159265358979 / 0.2;
+    text += std::to_string(recording->time[i]) + "," +
+            std::to_string(std::lround(250 + recording->value[i] * kCountsPerRad)) + "\n";
+  }
+  return text;
+}
+
+Status FaultOf(const RunOptions& options, RunFiles files) {
+  const auto run = FitBytes(options, std::move(files));
+  EXPECT_FALSE(run);
+  return run ? Status{StatusCode::kInternal, ""} : run.error();
+}
+
+// What fit_pendulum does with the files: it reads them itself.
+TEST(FitBytes, EqualsTheFitOfTheFiles) {
+  const RunOptions options = OptionsFor({"viscous", "coulomb"});
+  const std::string data = "datasets/textbook_rig.csv", rig = "datasets/textbook_rig.json";
+  const auto from_bytes = FitBytes(options, {{data, FileText(data)}, NamedBytes{rig, FileText(rig)}, {}});
+  ASSERT_TRUE(from_bytes) << from_bytes.error().message;
+  auto one = ReadOne(options, data, ReadRig(rig).value());
+  ASSERT_TRUE(one) << one.error().message;
+  const auto from_files = FitRuns(options, *std::move(one));
+  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
+  EXPECT_EQ(ToJson(from_bytes->report).dump(2), ToJson(from_files[0]->report).dump(2));
+  ASSERT_EQ(from_bytes->used.size(), 1U);
+  EXPECT_EQ(from_bytes->used[0].time, from_files[0]->used[0].time);
+}
+
+TEST(FitBytes, EqualsTheFitOfTheFilesWithACalibration) {
+  const small_batch::Folder folder("fit_bytes");
+  folder.Write("counts.csv", CountsText());
+  folder.Write("calibration.json", kCalibration);
+  RunOptions options = OptionsFor({"viscous"});
+  const std::string data = folder / "counts.csv";
+  const auto from_bytes = FitBytes(options, {{data, CountsText()}, {}, NamedBytes{"calibration", kCalibration}});
+  ASSERT_TRUE(from_bytes) << from_bytes.error().message;
+  options.read.calibration = ReadCalibration(folder / "calibration.json").value();
+  auto one = ReadOne(options, data, std::nullopt);
+  ASSERT_TRUE(one) << one.error().message;
+  const auto from_files = FitRuns(options, *std::move(one));
+  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
+  EXPECT_EQ(ToJson(from_bytes->report).dump(2), ToJson(from_files[0]->report).dump(2));
+}
+
+TEST(FitBytes, SaysWhichOfThemIsAtFaultAndWhere) {
+  const RunOptions options = OptionsFor({"viscous"});
+  const std::string good = small_batch::RecordingText(1);
+  const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
+  EXPECT_EQ(data.code, StatusCode::kDataLoss);
+  EXPECT_THAT(data.message, StartsWith("a.csv:2:3: "));
+  const Status rig = FaultOf(options, {{"a.csv", good}, NamedBytes{"my rig", "{"}, {}});
+  EXPECT_EQ(rig.code, StatusCode::kDataLoss);
+  EXPECT_THAT(rig.message, StartsWith("my rig:1:"));
+  const Status calibration = FaultOf(options, {{"a.csv", good}, {}, NamedBytes{"cal", "[]"}});
+  EXPECT_EQ(calibration.code, StatusCode::kDataLoss);
+  EXPECT_THAT(calibration.message, StartsWith("cal: "));
+}
+
+TEST(FitBytes, SaysThatNothingSwings) {
+  std::string rest = "time_s,angle_rad\n";
+  for (int i = 0; i < 100; ++i) rest += std::to_string(i) + ",0\n";
+  const Status fault = FaultOf(OptionsFor({"viscous"}), {{"rest.csv", rest}, {}, {}});
+  EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(fault.message, HasSubstr("no swing"));
+}
+
+}  // namespace
+}  // namespace pendulum::fit_bytes_test

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/batch/fit_run.h"
+#include "pendulum/batch/provenance.h"
+#include "pendulum/report/json.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::fit_run_stop_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::StartsWith;
+
+using Clock = std::chrono::steady_clock;
+
+RunOptions OptionsFor(const std::vector<std::string>& models) {
+  RunOptions options;
+  options.models = models;
+  options.fit.model = models.front();
+  options.fit.threads = 1;
+  return options;
+}
+
+ReadSwings Read(const std::string& path, const RunOptions& options) {
+  return Must(ReadOne(options, path, std::nullopt));
+}
+
+Result<FitRun> FitFirst(const RunOptions& options, const ReadSwings& swings) {
+  return std::move(FitRuns(options, swings).front());
+}
+
+void ExpectStopped(const Result<FitRun>& run) {
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kTryAgain);
+  EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
+}
+
+/// Stops a run at `count` instants that are spread over about as long as it takes: it is either as if it had not been
+/// stopped, byte for byte, or the error.
+void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
+  const Clock::time_point begin = Clock::now();
+  const std::string whole = ToJsonText(Must(FitFirst(options, swings)).report);
+  const Clock::duration duration = Clock::now() - begin;
+  for (int i = 0; i < count; ++i) {
+    std::stop_source stop;
+    options.fit.stop = stop.get_token();
+    const std::jthread other([&stop, wait = duration * i / count] {
+      std::this_thread::sleep_for(wait);
+      stop.request_stop();
+    });
+    const Result<FitRun> run = FitFirst(options, swings);
+    if (run) {
+      EXPECT_EQ(ToJsonText(run->report), whole) << i;
+    } else {
+      ExpectStopped(run);
+    }
+  }
+}
+
+TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
+  const RunOptions options = OptionsFor({"viscous", "coulomb", "drag", "stribeck", "asymmetric"});
+  StopEverywhere(options, Read("datasets/coulomb.csv", options), 20);
+}
+
+TEST(StoppedFitRuns, AreAllOrNothingOnTheWayToRest) {
+  const RunOptions options = OptionsFor({"coulomb"});
+  StopEverywhere(options, Read("datasets/to_rest.csv", options), 20);
+}
+
+TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
+  for (const IntervalMethod method : {IntervalMethod::kProfile, IntervalMethod::kBootstrap}) {
+    RunOptions options = OptionsFor({"coulomb"});
+    options.fit.interval = method;
+    StopEverywhere(options, Read("datasets/coulomb.csv", options), 10);
+  }
+}
+
+TEST(StoppedFitRuns, AreAllOrNothingOnCoarseLevelsWithoutNoise) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.resolution = kCount;
+  const RunOptions options = OptionsFor({"coulomb"});
+  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 20);
+}
+
+TEST(StoppedFitRuns, AreErrorsFromTheBeginning) {
+  std::stop_source stop;
+  stop.request_stop();
+  for (const bool closed_form_only : {false, true}) {
+    RunOptions options = OptionsFor({"viscous", "coulomb"});
+    options.closed_form_only = closed_form_only;
+    const ReadSwings swings = Read("datasets/coulomb.csv", options);
+    options.fit.stop = stop.get_token();
+    ExpectStopped(FitFirst(options, swings));
+  }
+}
+
+TEST(StoppedFitRuns, NameEachOfSeveralSwings) {
+  SyntheticOptions run = NoisyRun("viscous");
+  run.duration = 9;
+  Recording recording = Must(SimulateRecording(run));
+  recording.path = "two.csv";
+  const FreeSwing whole = Must(FindFreeSwings(recording)).front();
+  RunOptions options = OptionsFor({"viscous"});
+  std::stop_source stop;
+  stop.request_stop();
+  options.fit.stop = stop.get_token();
+  ReadSwings swings;
+  swings.samples = recording.size();
+  swings.recording = std::move(recording);
+  swings.swings = {{whole, whole}, {1, 2}};
+  const auto runs = FitRuns(options, std::move(swings));
+  ASSERT_THAT(runs, SizeIs(2));
+  for (const auto& [index, name] : {std::pair(0, "two.csv: free swing 1: "), std::pair(1, "two.csv: free swing 2: ")}) {
+    ExpectStopped(runs[static_cast<std::size_t>(index)]);
+    EXPECT_THAT(runs[static_cast<std::size_t>(index)].error().message, StartsWith(name));
+  }
+}
+
+TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
+  RunOptions options = OptionsFor({"viscous", "coulomb"});
+  options.fit.interval = IntervalMethod::kBootstrap;
+  const ReadSwings swings = Read("datasets/coulomb.csv", options);
+  for (const int number : {1, 5, 12}) {  // of its reports, nine to each model
+    std::stop_source stop;
+    int reports = 0;
+    options.fit.stop = stop.get_token();
+    options.fit.progress = [&](int, int) {
+      if (++reports == number) stop.request_stop();
+    };
+    ExpectStopped(FitFirst(options, swings));
+    EXPECT_GE(reports, number);
+  }
+}
+
+/// 2000 readings of a pendulum of 0.7 Hz, one every 50.3 s: each trajectory that is tried has a hundred thousand
+/// periods.
+Recording OneReadingAMinute() {
+  SyntheticOptions run;
+  run.model = Must(FindMotionModel("viscous"));
+  run.parameters = {0.0517, 0.0000005};
+  run.start = StartKind::kMoving;
+  run.initial_angle = 0.17;
+  run.sample_rate = 1 / 50.3;
+  run.duration = 2000 * 50.3;
+  run.noise = 0.0002;
+  return Must(SimulateRecording(run));
+}
+
+TEST(StoppedFitRuns, EndInTheMidstOfATrajectoryOfMillionsOfSteps) {
+  RunOptions options = OptionsFor({"coulomb"});
+  const ReadSwings swings = Must(FindSwings(OneReadingAMinute(), {}, std::nullopt));
+  std::stop_source stop;
+  options.fit.stop = stop.get_token();
+  const std::jthread other([&stop] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    stop.request_stop();
+  });
+  ExpectStopped(FitFirst(options, swings));
+}
+
+TEST(FitRunsThatMayBeStopped, AreTheSameWhenTheyAreNot) {
+  for (const char* const path : {"datasets/coulomb.csv", "datasets/to_rest.csv"}) {
+    RunOptions options = OptionsFor({"viscous", "coulomb"});
+    const ReadSwings swings = Read(path, options);
+    const std::string never = ToJsonText(Must(FitFirst(options, swings)).report);
+    const std::stop_source stop;
+    options.fit.stop = stop.get_token();
+    EXPECT_EQ(ToJsonText(Must(FitFirst(options, swings)).report), never) << path;
+  }
+}
+
+TEST(FitRunsThatMayBeStopped, HaveTheSameProvenance) {
+  RunOptions options = OptionsFor({"coulomb"});
+  const std::string never = OptionsJson(options);
+  std::stop_source stop;
+  options.fit.stop = stop.get_token();
+  EXPECT_EQ(OptionsJson(options), never);
+  stop.request_stop();
+  EXPECT_EQ(OptionsJson(options), never);
+}
+
+}  // namespace
+}  // namespace pendulum::fit_run_stop_test

@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The packages have the licences of all that is in them, and nothing that is only for tests:
+licences_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+
+import functools
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tarfile
+import unittest
+
+import empty_root
+import packed
+
+SOURCES = empty_root.TOP / "src"
+PLACES = [pathlib.Path("/usr/include"), pathlib.Path("/usr/include/eigen3")]
+# The compiler's, which every program has: their licences allow that without saying so (GCC Runtime Library Exception).
+COMPILERS = {"gcc-12", "glibc", "linux"}
+# What Ceres, a static library, brings along as shared ones: they are named in a sentence, and packages with licences of
+# their own, which are in the tarball one by one.
+CERES = {"suitesparse", "lapack", "atlas", "openblas"}
+
+
+@functools.cache
+def debian_source(package):
+    """The source package, of which a library and its headers are two packages."""
+    return packed.output("dpkg-query", "--show", "--showformat", "${source:Package}\n", package).splitlines()[0]
+
+
+@functools.cache
+def owner(path):
+    """The package that a file is of, by the name it has or had before /lib became a link to /usr/lib."""
+    for name in (path, pathlib.Path(re.sub(r"^/usr/lib/", "/lib/", str(path)))):
+        found = subprocess.run(["dpkg-query", "--search", name], capture_output=True, text=True).stdout
+        if found:
+            return found.split(":")[0]
+    raise FileNotFoundError(f"{path} is of no package")
+
+
+def libraries(program):
+    """Paths of the shared libraries that a program itself names."""
+    needed = re.findall(r"\(NEEDED\).*\[(.*)\]", packed.output("readelf", "--wide", "--dynamic", program))
+    resolved = dict(re.findall(r"(\S+) => (\S+)", packed.output("ldd", program)))
+    return {pathlib.Path(resolved[name]).resolve() for name in needed}
+
+
+def headers():
+    """Paths of the headers of others that our sources include."""
+    sources = [path for folder in (SOURCES, empty_root.TOP / "include", empty_root.TOP / "firmware/pendulum_logger")
+               for path in folder.rglob("*.[ch]*") if "node_modules" not in path.parts]
+    names = {name for path in sources for name in re.findall(r"^#include <([^>]+)>", path.read_text(errors="replace"), re.MULTILINE)}
+    found = {place / name for name in names for place in PLACES if (place / name).is_file()}
+    return {path.resolve() for path in found}
+
+
+class LicencesTest(packed.DebianFilesTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.text = (cls.root / "usr/share/doc/pendulum/copyright").read_text()
+        cls.named = set(re.findall(r"^=+\n(\S+)\n=+$", cls.text, re.MULTILINE))
+        # Texts in src/packages/licences stand for packages too: boost for what Debian builds of source package boost1.74.
+        cls.sources = {debian_source(name) for name in cls.named - {"boost", "uplot"}} | {"boost1.74"}
+
+    def test_every_library_that_a_tool_is_linked_with_is_named(self):
+        for tool in (self.root / "usr/bin").iterdir():
+            for path in libraries(tool):
+                self.assertIn(debian_source(owner(path)), self.sources | COMPILERS | CERES, f"{tool.name} is linked with {path}")
+
+    def test_every_header_that_is_compiled_in_is_of_a_package_that_is_named(self):
+        packages = {owner(path) for path in headers()}
+        self.assertGreaterEqual(len(packages), 8)
+        sources = {debian_source(package) for package in packages}
+        self.assertEqual(sources - COMPILERS - self.sources, set())
+
+    def test_nothing_is_named_that_is_not_in_them(self):
+        sources = {debian_source(owner(path)) for path in headers()}
+        self.assertEqual(self.sources - sources, set())
+
+    def test_what_the_pages_are_built_from_is_named(self):
+        page = json.loads((SOURCES / "report/page/package.json").read_text())
+        self.assertEqual(set(page["dependencies"]), {"uplot"})
+        self.assertIn("uplot", self.named)
+        self.assertIn("Copyright (c) 2022 Leon Sorokin", self.text)
+
+    def test_texts_are_whole(self):
+        for name in self.named - {"boost", "uplot"}:
+            self.assertIn(pathlib.Path(f"/usr/share/doc/{name}/copyright").read_text(), self.text, name)
+        self.assertIn("Boost Software License - Version 1.0", self.text)
+        self.assertTrue(self.text.startswith("pendulum: "))
+
+    def test_libraries_package_and_tarball_have_the_same(self):
+        folder = self.folder / "development"
+        packed.output("dpkg-deb", "--extract", empty_root.only_one(self.packages, "libpendulum-dev_*.deb"), folder)
+        self.assertEqual((folder / "usr/share/doc/libpendulum-dev/copyright").read_text(), self.text)
+        with tarfile.open(empty_root.only_one(self.packages, "pendulum-*.tar.gz")) as archive:
+            names = [name for name in archive.getnames() if name.endswith("/share/doc/pendulum/copyright")]
+            self.assertEqual([archive.extractfile(name).read().decode() for name in names], [self.text])
+
+    def test_nothing_that_only_tests_need_is_packed(self):
+        """The simulator of the board is under the GPL, and a simulated logger is no logger."""
+        with tarfile.open(empty_root.only_one(self.packages, "pendulum-*.tar.gz")) as archive:
+            archive.extractall(self.folder / "tarball")
+        for folder in (self.root, self.folder / "tarball"):
+            for path in (path for path in folder.rglob("*") if path.is_file()):
+                self.assertNotRegex(path.name, "simulated|simavr|_test|benchmark|fuzz")
+                if path.parent.name in ("bin", "lib"):
+                    self.assertNotIn(b"simavr", path.read_bytes(), path)
+
+
+if __name__ == "__main__":
+    sys.argv.pop(2)
+    LicencesTest.packages = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is in the packages, for the tests of it: files of the Debian packages, the tools' names, what the tools say."""
+
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+import empty_root
+
+
+def output(*command, **options):
+    return subprocess.run(command, check=True, capture_output=True, text=True, **options).stdout
+
+
+def tool_names():
+    """Of all tools, as src/CMakeLists.txt builds them."""
+    return set(re.findall(r"^pendulum_add_tool\((\w+)\)$", (empty_root.TOP / "src/CMakeLists.txt").read_text(), re.MULTILINE))
+
+
+def flags(tool):
+    """Name -> description of each flag, as --help has them, with single blanks."""
+    text = output(tool, "--help")
+    found = re.findall(r"^  --(\w+)  +(.*(?:\n {4,}.*)*)", text[text.index("\n  --"):], re.MULTILINE)
+    return {name: " ".join(description.split()) for name, description in found}
+
+
+def default_numbers(tool):
+    """Flag -> its default, of the flags whose description tells a number."""
+    found = ((name, re.search(r"\b[Dd]efault (\d+)\b", description)) for name, description in flags(tool).items())
+    return {name: int(default[1]) for name, default in found if default}
+
+
+class DebianFilesTest(unittest.TestCase):
+    """Tests of the files of the Debian package of the tools, which are below root."""
+
+    packages = pathlib.Path()
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.package = empty_root.only_one(cls.packages, "pendulum_*.deb")
+        cls.folder = pathlib.Path(folder.name)
+        cls.root = cls.folder / "root"
+        output("dpkg-deb", "--extract", cls.package, cls.root)

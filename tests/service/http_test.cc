@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/service/http.h"
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+namespace pendulum::http_test {
+namespace {
+
+TEST(Field, IsFoundWhateverTheCaseOfItsName) {
+  const HttpRequest request = {"GET", "/", {{"Host", "a"}, {"cOnTent-TYPE", "text/csv"}}, ""};
+  EXPECT_EQ(request.Field("Content-Type"), "text/csv");
+  EXPECT_EQ(request.Field("content-type"), "text/csv");
+  EXPECT_EQ(request.Field("HOST"), "a");
+}
+
+TEST(Field, ThatIsNotThereIsNone) {
+  const HttpRequest request = {"GET", "/", {{"Host", ""}}, ""};
+  EXPECT_EQ(request.Field("Accept"), std::nullopt);
+  EXPECT_EQ(request.Field("Hos"), std::nullopt);
+  EXPECT_EQ(request.Field("Hosts"), std::nullopt);
+  EXPECT_EQ(request.Field(""), std::nullopt);
+  EXPECT_EQ(request.Field("Host"), "") << "which is there";
+}
+
+TEST(Field, ThatComesTwiceIsTheFirst) {
+  const HttpRequest request = {"GET", "/", {{"X", "1"}, {"x", "2"}}, ""};
+  EXPECT_EQ(request.Field("x"), "1");
+}
+
+TEST(Field, HasOnlyLettersOfTwoCases) {  // RFC 9110, section 5.1: '@' and '`' are 0x20 apart as 'A' and 'a' are
+  const HttpRequest request = {"GET", "/", {{"^", "1"}}, ""};
+  EXPECT_EQ(request.Field("~"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace pendulum::http_test
