@@ -87,13 +87,13 @@ TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamaged) {
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
 }
 
-/// Writes over all pages of a store but the first two, which are what Open looks at.
+/// Writes over the last quarter of a store, behind what Open looks at.
 void Damage(const fs::path& store) {
   constexpr std::size_t kPage = 4096;
-  const std::size_t half = fs::file_size(store) / kPage / 2 * kPage;  // the first says which tables there are
+  const std::size_t end = 3 * fs::file_size(store) / kPage / 4 * kPage;
   std::fstream file(store, std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(static_cast<std::streamoff>(half));
-  file << std::string(fs::file_size(store) - half, '\x5a');
+  file.seekp(static_cast<std::streamoff>(end));
+  file << std::string(fs::file_size(store) - end, '\x5a');
 }
 
 TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamagedFartherBack) {
