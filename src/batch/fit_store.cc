@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -28,7 +29,8 @@ using fit_store::kListedColumns;
 constexpr int kMostListed = 1000;
 
 /// How long an answer is known to those who ask again.
-constexpr const char* kForgetAnswers = "DELETE FROM answers WHERE datetime(created) < datetime('now', '-1 day')";
+constexpr const char* kForgetAnswers =
+    "DELETE FROM answers WHERE created < strftime('%Y-%m-%dT%H:%M:%SZ', 'now', '-1 day')";
 
 tl::unexpected<Status> Unknown(const std::string& what, const std::string& id) {
   return Error(StatusCode::kNotFound, "there is no " + what + " " + id + "; it may have been deleted");
@@ -55,8 +57,8 @@ Result<FileHashes> HashesOf(const RunFiles& files) {
 }  // namespace
 
 struct FitStore::State {
-  State(Store writing, Store reading, StoreLock held)
-      : writer(std::move(writing)), reader(std::move(reading)), lock(std::move(held)) {}
+  State(StoreLock held, Store writing, Store reading)
+      : lock(std::move(held)), writer(std::move(writing)), reader(std::move(reading)) {}
 
   /// Does the work in the transaction that is open, all or nothing of it, and returns once that is on the disk.
   template <typename Work>
@@ -70,7 +72,6 @@ struct FitStore::State {
   }
 
   Result<void> WaitUntilCommitted(std::unique_lock<std::mutex>& held);
-  void EndRound(const Result<void>& done);
   Result<void> AddRun(const FitOrder& order, const FileHashes& hashes, const std::optional<std::int64_t>& batch);
   void KeepAnswer(const std::optional<RequestKey>& key, const std::string& location, const std::string& created);
 
@@ -80,13 +81,16 @@ struct FitStore::State {
     Result<void> done;
   };
 
+  Result<void> TryCommit();
+  void EndRound(Result<void> done, std::shared_ptr<Round> next);
+
+  StoreLock lock;          // first, so that it is held as long as the file is open
   std::mutex write_mutex;  // of all below up to the reader
   Store writer;
   std::shared_ptr<Round> round = std::make_shared<Round>();
   std::condition_variable over;
   std::mutex read_mutex;  // of the reader
   Store reader;
-  StoreLock lock;
 };
 
 template <typename Work>
@@ -102,27 +106,37 @@ Result<void> FitStore::State::Write(const Work& work) {
   });
   if (done) return WaitUntilCommitted(held);
   // A disk that is full may have undone what others wait for, too.
-  if (::sqlite3_get_autocommit(writer.database().getHandle()) != 0) EndRound(done);
+  if (::sqlite3_get_autocommit(writer.database().getHandle()) != 0) EndRound(done, std::make_shared<Round>());
   return done;
 }
 
 /// The first of those who wait commits for all whose work is done until it comes to that.
 Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& held) {
   const std::shared_ptr<Round> mine = round;
+  auto next = std::make_shared<Round>();  // while nobody waits for this one yet
   if (!std::exchange(mine->has_committer, true)) {
     constexpr std::chrono::microseconds kGathering{300};  // short beside a commit and beside a fit
     over.wait_for(held, kGathering, [&] { return mine->is_over; });
-    if (!mine->is_over) EndRound(writer.Commit());
+    if (!mine->is_over) EndRound(TryCommit(), std::move(next));
   }
   over.wait(held, [&] { return mine->is_over; });
   return mine->done;
 }
 
-void FitStore::State::EndRound(const Result<void>& done) {
+/// Whatever goes wrong, those who wait are told.
+Result<void> FitStore::State::TryCommit() {
+  try {
+    return writer.Commit();
+  } catch (const std::exception& error) {
+    return Error(StatusCode::kInternal, std::string("internal error: ") + error.what());
+  }
+}
+
+void FitStore::State::EndRound(Result<void> done, std::shared_ptr<Round> next) {
   if (!done) writer.Rollback();
+  round->done = std::move(done);
   round->is_over = true;
-  round->done = done;
-  round = std::make_shared<Round>();
+  round = std::move(next);
   over.notify_all();
 }
 
@@ -175,7 +189,7 @@ Result<std::unique_ptr<FitStore>> FitStore::Open(const std::filesystem::path& pa
   if (!writer) return tl::unexpected(writer.error());
   auto reader = Store::Open(path, Store::Mode::kRead);
   if (!reader) return tl::unexpected(reader.error());
-  auto state = std::make_unique<State>(*std::move(writer), *std::move(reader), *std::move(lock));
+  auto state = std::make_unique<State>(*std::move(lock), *std::move(writer), *std::move(reader));
   return std::make_unique<FitStore>(std::move(state));
 }
 
@@ -226,6 +240,8 @@ Result<void> FitStore::DeleteFit(const std::string& id) {
     const std::int64_t run = find.getColumn(0).getInt64();
     find.reset();
     fit_store::DeleteRuns(database, "run = " + std::to_string(run));
+    SQLite::Statement forget(database, "DELETE FROM answers WHERE location = ?");
+    sqlite::Bind(forget, "/v1/fits/" + id).exec();
     return {};
   });
 }
@@ -238,6 +254,8 @@ Result<void> FitStore::DeleteBatch(const std::string& id) {
     find.reset();
     fit_store::DeleteRuns(database, "batch = " + batch);
     database.exec("DELETE FROM batches WHERE batch = " + batch);
+    SQLite::Statement forget(database, "DELETE FROM answers WHERE location = ?");
+    sqlite::Bind(forget, "/v1/batches/" + id).exec();
     return {};
   });
 }
@@ -265,15 +283,10 @@ Result<KeptFit> FitStore::Find(const std::string& id) {
 
 Result<std::vector<ListedFit>> FitStore::List(const FitFilter& filter) {
   return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedFit>> {
-    // An empty text, or NULL, asks for nothing. instr knows no wildcards.
-    SQLite::Statement rows(database, std::string(kListedColumns) + R"sql(
-WHERE run < coalesce(?1, run + 1) AND (?2 = '' OR batches.id = ?2) AND (?3 = '' OR instr(lower(path), lower(?3)) > 0)
-  AND (?4 = '' OR datetime(requests.created) >= datetime(?4))
-  AND ((?5 = '' AND ?6 = '') OR EXISTS (SELECT 1 FROM fits WHERE fits.run = requests.run
-    AND (?5 = '' OR fits.model = ?5) AND (?6 = '' OR fits.status = ?6)))
-  ORDER BY run DESC LIMIT ?7)sql");
-    sqlite::Bind(rows, filter.before, filter.batch, filter.name, filter.since, filter.model, filter.status,
-                 std::min(filter.limit, kMostListed));
+    SQLite::Statement rows(database, kListedColumns + fit_store::ConditionsOf(filter) + " ORDER BY run DESC LIMIT :limit");
+    rows.bind(":limit", std::min(filter.limit, kMostListed));
+    if (filter.before) rows.bind(":before", *filter.before);
+    for (const auto& [name, value] : fit_store::TextConditions(filter)) rows.bind(name, value);
     std::vector<ListedFit> fits;
     while (rows.executeStep()) {
       fits.push_back(FitOf(rows));
@@ -326,7 +339,9 @@ Result<std::vector<FitStore::Waiting>> FitStore::WaitingRuns() {
 
 Result<std::optional<KnownAnswer>> FitStore::FindAnswer(const std::string& key) {
   return state_->Read([&](SQLite::Database& database) -> Result<std::optional<KnownAnswer>> {
-    SQLite::Statement row(database, "SELECT request_sha256, location FROM answers WHERE key = ?");
+    SQLite::Statement row(database,
+                          "SELECT request_sha256, location FROM answers WHERE key = ? AND "
+                          "created >= strftime('%Y-%m-%dT%H:%M:%SZ', 'now', '-1 day')");
     if (!sqlite::Bind(row, key).executeStep()) return std::nullopt;
     return KnownAnswer{sqlite::Text(row, 0), sqlite::Text(row, 1)};
   });

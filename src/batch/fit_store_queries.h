@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "batch/sqlite.h"
@@ -24,6 +25,33 @@ SELECT fits.model, status, reason, residual_unit, rms_residual, name, unit, esti
 inline constexpr const char* kBatches = R"sql(
 SELECT batches.batch, batches.id, batches.created, count(run), count(exit_code), count(reason)
   FROM batches LEFT JOIN requests USING(batch) LEFT JOIN runs USING(run) )sql";
+
+/// The texts that a filter asks for, by the names that they have in ConditionsOf.
+inline std::vector<std::pair<std::string, std::string>> TextConditions(const FitFilter& filter) {
+  std::vector<std::pair<std::string, std::string>> texts = {{":batch", filter.batch},
+                                                            {":name", filter.name},
+                                                            {":since", filter.since},
+                                                            {":model", filter.model},
+                                                            {":status", filter.status}};
+  std::erase_if(texts, [](const auto& text) { return text.second.empty(); });
+  return texts;
+}
+
+/// Those of a filter that are asked for, so that indices serve where they can; instr knows no wildcards.
+inline std::string ConditionsOf(const FitFilter& filter) {
+  std::string conditions = "WHERE true";
+  if (filter.before) conditions += " AND run < :before";
+  if (!filter.batch.empty()) {
+    conditions += " AND requests.batch = (SELECT batch FROM batches WHERE id = :batch)";
+  }
+  if (!filter.name.empty()) conditions += " AND instr(lower(path), lower(:name)) > 0";
+  if (!filter.since.empty()) conditions += " AND datetime(requests.created) >= datetime(:since)";
+  if (filter.model.empty() && filter.status.empty()) return conditions;
+  conditions += " AND EXISTS (SELECT 1 FROM fits WHERE fits.run = requests.run";
+  if (!filter.model.empty()) conditions += " AND fits.model = :model";
+  if (!filter.status.empty()) conditions += " AND fits.status = :status";
+  return conditions + ")";
+}
 
 inline std::optional<double> Number(const SQLite::Statement& row, int column) {
   return row.getColumn(column).isNull() ? std::nullopt : std::optional(row.getColumn(column).getDouble());

@@ -20,7 +20,7 @@ SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_
     batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
   FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
 
-// Rows are numbered as they come, so that the number is a position behind all others.
+// Runs are numbered as they come.
 inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";

@@ -83,6 +83,8 @@ CREATE INDEX requests_of_calibration ON requests(calibration);
 
 CREATE TABLE answers(  -- where the answer is to what a client may ask again: its idempotency key, and what it sent
   key TEXT PRIMARY KEY, request_sha256 TEXT NOT NULL, location TEXT NOT NULL, created TEXT NOT NULL) WITHOUT ROWID;
+CREATE INDEX answers_by_age ON answers(created);
+CREATE INDEX answers_by_place ON answers(location);
 )sql"};
 
 }  // namespace pendulum

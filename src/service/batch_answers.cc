@@ -50,45 +50,46 @@ std::vector<FitOrder> OrdersOf(FitRequest request) {
 /// Events about a batch from a place on: what is done of it, then what becomes so.
 class BatchEvents {
  public:
-  BatchEvents(std::shared_ptr<const BatchProgress> progress, std::size_t place)
-      : progress_(std::move(progress)), place_(place) {
-    for (std::size_t before = 0; before < place_; ++before) Count(before);
+  BatchEvents(std::shared_ptr<const BatchProgress> progress, std::size_t place) : progress_(std::move(progress)) {
+    while (place_ < place && Advance()) {
+    }
   }
 
   EventText Next() {
     constexpr int kMostAtOnce = 500;
     EventText events;
     if (progress_->is_deleted()) return {"", true};
-    for (int i = 0; i < kMostAtOnce && place_ < progress_->runs(); ++i) {
-      const auto run = Count(place_);
+    for (int i = 0; i < kMostAtOnce && place_ < progress_->places(); ++i) {
+      const auto run = Advance();
       if (!run) return events;
-      events.text += FitEvent(*run);
+      if (!run->is_gone) events.text += FitEvent(*run);
     }
-    if (place_ < progress_->runs()) return events;
-    events.text +=
-        "event: done\ndata: " + JsonText({{"runs", progress_->runs()}, {"done", place_}, {"failed", failed_}}) + "\n\n";
+    if (place_ < progress_->places()) return events;
+    events.text += "event: done\ndata: " + JsonText({{"runs", done_}, {"done", done_}, {"failed", failed_}}) + "\n\n";
     events.is_last = true;
     return events;
   }
 
  private:
-  std::optional<BatchProgress::Run> Count(std::size_t place) {
-    auto run = progress_->DoneAt(place);
+  /// The run that is next, if it is done.
+  std::optional<BatchProgress::Run> Advance() {
+    auto run = progress_->DoneAt(place_);
     if (!run) return run;
-    place_ = std::max(place_, place + 1);
+    ++place_;
+    if (run->is_gone) return run;
+    ++done_;
     if (!run->reason.empty()) ++failed_;
     return run;
   }
 
   std::string FitEvent(const BatchProgress::Run& run) const {
-    const Json data = {{"id", run.id},   {"name", run.name},  {"exit_code", *run.exit_code}, {"reason", run.reason},
-                       {"done", place_}, {"failed", failed_}, {"runs", progress_->runs()}};
+    const Json data = {{"id", run.id},  {"name", run.name},  {"exit_code", *run.exit_code}, {"reason", run.reason},
+                       {"done", done_}, {"failed", failed_}, {"runs", progress_->runs()}};
     return "id: " + std::to_string(place_) + "\nevent: fit\ndata: " + JsonText(data) + "\n\n";
   }
 
   std::shared_ptr<const BatchProgress> progress_;
-  std::size_t place_;
-  std::size_t failed_ = 0;
+  std::size_t place_ = 0, done_ = 0, failed_ = 0;
 };
 
 /// Of a batch that nobody works on any more.
@@ -99,7 +100,7 @@ Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& sta
   std::vector<BatchProgress::Run> runs;
   runs.reserve(fits->size());
   for (ListedFit& fit : *fits) {
-    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code.value_or(0), std::move(fit.reason)});
+    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
   }
   return std::make_shared<const BatchProgress>(std::move(runs));
 }
@@ -118,7 +119,8 @@ HttpResponse PostBatch(ServiceState& state, const Call& call) {
   return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
     auto request = ParseBatchRequest(call.http, call.target, state.options.limits);
     if (!request) return ProblemResponse(request.error());
-    if (state.queue.waiting() + request->data.size() > state.options.limits.max_runs) {
+    const std::size_t runs = request->data.size();
+    if (!state.queue.Reserve(runs, state.options.limits.max_runs)) {
       return ProblemResponse(
           RetryLater(ProblemKind::kTooManyRequests, std::to_string(state.queue.waiting()) +
                                                         " recordings of batches wait already, and this service keeps " +
@@ -127,6 +129,7 @@ HttpResponse PostBatch(ServiceState& state, const Call& call) {
     const std::vector<FitOrder> orders = OrdersOf(*std::move(request));
     const std::string id = MakeId();
     if (const auto kept = state.store->AddBatch(id, orders.front().created, orders, key); !kept) {
+      state.queue.Release(runs);
       return ProblemAnswer(kept.error());
     }
     state.queue.Add(id, orders);
@@ -161,7 +164,7 @@ HttpResponse GetBatchEvents(ServiceState& state, const Call& call) {
     if (!done) return ProblemAnswer(done.error());
     progress = *std::move(done);
   }
-  const std::size_t last = std::min(LastEvent(call.http), progress->runs());
+  const std::size_t last = std::min(LastEvent(call.http), progress->places());
   HttpResponse response;
   response.events = [events = std::make_shared<BatchEvents>(std::move(progress), last)] { return events->Next(); };
   return response;

@@ -2,7 +2,8 @@
 #include "service/batch_queue.h"
 
 #include <algorithm>
-#include <chrono>
+#include <exception>
+#include <system_error>
 #include <utility>
 
 #include <sys/resource.h>
@@ -16,7 +17,7 @@ namespace {
 
 /// On Linux this is of the calling thread alone.
 void BeNice() {
-  constexpr int kNiceness = 10;
+  constexpr int kNiceness = 5;
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
 }
 
@@ -26,18 +27,32 @@ BatchProgress::BatchProgress(std::vector<Run> runs) : runs_(std::move(runs)) {
   for (std::size_t place = 0; place < runs_.size(); ++place) places_.emplace(runs_[place].id, place);
 }
 
+BatchProgress::Run* BatchProgress::Find(const std::string& id) {
+  const auto found = places_.find(id);
+  return found == places_.end() ? nullptr : &runs_[found->second];
+}
+
 void BatchProgress::Done(const std::string& id, int exit_code, const std::string& reason) {
   const std::scoped_lock lock(mutex_);
-  const auto found = places_.find(id);
-  if (found == places_.end()) return;
-  Run& run = runs_[found->second];
-  run.exit_code = exit_code;
-  run.reason = reason;
+  Run* run = Find(id);
+  if (run == nullptr) return;
+  run->exit_code = exit_code;
+  run->reason = reason;
+}
+
+void BatchProgress::Gone(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  if (Run* run = Find(id); run != nullptr) run->is_gone = true;
+}
+
+std::size_t BatchProgress::runs() const {
+  const std::scoped_lock lock(mutex_);
+  return static_cast<std::size_t>(std::ranges::count(runs_, false, &Run::is_gone));
 }
 
 std::optional<BatchProgress::Run> BatchProgress::DoneAt(std::size_t place) const {
   const std::scoped_lock lock(mutex_);
-  while (done_ < runs_.size() && runs_[done_].exit_code) ++done_;
+  while (done_ < runs_.size() && (runs_[done_].exit_code || runs_[done_].is_gone)) ++done_;
   return place < done_ ? std::optional(runs_[place]) : std::nullopt;
 }
 
@@ -51,17 +66,15 @@ bool BatchProgress::is_deleted() const {
   return is_deleted_;
 }
 
-BatchQueue::BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics, int threads)
-    : store_(store), fitter_(fitter), metrics_(metrics) {
-  for (int i = 0; i < ThreadsOrCores(threads); ++i) threads_.emplace_back([this] { Work(); });
-}
+BatchQueue::BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics)
+    : store_(store), fitter_(fitter), metrics_(metrics) {}
 
 BatchQueue::~BatchQueue() {
   Stop();
   fitter_.StopAll();
 }
 
-Result<void> BatchQueue::Begin() {
+Result<void> BatchQueue::Begin(int threads) {
   auto waiting = store_.WaitingRuns();
   if (!waiting) return tl::unexpected(waiting.error());
   std::map<std::string, std::size_t, std::less<>> left;
@@ -72,22 +85,46 @@ Result<void> BatchQueue::Begin() {
     if (!kept) return tl::unexpected(kept.error());
     std::vector<BatchProgress::Run> all;
     for (ListedFit& fit : *kept) {
-      all.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason)});
+      all.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
     }
     batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(std::move(all)), runs});
   }
   waiting_.insert(waiting_.end(), waiting->begin(), waiting->end());
-  changed_.notify_all();
+  return StartThreads(threads);
+}
+
+Result<void> BatchQueue::StartThreads(int threads) {
+  try {
+    for (int i = 0; i < ThreadsOrCores(threads); ++i) threads_.emplace_back([this] { Work(); });
+  } catch (const std::system_error& error) {
+    if (threads_.empty()) {
+      return Error(StatusCode::kTryAgain, std::string("no thread can be started, ") + error.what() +
+                                              "; let other processes end, or allow this one more");
+    }
+  }
   return {};
+}
+
+bool BatchQueue::Reserve(std::size_t runs, std::size_t most) {
+  const std::scoped_lock lock(mutex_);
+  if (waiting_.size() + reserved_ + runs > most) return false;
+  reserved_ += runs;
+  return true;
+}
+
+void BatchQueue::Release(std::size_t runs) {
+  const std::scoped_lock lock(mutex_);
+  reserved_ -= runs;
 }
 
 void BatchQueue::Add(const std::string& batch, const std::vector<FitOrder>& orders) {
   std::vector<BatchProgress::Run> runs;
   runs.reserve(orders.size());
-  for (const FitOrder& order : orders) runs.push_back({order.id, order.files.data.name, std::nullopt, ""});
+  for (const FitOrder& order : orders) runs.push_back({order.id, order.files.data.name, std::nullopt, "", false});
   const std::scoped_lock lock(mutex_);
   batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(std::move(runs)), orders.size()});
   for (const FitOrder& order : orders) waiting_.push_back({order.id, batch});
+  reserved_ -= orders.size();
   changed_.notify_all();
 }
 
@@ -119,7 +156,16 @@ void BatchQueue::Stop() {
 
 void BatchQueue::Work() {
   BeNice();
-  while (const auto run = Take()) FitOne(*run);
+  constexpr std::chrono::seconds kShortest{1}, kLongest{60};
+  std::chrono::seconds pause = kShortest;
+  while (const auto run = Take()) {
+    if (TryOne(*run)) {
+      pause = kShortest;
+    } else {
+      PutBack(*run, pause);
+      pause = std::min(2 * pause, kLongest);
+    }
+  }
 }
 
 std::optional<FitStore::Waiting> BatchQueue::Take() {
@@ -131,9 +177,30 @@ std::optional<FitStore::Waiting> BatchQueue::Take() {
   return run;
 }
 
-void BatchQueue::FitOne(const FitStore::Waiting& run) {
+/// Whether it is settled. An exception is our bug or the memory's end, and costs this run only.
+bool BatchQueue::TryOne(const FitStore::Waiting& run) {
+  try {
+    return FitOne(run);
+  } catch (const std::exception& error) {
+    try {
+      RunOutcome outcome;
+      outcome.exit_code = ExitCode(StatusCode::kInternal);
+      outcome.reason = std::string("internal error: ") + error.what();
+      return Keep(run, outcome);
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+}
+
+/// Whether it is settled: kept, deleted meanwhile, or left for the next start.
+bool BatchQueue::FitOne(const FitStore::Waiting& run) {
   auto kept = store_.Find(run.id);
-  if (!kept) return Finish(run, ExitCode(kept.error().code), kept.error().message);  // deleted meanwhile, or a bad disk
+  if (!kept) {
+    const bool is_gone = kept.error().code == StatusCode::kNotFound;
+    if (is_gone) Settle(run, [&](BatchProgress& progress) { progress.Gone(run.id); });
+    return is_gone;
+  }
   FittedRun fitted;
   const auto begin = std::chrono::steady_clock::now();
   if (const auto options = OptionsOf(kept->order); options) {
@@ -144,19 +211,40 @@ void BatchQueue::FitOne(const FitStore::Waiting& run) {
   }
   {
     const std::scoped_lock lock(mutex_);
-    if (is_stopping_ && fitted.is_stopped) return;
+    if (is_stopping_ && fitted.is_stopped) return true;
   }
-  const auto stored = store_.Put(run.id, fitted.outcome);
   metrics_.CountFit("batch", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
-  Finish(run, stored ? fitted.outcome.exit_code : ExitCode(stored.error().code),
-         stored ? fitted.outcome.reason : stored.error().message);
+  return Keep(run, fitted.outcome);
 }
 
-void BatchQueue::Finish(const FitStore::Waiting& run, int exit_code, const std::string& reason) {
+bool BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
+  const auto stored = store_.Put(run.id, outcome);
+  const bool is_gone = !stored && stored.error().code == StatusCode::kNotFound;
+  if (!stored && !is_gone) return false;
+  Settle(run, [&](BatchProgress& progress) {
+    if (is_gone) {
+      progress.Gone(run.id);
+    } else {
+      progress.Done(run.id, outcome.exit_code, outcome.reason);
+    }
+  });
+  return true;
+}
+
+/// The store cannot be had now; the run is the first again after a pause.
+void BatchQueue::PutBack(const FitStore::Waiting& run, std::chrono::seconds pause) {
+  std::unique_lock lock(mutex_);
+  if (!batches_.contains(run.batch)) return;
+  waiting_.push_front(run);
+  changed_.wait_for(lock, pause, [&] { return is_stopping_; });
+}
+
+template <typename Tell>
+void BatchQueue::Settle(const FitStore::Waiting& run, const Tell& tell) {
   const std::scoped_lock lock(mutex_);
   const auto found = batches_.find(run.batch);
   if (found == batches_.end()) return;
-  found->second.progress->Done(run.id, exit_code, reason);
+  tell(*found->second.progress);
   if (--found->second.left == 0) batches_.erase(found);
 }
 

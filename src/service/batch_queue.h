@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -26,22 +27,29 @@ class BatchProgress {
     std::string id, name;
     std::optional<int> exit_code;  ///< None: it waits.
     std::string reason;
+    bool is_gone = false;  ///< It was deleted before its turn came.
   };
 
   explicit BatchProgress(std::vector<Run> runs);
 
   void Done(const std::string& id, int exit_code, const std::string& reason);
+  void Gone(const std::string& id);
 
-  /// The run at a place, once it and all before it are done; none before that.
+  /// The run at a place, once it and all before it are done or gone; none before that.
   std::optional<Run> DoneAt(std::size_t place) const;
 
   /// There will be no more of it.
   void Delete();
   bool is_deleted() const;
 
-  std::size_t runs() const { return runs_.size(); }
+  std::size_t places() const { return runs_.size(); }
+
+  /// Those that are not gone.
+  std::size_t runs() const;
 
  private:
+  Run* Find(const std::string& id);
+
   mutable std::mutex mutex_;
   std::vector<Run> runs_;
   std::map<std::string, std::size_t, std::less<>> places_;  // of ids
@@ -50,20 +58,26 @@ class BatchProgress {
 };
 
 /// Works off the runs of batches that wait in the store, first come, first served, beside requests that want their
-/// answer at once and with less of the processor than these. Whatever ends it, what is in the store goes on next time.
+/// answer at once and with less of the processor than these. A store that cannot be had is asked again and again.
+/// Whatever ends it, what is in the store goes on next time.
 class BatchQueue {
  public:
-  BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics, int threads);
+  BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics);
   BatchQueue(const BatchQueue&) = delete;
   BatchQueue& operator=(const BatchQueue&) = delete;
   BatchQueue(BatchQueue&&) = delete;
   BatchQueue& operator=(BatchQueue&&) = delete;
   ~BatchQueue();
 
-  /// Takes up what waits in the store. Errors: of the store.
-  Result<void> Begin();
+  /// Takes up what waits in the store, once, with so many threads; 0: cores. Errors: of the store; kTryAgain: no thread
+  /// can be had.
+  Result<void> Begin(int threads);
 
-  /// Takes up a batch that has been stored.
+  /// Keeps room for so many runs, unless more than `most` would wait then; and gives it back.
+  bool Reserve(std::size_t runs, std::size_t most);
+  void Release(std::size_t runs);
+
+  /// Takes up a batch that has been stored, in the room that was kept for it.
   void Add(const std::string& batch, const std::vector<FitOrder>& orders);
 
   /// Passes over what waits of a batch.
@@ -78,10 +92,15 @@ class BatchQueue {
   void Stop();
 
  private:
+  Result<void> StartThreads(int threads);
   void Work();
   std::optional<FitStore::Waiting> Take();
-  void FitOne(const FitStore::Waiting& run);
-  void Finish(const FitStore::Waiting& run, int exit_code, const std::string& reason);
+  bool TryOne(const FitStore::Waiting& run);
+  bool FitOne(const FitStore::Waiting& run);
+  bool Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
+  void PutBack(const FitStore::Waiting& run, std::chrono::seconds pause);
+  template <typename Tell>
+  void Settle(const FitStore::Waiting& run, const Tell& tell);
 
   FitStore& store_;
   Fitter& fitter_;
@@ -94,6 +113,7 @@ class BatchQueue {
     std::size_t left = 0;  // runs that are not done
   };
   std::map<std::string, Batch, std::less<>> batches_;
+  std::size_t reserved_ = 0;  // runs that are not in the store yet
   bool is_stopping_ = false;
   std::vector<std::jthread> threads_;  // last, so that they end before the rest goes
 };

@@ -16,6 +16,7 @@
 #include "pendulum/recording/sensor.h"
 #include "pendulum/service/form_data.h"
 #include "pendulum/service/media_type.h"
+#include "service/escapes.h"
 
 namespace pendulum {
 namespace {
@@ -25,23 +26,32 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLongestName = 200;  // bytes
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
-bool IsControl(char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }
-
-/// What a client calls a file, without the folders that old browsers send along and what is no text.
-std::string NameOf(std::string filename_as_sent) {
-  std::ranges::replace_if(filename_as_sent, IsControl, ' ');
-  std::string_view filename = filename_as_sent;
+/// What a client calls a file, without the folders that old browsers send along and what no terminal should see.
+std::string NameOf(std::string_view filename) {
   const std::size_t slash = filename.find_last_of("/\\");
   if (slash != std::string_view::npos) filename.remove_prefix(slash + 1);
-  if (filename.empty()) return kUnnamed;
-  if (filename.size() <= kLongestName) return std::string(filename);
-  std::size_t end = kLongestName;
-  while (end > 0 && (static_cast<unsigned char>(filename[end]) & 0xC0U) == 0x80U) --end;  // within a UTF-8 character
-  return std::string(filename.substr(0, end));
+  std::string name;
+  while (!filename.empty()) {
+    const std::size_t length = std::max<std::size_t>(Utf8Length(filename), 1);
+    const std::string_view character = filename.substr(0, length);
+    filename.remove_prefix(length);
+    if (name.size() + length > kLongestName) break;
+    name += Utf8Length(character) == 0 || IsControl(character) ? "_" : character;
+  }
+  return name.empty() ? kUnnamed : name;
+}
+
+bool HasControl(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = Utf8Length(text);
+    if (length == 0 || IsControl(text.substr(0, length))) return true;
+    text.remove_prefix(length);
+  }
+  return false;
 }
 
 Result<void> CheckName(const std::string& name) {
-  if (std::ranges::any_of(name, IsControl)) {
+  if (HasControl(name)) {
     return Error(StatusCode::kInvalidArgument, "name " + Quoted(name) + " has control characters; leave them out");
   }
   if (!name.empty() && name.size() <= kLongestName) return {};

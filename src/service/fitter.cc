@@ -14,15 +14,6 @@
 namespace pendulum {
 namespace {
 
-/// An exception is our bug or the memory's end, and costs this run only.
-Result<FitRun> TryFit(const RunOptions& options, RunFiles files) {
-  try {
-    return FitBytes(options, std::move(files));
-  } catch (const std::exception& error) {
-    return Error(StatusCode::kInternal, std::string("internal error: ") + error.what());
-  }
-}
-
 std::string HashOf(const std::string& bytes) { return Sha256(bytes).value_or(""); }
 
 std::string HashOf(const std::optional<NamedBytes>& file) { return file ? HashOf(file->bytes) : ""; }
@@ -41,26 +32,38 @@ Status TookTooLong(std::chrono::milliseconds limit) {
 
 }  // namespace
 
+/// An exception is our bug or the memory's end, and costs this run only.
 FittedRun Fitter::Fit(const RunOptions& asked, RunFiles files) {
+  FittedRun fitted;
+  try {
+    fitted.outcome.provenance = ProvenanceOf(asked, files);
+    fitted.outcome.models = asked.models;
+    FitInto(asked, std::move(files), fitted);
+  } catch (const std::exception& error) {
+    fitted.error = {StatusCode::kInternal, std::string("internal error: ") + error.what()};
+  }
+  if (!fitted.error) return fitted;
+  fitted.run = nullptr;
+  fitted.outcome.result = nullptr;
+  fitted.outcome.exit_code = ExitCode(fitted.error->code);
+  fitted.outcome.reason = fitted.error->message;
+  return fitted;
+}
+
+void Fitter::FitInto(const RunOptions& asked, RunFiles files, FittedRun& fitted) {
   const TimeLimit::Watch watch(limit_);
   RunOptions options = asked;
   options.fit.stop = watch.token();
-  FittedRun fitted;
-  fitted.outcome.provenance = ProvenanceOf(asked, files);
-  fitted.outcome.models = asked.models;
-  Result<FitRun> run = TryFit(options, std::move(files));
+  Result<FitRun> run = FitBytes(options, std::move(files));
   fitted.is_stopped = watch.token().stop_requested() && !run;
   if (!run) {
     fitted.error = fitted.is_stopped ? TookTooLong(limit()) : run.error();
-    fitted.outcome.exit_code = ExitCode(fitted.error->code);
-    fitted.outcome.reason = fitted.error->message;
-    return fitted;
+    return;
   }
   run->report.data.path.clear();
   fitted.outcome.exit_code = ExitCodeOf(*run);
   fitted.outcome.result = ToJson(run->report);
   fitted.run = std::make_shared<const FitRun>(*std::move(run));
-  return fitted;
 }
 
 Result<std::shared_ptr<const FitRun>> Fitter::FitOf(const std::string& id, const RunOptions& options, RunFiles files) {

@@ -53,6 +53,7 @@ class Fitter {
     Eigen::Index samples;
   };
 
+  void FitInto(const RunOptions& asked, RunFiles files, FittedRun& fitted);
   std::shared_ptr<const FitRun> Find(const std::string& id);
 
   TimeLimit limit_;

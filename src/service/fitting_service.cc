@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "pendulum/service/problem.h"
@@ -54,8 +55,14 @@ FittingService::~FittingService() = default;
 
 Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptions& options,
                                                               std::unique_ptr<FitStore> store) {
-  auto state = std::make_unique<ServiceState>(options, std::move(store));
-  if (auto begun = state->queue.Begin(); !begun) return tl::unexpected(begun.error());
+  std::unique_ptr<ServiceState> state;
+  try {
+    state = std::make_unique<ServiceState>(options, std::move(store));
+  } catch (const std::system_error& error) {
+    return Error(StatusCode::kTryAgain,
+                 std::string("the service cannot start, ") + error.what() + "; let other processes end");
+  }
+  if (auto begun = state->queue.Begin(options.threads); !begun) return tl::unexpected(begun.error());
   return std::make_unique<FittingService>(std::move(state));
 }
 
@@ -112,6 +119,9 @@ void FittingService::Stop() {
   state_->queue.Stop();
 }
 
-void FittingService::StopFits() { state_->fitter.StopAll(); }
+void FittingService::StopFits() {
+  state_->fitter.StopAll();
+  state_->batch_fitter.StopAll();
+}
 
 }  // namespace pendulum

@@ -16,7 +16,6 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
-#include "pendulum/batch/source.h"
 #include "service/live_points.h"
 #include "service/live_run.h"
 #include "service/run_tail.h"
@@ -24,6 +23,7 @@
 namespace pendulum {
 namespace {
 
+constexpr std::size_t kMostLiveBytes = std::size_t{64} << 20;  // an answer is in memory
 constexpr std::chrono::milliseconds kLivePollInterval{50};
 
 std::string LiveStatusJson(const LiveStatus& status) {
@@ -58,7 +58,7 @@ Result<std::string> WholeLinesOf(int descriptor, const std::string& name) {
   const bool is_known = ::fstat(descriptor, &status) == 0;
   std::size_t room = (is_known ? static_cast<std::size_t>(status.st_size) : 0) + 1, size = 0;
   std::string bytes;
-  while (room <= kMostRecordingBytes + 1) {
+  while (room <= kMostLiveBytes + 1) {
     bytes.resize(room);
     const ssize_t added = ::read(descriptor, bytes.data() + size, room - size);
     if (added <= 0) {
@@ -69,7 +69,7 @@ Result<std::string> WholeLinesOf(int descriptor, const std::string& name) {
     size += static_cast<std::size_t>(added);
     if (size == room) room += kBlock;
   }
-  return Fault(name, "it is larger than 512 MiB; fit a window of the file itself");
+  return Fault(name, "it is larger than 64 MiB; fit the file itself");
 }
 
 Result<std::string> WholeLinesOf(const std::filesystem::path& run) {

@@ -96,8 +96,8 @@ void Server::State::Accept() {
   acceptor.async_accept([this](const ErrorCode& code, tcp::socket socket) {
     if (!acceptor.is_open()) return;
     if (!code) {
-      Take(std::move(socket));
-      return Accept();
+      Accept();  // first, for what throws below costs this connection only
+      return Take(std::move(socket));
     }
     pause.expires_after(kAfterFailedAccept);
     pause.async_wait([this](const ErrorCode&) {

@@ -45,14 +45,18 @@ struct ServiceState {
       : options(std::move(given)),
         store(std::move(kept)),
         fitter(options.fit_time),
-        queue(*store, fitter, metrics, options.threads) {
+        batch_fitter(kBatchPatience * options.fit_time),
+        queue(*store, batch_fitter, metrics) {
     if (!options.live.empty()) live.emplace(options.live);
   }
+
+  /// Runs of batches leave the processor to requests, so they may take longer.
+  static constexpr int kBatchPatience = 4;
 
   ServiceOptions options;
   std::unique_ptr<FitStore> store;
   ServiceMetrics metrics;
-  Fitter fitter;
+  Fitter fitter, batch_fitter;
   KeysUnderWay keys;
   std::optional<LiveRecording> live;
   std::atomic<bool> is_stopping = false;

@@ -2,6 +2,7 @@
 // Serves fits over HTTP, and the page: flags, signals, log and exit codes.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -106,27 +107,48 @@ sigset_t EndingSignals() {
 
 /// Waits for SIGINT or SIGTERM, which all threads block, and stops; fits that then take longer than they may are
 /// stopped too. At the second signal the process ends at once.
-void StopAtSignal(Server& server, FittingService& service, int stop_seconds) {
-  const auto wait = [&server, &service, stop_seconds] {
+class SignalWatch {
+ public:
+  SignalWatch(Server& server, FittingService& service, int stop_seconds)
+      : thread_([this, &server, &service, stop_seconds] { Wait(server, service, stop_seconds); }) {}
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+  SignalWatch(SignalWatch&&) = delete;
+  SignalWatch& operator=(SignalWatch&&) = delete;
+
+  ~SignalWatch() {
+    is_over_ = true;
+    ::pthread_kill(thread_.native_handle(), SIGTERM);
+    thread_.join();
+  }
+
+ private:
+  void Wait(Server& server, FittingService& service, int stop_seconds) {
     const sigset_t signals = EndingSignals();
     int signal = 0;
     ::sigwait(&signals, &signal);
+    if (is_over_) return;
     SayAtTime("stopping");
     service.Stop();
     server.Stop();
     const timespec patience{stop_seconds, 0};
-    if (::sigtimedwait(&signals, nullptr, &patience) >= 0) ::_exit(kInterrupted);
-    service.StopFits();
-    ::sigwait(&signals, &signal);
-    ::_exit(kInterrupted);
-  };
-  std::thread(wait).detach();  // it waits as long as the process lives
-}
+    if (::sigtimedwait(&signals, nullptr, &patience) < 0) {
+      service.StopFits();
+      ::sigwait(&signals, &signal);
+    }
+    if (!is_over_) ::_exit(kInterrupted);
+  }
+
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
 
 /// One line for each answer, without what was sent.
 void Log(const Answered& answered) {
   constexpr std::size_t kMostShown = 200;
-  const std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMostShown));
+  std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMostShown));
+  std::ranges::replace_if(
+      path, [](char c) { return c <= ' ' || c > '~'; }, '?');  // no terminal is to obey it
   SayAtTime(answered.peer + " " + answered.method + " " + path + " " + std::to_string(answered.status) + " " +
             std::to_string(answered.bytes) + " B " + std::to_string(answered.time.count() / 1000) + " ms");
 }
@@ -154,7 +176,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   });
   if (!server) return tl::unexpected(server.error());
   (*service)->CountServer([&] { return (*server)->Count(); });
-  StopAtSignal(**server, **service, flags.stop_seconds);
+  const SignalWatch watch(**server, **service, flags.stop_seconds);
   std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << std::endl;
   (*server)->Run();
   return 0;

@@ -50,6 +50,15 @@ Result<void> CheckAudience(const ServePendulumFlags& flags, const std::string& t
                  "PENDULUM_TOKEN; 127.0.0.1 is this machine alone");
 }
 
+Result<void> CheckHosts(const ServePendulumFlags& flags) {
+  constexpr std::string_view kOfHosts = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._[]:";
+  for (const std::string& host : Split(flags.allowed_hosts, ',')) {
+    if (!host.empty() && host.find_first_not_of(kOfHosts) == std::string::npos) continue;
+    return BadFlag("--allowed_hosts names '" + host + "'; it must be a host such as lab.example or lab.example:8443");
+  }
+  return {};
+}
+
 ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
   constexpr std::size_t kMegabyte = std::size_t{1} << 20U;
   ServerOptions server;
@@ -86,6 +95,7 @@ Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& 
     return BadFlag("--store is missing: the file that keeps the fits, which is made if it is not there");
   }
   if (const auto checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckHosts(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckAudience(flags, token); !checked) return tl::unexpected(checked.error());
   return ServePendulumOptions{flags.store, ServerOptionsOf(flags), ServiceOptionsOf(flags, token)};
 }

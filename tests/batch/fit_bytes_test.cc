@@ -93,7 +93,7 @@ TEST(FitBytes, SaysWhichOfThemIsAtFaultAndWhere) {
   const std::string good = small_batch::RecordingText(1);
   const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
   EXPECT_EQ(data.code, StatusCode::kDataLoss);
-  EXPECT_THAT(data.message, StartsWith("a.csv:2:3: "));
+  EXPECT_THAT(data.message, StartsWith("a.csv:3:1: "));
   const Status rig = FaultOf(options, {{"a.csv", good}, NamedBytes{"my rig", "{"}, {}});
   EXPECT_EQ(rig.code, StatusCode::kDataLoss);
   EXPECT_THAT(rig.message, StartsWith("my rig:1:"));

@@ -369,7 +369,7 @@ TEST_F(LiveRecordingTest, RefusesToGiveMoreThanAFitReads) {
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 512 MiB; fit a window of the file itself");
+  EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 64 MiB; fit the file itself");
 }
 
 TEST_F(LiveRecordingTest, IsForAnyThread) {

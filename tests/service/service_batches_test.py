@@ -5,6 +5,7 @@
 import csv
 import http.client
 import json
+import resource
 import signal
 import sqlite3
 import threading
@@ -261,6 +262,16 @@ class Survival(Batched):
             self.assertEqual(server.get(place).body, body, place)
         self.assertLessEqual({status for _, status, _, _ in answers}, {200, 429})
         self.check_store(server)
+
+    def test_a_disk_that_is_full_for_a_while_costs_no_run(self):
+        names = self.simulate(12)
+        server = self.serve()
+        batch = self.post_batch(server, names, "?model=all")
+        resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+        self.assertEqual(server.post_csv("/v1/fits", (self.folder / names[0]).read_bytes()).status, 507)
+        self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
+        resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        self.check_complete(server, batch, lambda name: self.result(name, "--model", "all"))
 
     def check_store(self, server):
         """That the tool of batches reads what a server leaves."""

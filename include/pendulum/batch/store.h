@@ -106,7 +106,8 @@ class Store {
   /// Forgets what came since the last Commit.
   void Rollback();
 
-  /// Adds a run that belongs to no manifest; its position is behind those of all others. kInternal: the id is known.
+  /// Adds a run that belongs to no manifest; its position is its number, as
+  /// it comes, from 0. kInternal: the id is known.
   Result<std::int64_t> Add(const ManifestEntry& entry);
 
   /// Commits that every run of the batch has its rows.

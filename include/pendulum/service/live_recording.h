@@ -50,7 +50,7 @@ class LiveRecording {
   NextEvents Listen();
 
   /// The file as it is now, up to its last whole line. kNotFound: there is none yet. kDataLoss: unreadable, or larger
-  /// than kMostRecordingBytes.
+  /// than 64 MiB.
   Result<std::string> Bytes() const;
 
  private:
