@@ -128,12 +128,14 @@ template <typename Flags, typename... Tables>
 Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
   const std::vector<std::string_view> names = NamesOf(tables...);
   Flags flags;
-  for (const auto& [name, text] : texts) {
-    if (auto known = CheckFlagName(name, names); !known) return tl::unexpected(known.error());
-    if (text.empty()) return BadFlag("--" + name + " has an empty value; leave the flag out for its default");
+  for (const auto& given : texts) {
+    if (auto known = CheckFlagName(given.first, names); !known) return tl::unexpected(known.error());
+    if (given.second.empty()) {
+      return BadFlag("--" + given.first + " has an empty value; leave the flag out for its default");
+    }
     Result<void> set;
     const auto set_in = [&](const auto& table) {
-      if (set) set = SetIfNamed(table, name, text, flags);
+      if (set) set = SetIfNamed(table, given.first, given.second, flags);
     };
     (set_in(tables), ...);
     if (!set) return tl::unexpected(set.error());

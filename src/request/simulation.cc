@@ -221,7 +221,8 @@ Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optio
   return simulation;
 }
 
-Result<Simulation> SimulationOfRecording(Simulation simulation, int index) {
+Result<Simulation> SimulationOfRecording(const Simulation& all, int index) {
+  Simulation simulation = all;
   SyntheticOptions& synthetic = simulation.synthetic;
   synthetic.seed += static_cast<std::uint64_t>(index);
   if (simulation.scattered.empty()) return simulation;

@@ -272,11 +272,11 @@ Json JsonOf(const FlagTexts& flags) {
   return object;
 }
 
-Result<RunOptions> RunOptionsOf(const FlagTexts& texts, const std::optional<NamedBytes>& calibration) {
-  auto flags = RunFlagsOf(texts);
-  if (!flags) return tl::unexpected(flags.error());
-  if (calibration) flags->calibration = calibration->name;
-  auto options = MakeRunOptions(*flags);
+Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const std::optional<NamedBytes>& calibration) {
+  auto run_flags = RunFlagsOf(flags);
+  if (!run_flags) return tl::unexpected(run_flags.error());
+  if (calibration) run_flags->calibration = calibration->name;
+  auto options = MakeRunOptions(*run_flags);
   if (!options) return options;
   if (options->swing.release == SwingChoice::kAll) {
     return Error(StatusCode::kInvalidArgument,

@@ -30,7 +30,7 @@ class Fitter {
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
 
   /// The result is that of fit_pendulum, without a path.
-  FittedRun Fit(const RunOptions& options, RunFiles files);
+  FittedRun Fit(const RunOptions& asked, RunFiles files);
 
   /// The fit of the run of that id, which was made from these: remembered, or made once more.
   Result<std::shared_ptr<const FitRun>> FitOf(const std::string& id, const RunOptions& options, RunFiles files);

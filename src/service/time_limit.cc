@@ -6,17 +6,19 @@ namespace pendulum {
 TimeLimit::TimeLimit(std::chrono::milliseconds limit)
     : limit_(limit), thread_([this](const std::stop_token& stop) { Work(stop); }) {}
 
-TimeLimit::Watch::Watch(TimeLimit& limit) : limit_(limit) {
-  const std::scoped_lock lock(limit_.mutex_);
-  number_ = limit_.next_++;
-  limit_.running_.emplace(number_, Running{Clock::now() + limit_.limit_, this});
-  if (limit_.all_stopped_) source_.request_stop();
-  limit_.changed_.notify_one();
-}
+TimeLimit::Watch::Watch(TimeLimit& limit) : limit_(limit), number_(limit.Begin(*this)) {}
 
 TimeLimit::Watch::~Watch() {
   const std::scoped_lock lock(limit_.mutex_);
   limit_.running_.erase(number_);
+}
+
+std::uint64_t TimeLimit::Begin(Watch& watch) {
+  const std::scoped_lock lock(mutex_);
+  running_.emplace(next_, Running{Clock::now() + limit_, &watch});
+  if (all_stopped_) watch.source_.request_stop();
+  changed_.notify_one();
+  return next_++;
 }
 
 void TimeLimit::StopAll() {

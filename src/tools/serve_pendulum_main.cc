@@ -118,7 +118,7 @@ class SignalWatch {
 
   ~SignalWatch() {
     is_over_ = true;
-    ::pthread_kill(thread_.native_handle(), SIGTERM);
+    ::pthread_kill(thread_.native_handle(), SIGINT);
     thread_.join();
   }
 

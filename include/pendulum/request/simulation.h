@@ -59,7 +59,7 @@ struct Simulation {
 /// What makes recording `index` (0-based) of several: its seed, and its own true values where they scatter.
 ///
 /// kInvalidArgument: the values of that seed stay outside their bounds (ScatterParameters).
-Result<Simulation> SimulationOfRecording(Simulation simulation, int index);
+Result<Simulation> SimulationOfRecording(const Simulation& all, int index);
 
 /// Checks the flags and turns them into what is to be simulated; `rig` is what --rig names, if anything.
 ///

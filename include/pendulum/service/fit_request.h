@@ -51,16 +51,16 @@ inline constexpr const char* kUnnamed = "data";
 /// Reads the request for one fit: its body is the recording (text/csv), a form (multipart/form-data) with the parts
 /// data, rig, calibration and options, or a JSON object of these; its query has flags, and the recording's `name`.
 /// Problems: as RunFlagsOf and MakeRunOptions; an unknown or doubled part, another kind of content, too many lines.
-OrProblem<FitRequest> ParseFitRequest(const HttpRequest& request, const RequestTarget& target,
+OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                       const RequestLimits& limits);
 
 /// The same for a batch: a form with one or more parts data.
-OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& request, const RequestTarget& target,
+OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
                                         const RequestLimits& limits);
 
 /// The changes that a refit asks for: flags whose empty values take away those there were, and a rig or calibration
 /// (null takes it away) instead of those there were, as query or JSON object.
-OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& request, const RequestTarget& target, FlagTexts flags,
+OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
                                         RunFiles files);
 
 /// What flags ask of one run of the service, which has that calibration. Errors as RunFlagsOf and MakeRunOptions;

@@ -54,6 +54,7 @@ class TimeLimit {
     Watch* watch;
   };
 
+  std::uint64_t Begin(Watch& watch);
   void Work(const std::stop_token& stop);
 
   std::chrono::milliseconds limit_;
