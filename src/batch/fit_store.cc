@@ -283,7 +283,8 @@ Result<KeptFit> FitStore::Find(const std::string& id) {
 
 Result<std::vector<ListedFit>> FitStore::List(const FitFilter& filter) {
   return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedFit>> {
-    SQLite::Statement rows(database, kListedColumns + fit_store::ConditionsOf(filter) + " ORDER BY run DESC LIMIT :limit");
+    SQLite::Statement rows(database,
+                           kListedColumns + fit_store::ConditionsOf(filter) + " ORDER BY run DESC LIMIT :limit");
     rows.bind(":limit", std::min(filter.limit, kMostListed));
     if (filter.before) rows.bind(":before", *filter.before);
     for (const auto& [name, value] : fit_store::TextConditions(filter)) rows.bind(name, value);

@@ -134,8 +134,7 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
 }
 
 std::string ToResidualCsv(const Recording& used, const RunReport& report, std::size_t fit) {
-  return ToResidualCsv(used, report.fits[fit],
-                       report.checks.empty() ? TextbookOverlay{} : report.checks[fit].overlay);
+  return ToResidualCsv(used, report.fits[fit], report.checks.empty() ? TextbookOverlay{} : report.checks[fit].overlay);
 }
 
 nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report, SeriesDetail detail) {
