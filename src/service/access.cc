@@ -78,21 +78,13 @@ bool IsOwnOrigin(std::string_view origin, std::string_view host) {
 
 // ---- Requests ------------------------------------------------------------------------------------------------------
 
-std::vector<std::string_view> ValuesOf(const HttpRequest& request, std::string_view name) {
-  std::vector<std::string_view> values;
-  for (const HttpField& field : request.fields) {
-    if (LowerCase(field.name) == name) values.emplace_back(WithoutBlanks(field.value));
-  }
-  return values;
-}
-
 /// Whether somebody typed the address or follows a link to it in a window, not in a frame.
 bool IsNavigation(const HttpRequest& request) {
   const auto is_or_absent = [&request](std::string_view name, std::string_view value) {
-    const auto values = ValuesOf(request, name);
+    const auto values = request.Fields(name);
     return values.empty() || (values.size() == 1 && values.front() == value);
   };
-  return request.method == "GET" && !ValuesOf(request, "sec-fetch-mode").empty() &&
+  return request.method == "GET" && !request.Fields("sec-fetch-mode").empty() &&
          is_or_absent("sec-fetch-mode", "navigate") && is_or_absent("sec-fetch-dest", "document");
 }
 
@@ -104,7 +96,7 @@ bool IsForeignOrigin(const HttpRequest& request, std::string_view origin, std::s
 }
 
 std::optional<Problem> RefuseHost(const HttpRequest& request, const AccessRules& rules) {
-  const auto hosts = ValuesOf(request, "host");
+  const auto hosts = request.Fields("host");
   if (hosts.size() != 1) {
     return ProblemOf(Status{StatusCode::kInvalidArgument, "the request has " + std::to_string(hosts.size()) +
                                                               " Host fields; it must have one (RFC 9112)"});
@@ -124,7 +116,7 @@ std::optional<Problem> RefuseHost(const HttpRequest& request, const AccessRules&
 
 std::optional<Problem> RefuseToken(const HttpRequest& request, const std::string& token) {
   constexpr std::string_view kScheme = "bearer ";
-  const auto values = ValuesOf(request, "authorization");
+  const auto values = request.Fields("authorization");
   if (values.empty()) {
     return Unauthorized("the request has no token; send it as Authorization: Bearer TOKEN");
   }
@@ -167,10 +159,10 @@ bool IsListedHost(std::string_view authority, const std::vector<std::string>& al
 }
 
 bool IsCrossSite(const HttpRequest& request) {
-  const auto sites = ValuesOf(request, "sec-fetch-site");
+  const auto sites = request.Fields("sec-fetch-site");
   if (std::ranges::any_of(sites, IsFromElsewhere) && !IsNavigation(request)) return true;
-  const auto hosts = ValuesOf(request, "host");
-  return std::ranges::any_of(ValuesOf(request, "origin"), [&](std::string_view origin) {
+  const auto hosts = request.Fields("host");
+  return std::ranges::any_of(request.Fields("origin"), [&](std::string_view origin) {
     return IsForeignOrigin(request, origin, hosts.size() == 1 ? hosts.front() : "");
   });
 }

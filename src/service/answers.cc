@@ -2,11 +2,8 @@
 #include "service/answers.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <chrono>
 #include <cstdint>
-#include <ctime>
 #include <random>
 #include <utility>
 
@@ -109,14 +106,6 @@ std::string MakeId() {
     for (int digit = 0; digit < 8; ++digit, bits >>= 4U) id += kHexDigits[bits & 15U];
   }
   return id;
-}
-
-std::string NowText() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
 Json ItemOf(const ListedFit& fit) {

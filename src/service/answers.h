@@ -37,9 +37,6 @@ Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view n
 /// Letters and digits that nobody guesses: 96 bits.
 std::string MakeId();
 
-/// "2026-11-23T21:40:05Z"
-std::string NowText();
-
 /// Of a list, whatever its limit.
 inline constexpr std::int64_t kMostListed = 500;
 

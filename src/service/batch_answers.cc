@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pendulum/base/json.h"
+#include "pendulum/base/utc_time.h"
 #include "pendulum/service/fit_request.h"
 #include "service/answers.h"
 #include "service/asked_again.h"
@@ -38,7 +39,7 @@ HttpResponse BatchAnswer(ServiceState& state, const std::string& id, int status)
 }
 
 std::vector<FitOrder> OrdersOf(FitRequest request) {
-  const std::string created = NowText(), flags = JsonText(JsonOf(request.flags));
+  const std::string created = UtcTimeText(), flags = JsonText(JsonOf(request.flags));
   std::vector<FitOrder> orders;
   orders.reserve(request.data.size());
   for (NamedBytes& data : request.data) {

@@ -11,6 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/report/json_parts.h"
@@ -64,7 +65,7 @@ HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
 HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
   const auto begin = std::chrono::steady_clock::now();
   FitOrder order{MakeId(),
-                 NowText(),
+                 UtcTimeText(),
                  JsonText(JsonOf(request.flags)),
                  {std::move(request.data.front()), std::move(request.rig), std::move(request.calibration)}};
   FittedRun fitted = state.fitter.Fit(request.options, order.files);

@@ -21,14 +21,6 @@ bool IsSameWord(std::string_view a, std::string_view b) {
   return boost::beast::iequals({a.data(), a.size()}, {b.data(), b.size()});
 }
 
-std::vector<std::string_view> ValuesOf(const HttpRequest& request, std::string_view name) {
-  std::vector<std::string_view> values;
-  for (const HttpField& field : request.fields) {
-    if (IsSameWord(field.name, name)) values.push_back(field.value);
-  }
-  return values;
-}
-
 tl::unexpected<Refused> Malformed(std::string detail) { return tl::unexpected(Refused{400, std::move(detail)}); }
 
 /// What may not stand at `i` of a head. Beast takes some of these for blanks, and folds lines.
@@ -87,13 +79,13 @@ tl::expected<std::size_t, Refused> RequestParser::ReadHead(std::string_view byte
 
 std::optional<Refused> RequestParser::ReadFields() {
   head_.keeps_alive = head_.is_http11 && keep_alive();
-  const std::size_t hosts = ValuesOf(request_, "Host").size();
+  const std::size_t hosts = request_.Fields("Host").size();
   if (hosts > 1 || (hosts == 0 && head_.is_http11)) {
     return Refused{400, "the request has " + std::to_string(hosts) + " Host fields; HTTP/1.1 asks for one"};
   }
   if (auto refused = ReadLength()) return refused;
   if (auto refused = ReadTarget()) return refused;
-  for (const std::string_view expected : ValuesOf(request_, "Expect")) {
+  for (const std::string_view expected : request_.Fields("Expect")) {
     if (!IsSameWord(expected, "100-continue")) {
       return Refused{417, "the request expects \"" + std::string(expected) + "\"; only 100-continue is known here"};
     }
@@ -103,7 +95,7 @@ std::optional<Refused> RequestParser::ReadFields() {
 }
 
 std::optional<Refused> RequestParser::ReadLength() {
-  const auto lengths = ValuesOf(request_, "Content-Length"), codings = ValuesOf(request_, "Transfer-Encoding");
+  const auto lengths = request_.Fields("Content-Length"), codings = request_.Fields("Transfer-Encoding");
   if (lengths.size() + codings.size() > 1) {
     return Refused{400, "the length of the request's body is given more than once"};
   }

@@ -124,14 +124,4 @@ Result<RequestTarget> ParseTarget(std::string_view target) {
   return RequestTarget{*std::move(path), *std::move(query)};
 }
 
-std::vector<std::string> PathSegments(std::string_view path) {
-  std::vector<std::string> segments;
-  while (path.size() > 1) {
-    path.remove_prefix(1);
-    segments.emplace_back(path.substr(0, path.find('/')));
-    path.remove_prefix(segments.back().size());
-  }
-  return segments;
-}
-
 }  // namespace pendulum

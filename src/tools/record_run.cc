@@ -2,7 +2,6 @@
 #include "tools/record_run.h"
 
 #include <algorithm>
-#include <ctime>
 #include <variant>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "pendulum/acquisition/rest.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/utc_time.h"
 #include "tools/live_trace.h"
 #include "tools/part_file.h"
 #include "tools/run_tool.h"
@@ -25,15 +25,6 @@ namespace wire = pendulum_logger;
 constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kSaySeconds = 10;
 constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // whichever is longer
 constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
-
-std::string Now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::string text(32, '\0');
-  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
-  return text;
-}
 
 /// Whether the other end of the pipe that is standard output has been closed.
 bool IsReaderGone() {
@@ -131,7 +122,7 @@ void RunInProgress::Trim() {
 /// Nothing on the disk is touched before the logger has started.
 Result<void> RunInProgress::Begin() {
   if (auto started = logger_.Start(); !started) return started;
-  recorded_.description.begun = Now();
+  recorded_.description.begun = UtcTimeText();
   last_look_ = HostTime();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves fits over HTTP, and the page: flags, signals, log and exit codes.
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <ctime>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -19,6 +17,7 @@
 #include <unistd.h>
 
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/utc_time.h"
 #include "pendulum/batch/fit_store.h"
 #include "pendulum/service/fitting_service.h"
 #include "pendulum/service/server.h"
@@ -88,14 +87,7 @@ ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
 }
 
 /// One line on standard error, at once and whole, whoever else writes there.
-void SayAtTime(const std::string& words) {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> time{};
-  const std::size_t size = std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ ", &utc);
-  (void)WriteAll(STDERR_FILENO, std::string(time.data(), size) + words + "\n");
-}
+void SayAtTime(const std::string& words) { (void)WriteAll(STDERR_FILENO, UtcTimeText() + " " + words + "\n"); }
 
 sigset_t EndingSignals() {
   sigset_t signals;

@@ -24,12 +24,10 @@ void Check(std::string_view text) {
     Require(target.error().code == StatusCode::kInvalidArgument && target.error().message.size() < 2000);
     return;
   }
-  std::string path;
-  for (const std::string& segment : PathSegments(target->path)) {
-    Require(!segment.empty() && segment != "." && segment != ".." && segment.find('\\') == std::string::npos);
-    path += "/" + segment;
-  }
-  Require(target->path == (path.empty() ? "/" : path) && IsPlain(path) && path.size() <= text.size() + 1);
+  const std::string& path = target->path;
+  Require(path.starts_with('/') && (path == "/" || !path.ends_with('/')) && path.size() <= text.size() + 1);
+  Require(IsPlain(path) && path.find('\\') == std::string::npos && path.find("//") == std::string::npos);
+  for (const char* relative : {"/./", "/../"}) Require((path + "/").find(relative) == std::string::npos);
   std::set<std::string> names;
   for (const auto& [name, value] : target->query) {
     Require(!name.empty() && IsPlain(name) && IsPlain(value) && names.insert(name).second);

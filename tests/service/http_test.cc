@@ -3,10 +3,14 @@
 
 #include <optional>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace pendulum::http_test {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 TEST(Field, IsFoundWhateverTheCaseOfItsName) {
   const HttpRequest request = {"GET", "/", {{"Host", "a"}, {"cOnTent-TYPE", "text/csv"}}, ""};
@@ -32,6 +36,12 @@ TEST(Field, ThatComesTwiceIsTheFirst) {
 TEST(Field, HasOnlyLettersOfTwoCases) {  // RFC 9110, section 5.1: '@' and '`' are 0x20 apart as 'A' and 'a' are
   const HttpRequest request = {"GET", "/", {{"^", "1"}}, ""};
   EXPECT_EQ(request.Field("~"), std::nullopt);
+}
+
+TEST(Fields, AreAllOfThatNameInTheirOrder) {
+  const HttpRequest request = {"GET", "/", {{"X", "1"}, {"Host", "a"}, {"x", "2"}}, ""};
+  EXPECT_THAT(request.Fields("x"), ElementsAre("1", "2"));
+  EXPECT_THAT(request.Fields("Accept"), IsEmpty());
 }
 
 }  // namespace

@@ -188,14 +188,5 @@ TEST(ParseTarget, HasSentencesOfALengthThatCanBeRead) {
   }
 }
 
-// ---- Segments ------------------------------------------------------------------------------------------------------
-
-TEST(PathSegments, AreBetweenTheSlashes) {
-  EXPECT_THAT(PathSegments("/"), IsEmpty());
-  EXPECT_THAT(PathSegments("/fits"), ElementsAre("fits"));
-  EXPECT_THAT(PathSegments("/v1/fits/12"), ElementsAre("v1", "fits", "12"));
-  EXPECT_THAT(PathSegments(PathOf("/v1/a%20b/%E3%82%A2")), ElementsAre("v1", "a b", "\u30A2"));
-}
-
 }  // namespace
 }  // namespace pendulum::request_target_test

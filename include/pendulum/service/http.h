@@ -23,6 +23,9 @@ struct HttpRequest {
 
   /// The value of a field; none where it is not there. Of several the first.
   std::optional<std::string_view> Field(std::string_view name) const;
+
+  /// The values of all fields of that name, in their order.
+  std::vector<std::string_view> Fields(std::string_view name) const;
 };
 
 /// What a stream of server-sent events has to say since it was asked last.

@@ -26,7 +26,4 @@ Result<RequestTarget> ParseTarget(std::string_view target);
 /// The authority of a target in absolute form, "host:8080"; empty for any other.
 std::string_view AuthorityOf(std::string_view target);
 
-/// What is between the slashes of a path of ParseTarget: "/v1/fits" has v1 and fits, "/" none.
-std::vector<std::string> PathSegments(std::string_view path);
-
 }  // namespace pendulum
