@@ -42,7 +42,7 @@ struct FileHashes {
 };
 
 Result<FileHashes> HashesOf(const RunFiles& files) {
-  const auto hash = [](const std::optional<NamedBytes>& file) -> Result<std::string> {
+  const auto hash = [](const SharedFile& file) -> Result<std::string> {
     return file ? Sha256(file->bytes) : Result<std::string>("");
   };
   auto data = Sha256(files.data.bytes);
@@ -142,7 +142,7 @@ void FitStore::State::EndRound(Result<void> done, std::shared_ptr<Round> next) {
 
 Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& hashes,
                                      const std::optional<std::int64_t>& batch) {
-  const auto name = [](const std::optional<NamedBytes>& file) { return file ? file->name : std::string(); };
+  const auto name = [](const SharedFile& file) { return file ? file->name : std::string(); };
   ManifestEntry entry;
   entry.id = order.id;
   entry.path = order.files.data.name;
@@ -151,7 +151,7 @@ Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& ha
   const auto run = writer.Add(entry);
   if (!run) return tl::unexpected(run.error());
   SQLite::Database& database = writer.database();
-  const auto keep = [&](const std::optional<NamedBytes>& file, const std::string& sha256) {
+  const auto keep = [&](const SharedFile& file, const std::string& sha256) {
     return file ? std::optional(fit_store::KeepFile(database, file->bytes, sha256)) : std::nullopt;
   };
   SQLite::Statement add(database, "INSERT INTO requests VALUES(?, ?, ?, ?, ?, ?, ?)");
@@ -270,12 +270,14 @@ Result<KeptFit> FitStore::Find(const std::string& id) {
                            "SELECT flags, data, requests.rig, requests.calibration, runs.rig, runs.calibration, result "
                            "FROM requests JOIN runs USING(run) WHERE run = ?");
     sqlite::Bind(more, kept.fit.run).executeStep();
-    const auto file = [&](int column, const std::string& name) -> std::optional<NamedBytes> {
-      if (more.getColumn(column).isNull()) return std::nullopt;
+    const auto file = [&](int column, const std::string& name) {
       return NamedBytes{name, fit_store::FileBytes(database, more.getColumn(column).getInt64())};
     };
+    const auto shared = [&](int column, const std::string& name) {
+      return more.getColumn(column).isNull() ? nullptr : Share(file(column, name));
+    };
     kept.order = {id, kept.fit.created, sqlite::Text(more, 0),
-                  RunFiles{*file(1, kept.fit.name), file(2, sqlite::Text(more, 4)), file(3, sqlite::Text(more, 5))}};
+                  RunFiles{file(1, kept.fit.name), shared(2, sqlite::Text(more, 4)), shared(3, sqlite::Text(more, 5))}};
     if (!more.getColumn(6).isNull()) kept.result = nlohmann::ordered_json::parse(sqlite::Text(more, 6));
     return kept;
   });

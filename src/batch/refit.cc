@@ -95,9 +95,8 @@ Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inp
   return provenance;
 }
 
-std::optional<NamedBytes> Named(const std::string& name, std::optional<std::string> bytes) {
-  if (!bytes) return std::nullopt;
-  return NamedBytes{name, *std::move(bytes)};
+SharedFile Named(const std::string& name, std::optional<std::string> bytes) {
+  return bytes ? Share({name, *std::move(bytes)}) : nullptr;
 }
 
 Result<FitRun> FitInputs(const ManifestEntry& entry, RunInputs& inputs) {

@@ -120,7 +120,7 @@ std::optional<Problem> RefuseToken(const HttpRequest& request, const std::string
   if (values.empty()) {
     return Unauthorized("the request has no token; send it as Authorization: Bearer TOKEN");
   }
-  const std::string_view value = values.front();
+  const std::string_view value = WithoutBlanks(values.front());
   if (values.size() > 1 || LowerCase(value.substr(0, kScheme.size())) != kScheme) {
     return Unauthorized("the Authorization of the request is no token; send one, as Authorization: Bearer TOKEN");
   }

@@ -97,7 +97,7 @@ RunReport NamedReport(const FitRun& run, const std::string& name) {
   return report;
 }
 
-Json FileJson(const std::optional<NamedBytes>& file) {
+Json FileJson(const SharedFile& file) {
   if (!file) return nullptr;
   auto json = ParseJsonObject(file->bytes, file->name, "file", "{}");
   return json ? *std::move(json) : Json(nullptr);

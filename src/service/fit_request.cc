@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestName = 200;  // bytes
+constexpr std::size_t kLongestName = 200, kMostOptionBytes = 8192;
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
 /// What a client calls a file, without the folders that old browsers send along and what no terminal should see.
@@ -113,9 +113,9 @@ class FormReader {
   }
 
  private:
-  static Result<void> TakeFile(const FormPart& part, std::optional<NamedBytes>& file) {
+  static Result<void> TakeFile(const FormPart& part, SharedFile& file) {
     if (file) return Twice(part.name);
-    file = NamedBytes{part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)};
+    file = Share({part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)});
     return {};
   }
 
@@ -145,13 +145,13 @@ Result<void> ReadForm(std::string_view content_type, const std::string& body, Fi
 }
 
 /// A rig or calibration of a JSON body; null is none.
-Result<void> ReadObject(const std::string& name, const Json& value, std::optional<NamedBytes>& file) {
+Result<void> ReadObject(const std::string& name, const Json& value, SharedFile& file) {
   file.reset();
   if (value.is_null()) return {};
   if (!value.is_object()) {
     return Error(StatusCode::kInvalidArgument, name + " is " + ShownJson(value) + "; it must be an object or null");
   }
-  file = NamedBytes{name, JsonText(value)};
+  file = Share({name, JsonText(value)});
   return {};
 }
 
@@ -224,8 +224,17 @@ OrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
                                              " samples at most; send a part of it, or use fit_pendulum");
 }
 
+/// Each run of a batch keeps its options.
+OrProblem<void> CheckOptions(const FlagTexts& flags) {
+  const std::size_t bytes = JsonText(JsonOf(flags)).size();
+  if (bytes <= kMostOptionBytes) return {};
+  return Refused(ProblemKind::kTooLarge, "the options have " + std::to_string(bytes) + " bytes, and may have " +
+                                             std::to_string(kMostOptionBytes));
+}
+
 /// The options of what was read, and whether there is not too much of it.
 OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
+  if (auto checked = CheckOptions(request.flags); !checked) return tl::unexpected(checked.error());
   auto options = RunOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
   if (request.rig) {
@@ -272,7 +281,7 @@ Json JsonOf(const FlagTexts& flags) {
   return object;
 }
 
-Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const std::optional<NamedBytes>& calibration) {
+Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
   auto run_flags = RunFlagsOf(flags);
   if (!run_flags) return tl::unexpected(run_flags.error());
   if (calibration) run_flags->calibration = calibration->name;

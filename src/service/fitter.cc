@@ -16,7 +16,7 @@ namespace {
 
 std::string HashOf(const std::string& bytes) { return Sha256(bytes).value_or(""); }
 
-std::string HashOf(const std::optional<NamedBytes>& file) { return file ? HashOf(file->bytes) : ""; }
+std::string HashOf(const SharedFile& file) { return file ? HashOf(file->bytes) : ""; }
 
 Provenance ProvenanceOf(const RunOptions& options, const RunFiles& files) {
   return {HashOf(files.data.bytes),     HashOf(files.rig),     HashOf(files.calibration),

@@ -61,7 +61,7 @@ Status FaultOf(const RunOptions& options, RunFiles files) {
 TEST(FitBytes, EqualsTheFitOfTheFiles) {
   const RunOptions options = OptionsFor({"viscous", "coulomb"});
   const std::string data = "datasets/textbook_rig.csv", rig = "datasets/textbook_rig.json";
-  const auto from_bytes = FitBytes(options, {{data, FileText(data)}, NamedBytes{rig, FileText(rig)}, {}});
+  const auto from_bytes = FitBytes(options, {{data, FileText(data)}, Share({rig, FileText(rig)}), {}});
   ASSERT_TRUE(from_bytes) << from_bytes.error().message;
   auto one = ReadOne(options, data, ReadRig(rig).value());
   ASSERT_TRUE(one) << one.error().message;
@@ -78,7 +78,7 @@ TEST(FitBytes, EqualsTheFitOfTheFilesWithACalibration) {
   folder.Write("calibration.json", kCalibration);
   RunOptions options = OptionsFor({"viscous"});
   const std::string data = folder / "counts.csv";
-  const auto from_bytes = FitBytes(options, {{data, CountsText()}, {}, NamedBytes{"calibration", kCalibration}});
+  const auto from_bytes = FitBytes(options, {{data, CountsText()}, {}, Share({"calibration", kCalibration})});
   ASSERT_TRUE(from_bytes) << from_bytes.error().message;
   options.read.calibration = ReadCalibration(folder / "calibration.json").value();
   auto one = ReadOne(options, data, std::nullopt);
@@ -94,10 +94,10 @@ TEST(FitBytes, SaysWhichOfThemIsAtFaultAndWhere) {
   const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
   EXPECT_EQ(data.code, StatusCode::kDataLoss);
   EXPECT_THAT(data.message, StartsWith("a.csv:3:1: "));
-  const Status rig = FaultOf(options, {{"a.csv", good}, NamedBytes{"my rig", "{"}, {}});
+  const Status rig = FaultOf(options, {{"a.csv", good}, Share({"my rig", "{"}), {}});
   EXPECT_EQ(rig.code, StatusCode::kDataLoss);
   EXPECT_THAT(rig.message, StartsWith("my rig:1:"));
-  const Status calibration = FaultOf(options, {{"a.csv", good}, {}, NamedBytes{"cal", "[]"}});
+  const Status calibration = FaultOf(options, {{"a.csv", good}, {}, Share({"cal", "[]"})});
   EXPECT_EQ(calibration.code, StatusCode::kDataLoss);
   EXPECT_THAT(calibration.message, StartsWith("cal: "));
 }

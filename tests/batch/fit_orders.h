@@ -18,7 +18,7 @@ inline constexpr const char* kCreated = "2026-11-23T21:40:05Z";
 
 /// An order for a run ID.csv whose only line is its id.
 inline FitOrder OrderOf(const std::string& id, const std::string& created = kCreated) {
-  return {id, created, R"({"model":"viscous"})", {{id + ".csv", id + "\n"}, std::nullopt, std::nullopt}};
+  return {id, created, R"({"model":"viscous"})", {{id + ".csv", id + "\n"}, {}, {}}};
 }
 
 inline std::vector<FitOrder> OrdersOf(const std::vector<std::string>& ids) {

@@ -79,8 +79,8 @@ TEST_F(FitStoreTest, KeepsARunWithAllThatItWasMadeFrom) {
   FitOrder order = OrderOf("a");
   order.flags = R"({"model":"drag","name":"ünïcode"})";
   order.files.data = {"swing, the first.csv", std::string("a\0b\r\n\xFF", 6)};
-  order.files.rig = NamedBytes{"rig.json", R"({"gravity_torque": {"value": 1.8}})"};
-  order.files.calibration = NamedBytes{"calibration", ""};
+  order.files.rig = Share({"rig.json", R"({"gravity_torque": {"value": 1.8}})"});
+  order.files.calibration = Share({"calibration", ""});
   const RunOutcome outcome = OutcomeOf({FitOf("drag", 1.0 / 3), FitOf("viscous", 7)}, "drag");
   Add(order, outcome);
   const auto kept = Store().Find("a");
@@ -230,9 +230,9 @@ TEST_F(FitStoreTest, FindsRunsOfABatchAndSinceATime) {
 
 TEST_F(FitStoreTest, KeepsAFileOnceAndAsLongAsARunHasIt) {
   FitOrder one = OrderOf("a"), other = OrderOf("b"), third = OrderOf("c");
-  one.files.rig = other.files.rig = NamedBytes{"rig", "{}"};
+  one.files.rig = other.files.rig = Share({"rig", "{}"});
   other.files.data.bytes = one.files.data.bytes;
-  third.files.calibration = NamedBytes{"calibration", "{}"};  // the same bytes as the rig of others
+  third.files.calibration = Share({"calibration", "{}"});  // the same bytes as the rig of others
   Add(one);
   Add(other);
   Add(third);

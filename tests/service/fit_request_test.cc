@@ -17,6 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::Pair;
 using testing::StartsWith;
 using testing::UnorderedElementsAre;
@@ -224,6 +225,16 @@ TEST(ParseFitRequest, TakesAsManyLinesAsItMay) {
             "use fit_pendulum");
 }
 
+// Ten thousand runs of a batch keep them ten thousand times.
+TEST(ParseBatchRequest, TakesNoOptionsOfAnyLength) {
+  const auto answer = [](std::size_t blanks) {
+    const std::string options = R"({"model": "drag)" + std::string(blanks, ' ') + "\"}";
+    return Answer(Batch(Post("/v1/batches", kForm, Form(Part("data", kCsv) + Part("options", options)))));
+  };
+  EXPECT_EQ(answer(20'000), "413 the options have 20016 bytes, and may have 8192");
+  EXPECT_THAT(answer(1000), Not(StartsWith("413")));
+}
+
 // A name goes into files and messages: what a terminal would obey has no place in it, as in a query (RequestTarget).
 TEST(ParseFitRequest, LetsNoControlCharactersIntoNames) {
   for (const auto& request : {Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\nb"})")),
@@ -272,7 +283,7 @@ OrProblem<FitRequest> Refit(const std::string& query, const std::string& body = 
                             const std::string& type = "application/json") {
   const HttpRequest request = Post("/v1/fits/1/refits" + query, body.empty() ? "" : type, body);
   return ParseRefitRequest(request, TargetOf(request), {{"model", "drag"}, {"from", "0.5"}},
-                           {{"run.csv", kCsv}, NamedBytes{"rig", kRig}, NamedBytes{"calibration", kCalibration}});
+                           {{"run.csv", kCsv}, Share({"rig", kRig}), Share({"calibration", kCalibration})});
 }
 
 TEST(ParseRefitRequest, KeepsWhatIsNotChanged) {

@@ -71,8 +71,7 @@ TEST_F(FittingServiceTest, AnswersTheResultOfFitPendulum) {
 
 TEST_F(FittingServiceTest, AnswersTheSameToEachKindOfBody) {
   const std::string rig = small_batch::kRigText;
-  const std::string expected =
-      ResultOf(FitOf({"viscous", "coulomb"}, {{"a", Recording()}, NamedBytes{"rig", rig}, {}}));
+  const std::string expected = ResultOf(FitOf({"viscous", "coulomb"}, {{"a", Recording()}, Share({"rig", rig}), {}}));
   const HttpResponse form = Post("/v1/fits?models=viscous,coulomb", kForm,
                                  FormOf(PartOf("data", Recording(), "run.csv") + PartOf("rig", rig)));
   EXPECT_EQ(form.body, expected);
@@ -308,7 +307,7 @@ TEST_F(FittingServiceTest, RefitsTheSameRecordingWithOtherOptions) {
   const std::string location = FieldOf(first, "Location");
   const HttpResponse refit = Ask("POST", location + "/refits?model=coulomb&seed=");
   ASSERT_EQ(refit.status, 200) << refit.body;
-  EXPECT_EQ(refit.body, ResultOf(FitOf({"coulomb"}, {{"a", Recording()}, NamedBytes{"rig", rig}, {}})));
+  EXPECT_EQ(refit.body, ResultOf(FitOf({"coulomb"}, {{"a", Recording()}, Share({"rig", rig}), {}})));
   const std::string other = FieldOf(refit, "Location");
   EXPECT_NE(other, location);
   EXPECT_EQ(JsonAt(other + "/request")["options"], (Json{{"model", "coulomb"}}));

@@ -42,7 +42,7 @@ struct FitRequest {
   FlagTexts flags;     ///< As they were given; all that they do not say has its default.
   RunOptions options;  ///< What they ask.
   std::vector<NamedBytes> data;
-  std::optional<NamedBytes> rig, calibration;
+  SharedFile rig, calibration;
 };
 
 /// Where recordings have no name of their own.
@@ -65,7 +65,7 @@ OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTa
 
 /// What flags ask of one run of the service, which has that calibration. Errors as RunFlagsOf and MakeRunOptions;
 /// kInvalidArgument: release all.
-Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const std::optional<NamedBytes>& calibration);
+Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
 /// kUnsupportedMediaType: the body is of none of these types, or in some coding.
 OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
