@@ -7,7 +7,7 @@ import { clippedWords, forestPlot, forestSentence } from './forest_plot';
 import { shownJointFit, type JointReport } from './joint';
 import { disagreement } from './joint_headline';
 import type { Homogeneity, JointFit, SharedAgreement } from './joint_types';
-import { sentence } from './prose';
+import { capital, sentence } from './prose';
 import { fixed, intervalText, plusMinus, probabilityText, significant } from './rounding';
 import { absent, figure, section } from './section';
 import { table, type Cell, type Column } from './table';
@@ -15,7 +15,6 @@ import { spacedUnit, symbolOf, unitText, wordsOf } from './units';
 
 const number = 'number' as const;
 
-const capital = (words: string): string => words.slice(0, 1).toUpperCase() + words.slice(1);
 
 /** "χ² = 14.8 with 12 degrees of freedom, p = 0.25." */
 function testText({ statistic, dof, p }: SharedAgreement): string {

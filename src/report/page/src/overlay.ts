@@ -21,6 +21,9 @@ export interface Overlayable {
   result: Pick<JointResult, 'data'>;
 }
 
+/** What is counted: several fits may be of one recording. */
+export type OverlaidKind = 'recording' | 'fit';
+
 /** The instant a recording counts from, s on its file's clock: its release, or its first used sample. */
 export function beginning(report: Report): { time: number; released: boolean } {
   const release = shownFit(report)?.parameters?.release_time?.estimate;
@@ -45,7 +48,7 @@ export function elapsed(time: Float64Array, report: Report): Float64Array {
 }
 
 /** Null without samples. */
-function overlaid(report: Report, k: number): Overlaid | null {
+function overlaid(report: Report, k: number, name: string): Overlaid | null {
   const { samples } = report;
   if (!samples) return null;
   const fit = shownFit(report);
@@ -53,7 +56,7 @@ function overlaid(report: Report, k: number): Overlaid | null {
   const mark = recordingMark(k);
   const fitted = fit && fittedTrace(report, samples, fit, report.shown);
   const residual = fit && samples.models.get(fit.model)?.residual;
-  const own = { name: `recording ${k + 1}`, shown: true };
+  const own = { name, shown: true };
   const points = { ...mark, points: true };
   return {
     k,
@@ -64,12 +67,12 @@ function overlaid(report: Report, k: number): Overlaid | null {
 }
 
 /** Recordings whose reading has the unit of the first; `others`: numbers, from 1 on, of those that cannot lie over it. */
-export function overlay(report: Overlayable): { curves: Overlaid[]; unit: string; others: number[] } {
+export function overlay(report: Overlayable, kind: OverlaidKind = 'recording'): { curves: Overlaid[]; unit: string; others: number[] } {
   const unit = report.recordings.find((one) => one.samples)?.samples?.unit ?? 'rad';
   const curves: Overlaid[] = [];
   const others: number[] = [];
   report.recordings.forEach((one, k) => {
-    const made = one.samples?.unit === unit ? overlaid(one, k) : null;
+    const made = one.samples?.unit === unit ? overlaid(one, k, `${kind} ${k + 1}`) : null;
     if (made) curves.push(made);
     else others.push(k + 1);
   });

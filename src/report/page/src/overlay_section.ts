@@ -6,7 +6,8 @@ import { quantityOf } from './fit_section';
 import { inList } from './joint';
 import { swatch } from './marks';
 import { keyboardBox, navigationButtons } from './navigation';
-import { originWords, overlay, type Overlaid, type Overlayable } from './overlay';
+import { originWords, overlay, type Overlaid, type Overlayable, type OverlaidKind } from './overlay';
+import { capital } from './prose';
 import { fixed, significant } from './rounding';
 import { extent, lowerBound, medianInterval, rootMeanSquare } from './samples';
 import { absent, figure, section } from './section';
@@ -41,6 +42,7 @@ class OverlayPlots {
   constructor(
     private readonly curves: Overlaid[],
     private readonly unit: string,
+    private readonly kind: OverlaidKind,
     report: Overlayable,
   ) {
     this.view = viewOf(curves, report);
@@ -50,8 +52,10 @@ class OverlayPlots {
     this.below = residuals.length > 0 ? this.residualPlot(residuals, words) : null;
   }
 
+  /** "recordings 1 and 3" */
   private names(): string {
-    return inList(this.curves.filter(({ k }) => !this.hidden.has(k)).map(({ k }) => k + 1)) || 'none';
+    const numbers = inList(this.curves.filter(({ k }) => !this.hidden.has(k)).map(({ k }) => k + 1));
+    return `${this.kind}s ${numbers || 'none'}`;
   }
 
   private range(): string {
@@ -65,7 +69,7 @@ class OverlayPlots {
     const traces = this.curves.flatMap(({ measured, fitted }) => (fitted ? [measured, fitted] : [measured]));
     return new TimePlot(traces, this.view, {
       sentence: () =>
-        `Recordings ${this.names()}, ${kinds() || 'nothing of them'}: ${quantityOf(this.unit)} over time ${this.range()}.`,
+        `${capital(this.names())}, ${kinds() || 'nothing of them'}: ${quantityOf(this.unit)} over time ${this.range()}.`,
       xLabel,
       yLabel: () => `${quantityOf(this.unit)} [${unitText(this.unit)}]`,
       right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
@@ -82,7 +86,7 @@ class OverlayPlots {
         .join(', ');
     return new TimePlot(residuals, this.view, {
       sentence: () =>
-        `Residuals (measured minus fitted) of recordings ${this.names()} over time ${this.range()}; root mean squares: ${size() || 'none'}.`,
+        `Residuals (measured minus fitted) of ${this.names()} over time ${this.range()}; root mean squares: ${size() || 'none'}.`,
       xLabel,
       yLabel: () => `residual [${unitText(this.unit)}]`,
       aligned: inDegrees(this.unit) ? 'with right axis' : 'without',
@@ -104,21 +108,21 @@ class OverlayPlots {
   }
 
   private legend(): HTMLElement {
-    const box = el('div', { class: 'legend', role: 'group', 'aria-label': 'Recordings shown' });
+    const box = el('div', { class: 'legend', role: 'group', 'aria-label': `${capital(this.kind)}s shown` });
     for (const { k, fitted, measured } of this.curves) {
       const change = (on: boolean): void => {
         if (on) this.hidden.delete(k);
         else this.hidden.add(k);
         this.apply();
       };
-      box.append(toggle([swatch((fitted ?? measured).mark), `recording ${k + 1}`], true, change));
+      box.append(toggle([swatch((fitted ?? measured).mark), measured.name], true, change));
     }
     return box;
   }
 
   private kinds(): HTMLElement | null {
     if (this.curves.every((curve) => !curve.fitted)) return null;
-    const box = el('div', { class: 'legend', role: 'group', 'aria-label': 'Of each recording' });
+    const box = el('div', { class: 'legend', role: 'group', 'aria-label': `Of each ${this.kind}` });
     for (const kind of ['measured', 'fitted'] as const) {
       const own = this.curves.find((curve) => curve[kind])?.[kind];
       const change = (on: boolean): void => {
@@ -150,12 +154,12 @@ class OverlayPlots {
     const number = 'number' as const;
     const unit = unitText(this.unit);
     const heads = ['t [s]', `measured [${unit}]`, `fitted [${unit}]`, `residual [${unit}]`];
-    const columns = [{ head: 'Recording' }, ...heads.map((head) => ({ head, kind: number }))];
-    return table('Some samples of each recording shown', columns, rows);
+    const columns = [{ head: capital(this.kind) }, ...heads.map((head) => ({ head, kind: number }))];
+    return table(`Some samples of each ${this.kind} shown`, columns, rows);
   }
 
   element(): HTMLElement {
-    const box = keyboardBox('All recordings, and their residuals', this.view, this.main.chart.host);
+    const box = keyboardBox(`All ${this.kind}s, and their residuals`, this.view, this.main.chart.host);
     if (this.below)
       box.append(
         el('div', { class: 'bar residual' }, el('h3', {}, 'Residuals: measured − fitted')),
@@ -177,11 +181,11 @@ class OverlayPlots {
   }
 }
 
-export function overlaySection(report: Overlayable): HTMLElement {
-  const title = 'All recordings over each other';
-  const { curves, unit, others } = overlay(report);
+export function overlaySection(report: Overlayable, kind: OverlaidKind = 'recording'): HTMLElement {
+  const title = `All ${kind}s over each other`;
+  const { curves, unit, others } = overlay(report, kind);
   if (curves.length === 0)
     return section('overlay', title, absent('The samples are not part of this report, so there is nothing to draw.'));
-  const left = `Not drawn, for want of samples or for another unit: ${others.length === 1 ? 'recording' : 'recordings'} ${inList(others)}.`;
-  return section('overlay', title, new OverlayPlots(curves, unit, report).element(), others.length > 0 && absent(left));
+  const left = `Not drawn, for want of samples or for another unit: ${kind}${others.length === 1 ? '' : 's'} ${inList(others)}.`;
+  return section('overlay', title, new OverlayPlots(curves, unit, kind, report).element(), others.length > 0 && absent(left));
 }

@@ -30,9 +30,11 @@ export function typeset(words: string): string {
     .replace(/\^(-?\d+)/g, (_all, power: string) => raised(power));
 }
 
+export const capital = (words: string): string => words.slice(0, 1).toUpperCase() + words.slice(1);
+
 /** The words with a capital and a full stop. */
 export function sentence(words: string): string {
   const trimmed = typeset(words.trim());
   if (trimmed === '') return '';
-  return trimmed[0].toUpperCase() + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? '' : '.');
+  return capital(trimmed) + (/[.!?]$/.test(trimmed) ? '' : '.');
 }

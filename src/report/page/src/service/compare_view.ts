@@ -109,10 +109,8 @@ const kShared =
 
 function parts(all: Compared[]): HTMLElement[] {
   const bars = forests(all);
-  const overlaid = overlaySection({
-    recordings: all.map(({ report }) => report),
-    result: { data: all.map(({ report }) => report.result.data) },
-  });
+  const reports = all.map(({ report }) => report);
+  const overlaid = overlaySection({ recordings: reports, result: { data: reports.map(({ result }) => result.data) } }, 'fit');
   return [
     section('fits', 'What is compared', fitsTable(all)),
     section(
