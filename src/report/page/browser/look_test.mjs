@@ -29,6 +29,8 @@ test('the theme changes by its button, with the plots', async (t) => {
   await page.getByRole('button', { name: 'Dark' }).click();
   assert.notEqual(await background(), light);
   assert.ok((await ink(page, kPlot)) > 3000);
+  await page.reload(); // of a file
+  assert.notEqual(await background(), light);
   await page.getByRole('button', { name: 'Light' }).click();
   assert.equal(await background(), light);
 });

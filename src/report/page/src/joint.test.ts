@@ -229,7 +229,7 @@ describe('recordings over each other', () => {
     expect(originWords(report.recordings)).toBe('time since the release [s]');
     delete report.recordings[2].result.fits[0].parameters.release_time;
     expect(beginning(report.recordings[2])).toEqual({ time: 2, released: false });
-    expect(originWords(report.recordings)).toMatch(/release or the first used sample/);
+    expect(originWords(report.recordings)).toMatch(/release or first used sample/);
     expect(originWords(report.recordings.slice(2))).toBe('time since the first used sample [s]');
   });
 
@@ -240,5 +240,11 @@ describe('recordings over each other', () => {
     expect([...curves[0].residual!.values]).toEqual([0.1, 0.2, 0.3]);
     expect(curves[0].measured.mark.colour).not.toBe(curves[1].measured.mark.colour);
     expect(overlay(makeJointReport(joint(), null, null)).curves).toEqual([]);
+  });
+
+  test('of one recording keep its own clock', () => {
+    const report = makeJointReport(joint(), [series('rad'), series('rad'), series('rad')], null);
+    const { curves } = overlay({ ...report, oneClock: true }, 'fit');
+    for (const curve of curves) expect([...curve.measured.time]).toEqual([0, 1, 2]);
   });
 });

@@ -18,6 +18,8 @@ export interface Overlaid {
 /** Recordings that can lie over each other: each as it is shown, and its data. */
 export interface Overlayable {
   recordings: Report[];
+  /** All are of one recording, whose own clock then counts for all. */
+  oneClock?: boolean;
   result: Pick<JointResult, 'data'>;
 }
 
@@ -37,7 +39,7 @@ export function originWords(reports: Report[]): string {
   if (released === reports.length) return 'time since the release [s]';
   return released === 0
     ? 'time since the first used sample [s]'
-    : 'time since the release or the first used sample [s]';
+    : 'time since release or first used sample [s]';
 }
 
 /** Times on the file's clock as true seconds since the beginning. */
@@ -48,11 +50,11 @@ export function elapsed(time: Float64Array, report: Report): Float64Array {
 }
 
 /** Null without samples. */
-function overlaid(report: Report, k: number, name: string): Overlaid | null {
+function overlaid(report: Report, k: number, name: string, since: typeof elapsed): Overlaid | null {
   const { samples } = report;
   if (!samples) return null;
   const fit = shownFit(report);
-  const time = elapsed(samples.time, report);
+  const time = since(samples.time, report);
   const mark = recordingMark(k);
   const fitted = fit && fittedTrace(report, samples, fit, report.shown);
   const residual = fit && samples.models.get(fit.model)?.residual;
@@ -61,7 +63,7 @@ function overlaid(report: Report, k: number, name: string): Overlaid | null {
   return {
     k,
     measured: { ...own, time, values: samples.measured, mark: points },
-    fitted: fitted && { ...own, time: fitted.time === samples.time ? time : elapsed(fitted.time, report), values: fitted.values, mark },
+    fitted: fitted && { ...own, time: fitted.time === samples.time ? time : since(fitted.time, report), values: fitted.values, mark },
     residual: residual ? { ...own, time, values: residual, mark: points } : null,
   };
 }
@@ -71,8 +73,9 @@ export function overlay(report: Overlayable, kind: OverlaidKind = 'recording'): 
   const unit = report.recordings.find((one) => one.samples)?.samples?.unit ?? 'rad';
   const curves: Overlaid[] = [];
   const others: number[] = [];
+  const since = report.oneClock ? (time: Float64Array): Float64Array => time : elapsed;
   report.recordings.forEach((one, k) => {
-    const made = one.samples?.unit === unit ? overlaid(one, k, `${kind} ${k + 1}`) : null;
+    const made = one.samples?.unit === unit ? overlaid(one, k, `${kind} ${k + 1}`, since) : null;
     if (made) curves.push(made);
     else others.push(k + 1);
   });

@@ -22,13 +22,22 @@ const kRows = 60; // of the table
 const kManySwings = 30;
 const kFirstSwings = 12;
 
-/** Of many swings the first ones, where differences can be seen. */
+/** What all have of the times: from their common beginning on, which is 0 but on the clock of one recording. */
+function sharedTimes(curves: Overlaid[], { oneClock }: Overlayable): [number, number] {
+  const times = curves.map((curve) => curve.measured.time);
+  const start = oneClock ? Math.max(...times.map((time) => time[0])) : 0;
+  return [start, Math.min(...times.map((time) => time[time.length - 1]))];
+}
+
+/** Of many swings the first ones that all of them have, where differences can be seen. */
 function viewOf(curves: Overlaid[], report: Overlayable): TimeView {
   const [from, to] = extent(curves.map((curve) => curve.measured.time)) ?? [0, 1];
   const least = 8 * Math.min(...curves.map((curve) => medianInterval(curve.measured.time)));
   const view = new TimeView(from, to, least);
   const frequency = report.result.data[curves[0].k].sampling?.frequency_hz;
-  if (frequency && (to - from) * frequency > kManySwings) view.set(Math.max(from, -1 / frequency), kFirstSwings / frequency);
+  const [start, end] = sharedTimes(curves, report);
+  if (frequency && (to - from) * frequency > kManySwings && start < end)
+    view.set(Math.max(from, start - 1 / frequency), Math.min(to, start + kFirstSwings / frequency));
   return view;
 }
 
@@ -46,7 +55,8 @@ class OverlayPlots {
     report: Overlayable,
   ) {
     this.view = viewOf(curves, report);
-    const words = originWords(curves.map((curve) => report.recordings[curve.k]));
+    const reports = curves.map((curve) => report.recordings[curve.k]);
+    const words = report.oneClock ? 'time of the recording [s]' : originWords(reports);
     const residuals = curves.flatMap((curve) => curve.residual ?? []);
     this.main = this.mainPlot(residuals.length > 0 ? '' : words);
     this.below = residuals.length > 0 ? this.residualPlot(residuals, words) : null;

@@ -17,9 +17,14 @@ const kSuperscript: Record<string, string> = {
 
 const raised = (digits: string): string => [...digits].map((digit) => kSuperscript[digit] ?? '').join('');
 
-/** Powers as superscripts. The words stay as they are. */
+let worded = (words: string): string => words;
+
+/** Says the sentences of the JSON in other words from now on: those of the command line mean nothing on another page. */
+export const wordWith = (change: (words: string) => string): void => void (worded = change);
+
+/** Powers as superscripts. Otherwise the words stay as they are, or as they were asked to be. */
 export function typeset(words: string): string {
-  return words
+  return worded(words)
     .replace(
       /(\d)e([-+]?)0*(\d+)\b/g,
       (_all, digit: string, sign: string, power: string) =>

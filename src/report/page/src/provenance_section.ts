@@ -2,6 +2,7 @@
 /** Rig, calibration, and where everything comes from. */
 
 import { el, text } from './dom';
+import { typeset } from './prose';
 import { shownFit, type Report } from './report';
 import { plusMinus, significant } from './rounding';
 import { absent, section } from './section';
@@ -76,7 +77,7 @@ function resolutionText(data: Data): string {
 }
 
 function windowText({ window_s: [from, to], window_reason: why, used_samples: used, samples }: Data): string {
-  const reason = why ? `; ${why.replace('begins: ', 'begins ').replace('ends: ', 'ends ')}` : '';
+  const reason = why ? `; ${typeset(why.replace('begins: ', 'begins ').replace('ends: ', 'ends '))}` : '';
   return `${significant(from, 6)} s to ${significant(to, 6)} s, ${used} of ${samples} samples${reason}`;
 }
 
@@ -96,7 +97,7 @@ export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
     ['resolution', resolutionText(data)],
     ['clock', clockText(data)],
     ['begins', data.start === 'release' ? 'held, then released' : data.start === 'moving' ? 'in motion' : '–'],
-    ['noise model', fit?.noise ? `${fit.noise.model}: ${fit.noise.why}` : '–'],
+    ['noise model', fit?.noise ? `${fit.noise.model}: ${typeset(fit.noise.why)}` : '–'],
   ];
 }
 

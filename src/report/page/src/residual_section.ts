@@ -108,14 +108,15 @@ function numbers(fit: Fit): HTMLElement | null {
   ]);
 }
 
+export const kResidualsTitle = 'Are the residuals noise?';
+
 export function residualSection(report: Report): HTMLElement {
   const fit = shownFit(report);
-  const title = 'Are the residuals noise?';
-  if (!fit) return section('residuals', title, absent('Without a fit there are no residuals.'));
+  if (!fit) return section('residuals', kResidualsTitle, absent('Without a fit there are no residuals.'));
   const residual = report.samples?.models.get(fit.model)?.residual;
   const plots =
     residual && report.samples
       ? el('div', { class: 'pair' }, autocorrelationPart(residual), histogramPart(residual, report.samples.unit))
       : absent('The residuals are not part of this report.');
-  return section('residuals', title, numbers(fit) ?? text('There are no statistics of this fit.', 'absent'), plots);
+  return section('residuals', kResidualsTitle, numbers(fit) ?? text('There are no statistics of this fit.', 'absent'), plots);
 }

@@ -2,9 +2,11 @@
 /** Light or dark, as the system says or as chosen; light on paper. */
 
 import { button } from './dom';
+import { keep, kept } from './kept';
 
 type Theme = 'light' | 'dark';
 
+const kKept = 'pendulum_theme';
 const listeners = new Set<() => void>();
 const dark = (): MediaQueryList => window.matchMedia('(prefers-color-scheme: dark)');
 let chosen: Theme | null = null;
@@ -33,10 +35,16 @@ function setPaper(now: boolean): void {
   apply();
 }
 
+function keptTheme(): Theme | null {
+  const words = kept('cleared', kKept);
+  return words === 'light' || words === 'dark' ? words : null;
+}
+
 /** Follows the system and the printer from now on; once is enough. */
 export function startTheme(): void {
   if (started) return apply();
   started = true;
+  chosen = keptTheme();
   dark().addEventListener('change', apply);
   window.matchMedia('print').addEventListener('change', (event) => setPaper(event.matches));
   window.addEventListener('beforeprint', () => setPaper(true));
@@ -51,6 +59,7 @@ export function themeButton(): HTMLButtonElement {
     label(),
     () => {
       chosen = wanted() === 'dark' ? 'light' : 'dark';
+      keep('cleared', kKept, chosen);
       apply();
     },
     { class: 'theme', title: 'Change between light and dark' },

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The same recording once more: another part of it, another law, another rig. */
 
-import { button, details, el, text } from '../dom';
+import { button, el, text } from '../dom';
 import { figure, section } from '../section';
 import type { Loose, Result } from '../types';
 import { askJson } from './api';
 import { numberField, numberIn, type Field } from './forms';
+import { labelOf } from './flag_words';
 import { knownModels, ModelForm } from './model_form';
 import { OptionsForm } from './options_form';
+import { ProblemError } from './problem';
 import { alertPlace, attempt } from './problem_view';
 import { RigForm } from './rig_form';
 import { go } from './router';
@@ -21,37 +23,50 @@ const kFlagModel = 'coulomb'; // of a request that names none
 
 export class AgainSection {
   readonly element: HTMLElement;
-  private readonly from: Field<HTMLInputElement> = numberField('From [s]');
-  private readonly to: Field<HTMLInputElement> = numberField('To [s]');
+  private readonly from: Field<HTMLInputElement> = numberField(`${labelOf('from')} [s]`);
+  private readonly to: Field<HTMLInputElement> = numberField(`${labelOf('to')} [s]`);
   private readonly models = new ModelForm();
   private readonly rig = new RigForm();
   private readonly options = new OptionsForm(false);
   private readonly problems = alertPlace();
-  private readonly plot: WindowPlot;
+  private readonly plot: WindowPlot | null;
   private moved = false;
 
-  /** result: null where the recording could not be fitted. */
+  /** result: null where the recording could not be fitted; recording: null where it cannot be drawn. */
   constructor(
     private readonly place: Place,
     private readonly request: FitRequest,
-    result: Result | null,
-    recording: WholeRecording,
+    private readonly result: Result | null,
+    recording: WholeRecording | null,
   ) {
-    const used = (result?.data.window_s ?? null) as Window | null;
-    const times = recording.time_s;
-    const chosen: Window = used ?? [times[0] ?? 0, times[times.length - 1] ?? 1];
-    this.plot = new WindowPlot(recording, used, chosen, (window) => this.fill(window));
-    this.fill(chosen);
-    this.moved = false;
+    this.plot = recording && this.plotOf(recording);
     this.models.fill(request.options.model ?? request.options.models ?? kFlagModel);
     this.rig.fill(request.rig);
     this.options.fill(request.options, request.calibration);
-    for (const { input } of [this.from, this.to]) input.addEventListener('input', () => this.typed());
+    this.options.element.open = result === null; // what mends it may be there
+    for (const name of ['from', 'to'] as const) {
+      const { input } = this[name];
+      input.dataset.flag = name;
+      if (!recording) input.value = request.options[name] ?? '';
+      input.addEventListener('input', () => this.typed());
+    }
     this.element = this.make();
     void knownModels(place.signal).then(
       (models) => this.setModels(models),
       () => undefined, // what cannot be asked now says so when it is used
     );
+  }
+
+  /** The recording with what was used of it, else with what was asked for. */
+  private plotOf(recording: WholeRecording): WindowPlot {
+    const used = (this.result?.data.window_s ?? null) as Window | null;
+    const { from, to } = this.request.options;
+    const asked = (text: string | undefined, end: number): number => (text === undefined ? end : Number(text));
+    const chosen: Window = used ?? [asked(from, recording.time_s[0] ?? 0), asked(to, recording.time_s.at(-1) ?? 1)];
+    const plot = new WindowPlot(recording, used, chosen, (window) => this.fill(window));
+    this.fill(chosen);
+    this.moved = false;
+    return plot;
   }
 
   private setModels(models: Awaited<ReturnType<typeof knownModels>>): void {
@@ -68,7 +83,7 @@ export class AgainSection {
   private typed(): void {
     this.moved = true;
     const [from, to] = [this.from.input, this.to.input].map((input) => Number(input.value.replace(',', '.')));
-    if (from < to) this.plot.choose([from, to]);
+    if (from < to) this.plot?.choose([from, to]);
   }
 
   /** Flags that take the place of those of the fit: an empty one takes one away. */
@@ -80,7 +95,7 @@ export class AgainSection {
     const flags: Flags = { ...Object.fromEntries(gone.map((name) => [name, ''])), model: this.models.value(), ...own };
     const ends =
       this.moved && window === 'chosen'
-        ? { from: numberIn(this.from.input, 'From'), to: numberIn(this.to.input, 'To') }
+        ? { from: numberIn(this.from.input, labelOf('from')), to: numberIn(this.to.input, labelOf('to')) }
         : null;
     for (const end of ['from', 'to'] as const) {
       const value = ends?.[end] ?? null;
@@ -111,31 +126,38 @@ export class AgainSection {
   }
 
   private make(): HTMLElement {
-    const fit = button('Fit this window', () => this.fitAgain(fit, 'chosen'), { class: 'primary' });
+    const words = this.plot ? 'Fit this window' : 'Fit again';
+    const fit = button(words, () => this.fitAgain(fit, 'chosen'), { class: 'primary' });
     const found = button('Find the window again', () => this.fitAgain(found, 'found'));
     const caption =
-      'Drag to choose the part to fit; its ends can be moved, or typed below. Dashed: what this fit used.';
-    const law = details('Another kind of friction', () => this.models.element);
-    const rig = details('Another description of the pendulum', () => this.rig.element);
-    for (const part of [law, rig]) part.classList.add('options');
+      'Drag to choose the part to fit, or to move its ends; by the keyboard, type them below.' +
+      (this.result ? ' Dashed: what this fit used.' : '');
+    const kept = this.result ? ' beside this one' : '';
     return section(
       'again',
       'Fit it once more',
-      figure(caption, this.plot.chart.host),
+      this.plot && figure(caption, this.plot.chart.host),
       el('div', { class: 'window-fields' }, this.from.element, this.to.element),
-      law,
-      rig,
+      folded('Another kind of friction', this.models.element),
+      folded('Another description of the pendulum', this.rig.element),
       this.options.element,
-      el('div', { class: 'actions' }, fit, found),
-      text('The recording stays as it was sent; the new fit is kept beside this one.', 'quiet'),
+      el('div', { class: 'actions' }, fit, this.plot && found),
+      text(`The recording stays as it was sent; the new fit is kept${kept}.`, 'quiet'),
       this.problems,
     );
   }
 }
 
-/** The section for a fit of the service. */
+/** A part that is opened when it is wanted; all of it is there before, for problems to be told of its fields. */
+const folded = (summary: string, content: HTMLElement): HTMLElement =>
+  el('details', { class: 'options' }, el('summary', {}, summary), content);
+
+/** The section for a fit of the service, or for a recording that could not be fitted. */
 export async function againSection(place: Place, request: FitRequest, result: Result | null): Promise<HTMLElement> {
   const path = fitApi(request.id, 'samples');
-  const recording = await askJson<WholeRecording>(path, { signal: place.signal });
+  const recording = await askJson<WholeRecording>(path, { signal: place.signal }).catch((error: unknown) => {
+    if (error instanceof ProblemError) return null; // only the plot wants it
+    throw error;
+  });
   return new AgainSection(place, request, result, recording).element;
 }

@@ -4,6 +4,7 @@
 import { button, el } from '../dom';
 import { isTable, numberFrom, pastedRows } from './numbers';
 import { FieldError } from './problem';
+import { unmark } from './problem_fields';
 
 const kFirstRows = 5;
 
@@ -25,6 +26,7 @@ export class CalibrationTable {
     const add = button('Add a row', () => this.add().inputs[0].focus());
     this.element = el('div', {}, grid, add);
     this.name('counts', 'degrees');
+    this.body.addEventListener('input', () => this.unmark());
     for (let i = 0; i < kFirstRows; ++i) this.add();
   }
 
@@ -37,7 +39,6 @@ export class CalibrationTable {
   private input(what: string, column: 0 | 1): HTMLInputElement {
     const input = el('input', { type: 'text', inputmode: 'decimal', autocomplete: 'off' });
     input.dataset.what = what;
-    input.addEventListener('input', () => input.removeAttribute('aria-invalid'));
     input.addEventListener('paste', (event) => {
       const pasted = event.clipboardData?.getData('text') ?? '';
       if (!isTable(pasted)) return;
@@ -67,10 +68,16 @@ export class CalibrationTable {
   private remove(row: Row): void {
     const i = this.rows.indexOf(row);
     this.rows.splice(i, 1);
+    this.unmark();
     row.element.remove();
     if (this.rows.length === 0) this.add();
     this.number();
     this.rows[Math.min(i, this.rows.length - 1)].inputs[0].focus();
+  }
+
+  /** What was wrong is looked at anew, whichever cell has changed. */
+  private unmark(): void {
+    for (const { inputs } of this.rows) inputs.forEach(unmark);
   }
 
   /** Rows are counted from 1 on, for the eye and for those who listen. */
@@ -84,6 +91,7 @@ export class CalibrationTable {
 
   /** Fills rows from that of the input on; a single column goes into the column that it was pasted into. */
   private paste(pasted: string, input: HTMLInputElement, column: 0 | 1): void {
+    this.unmark();
     let i = this.rows.findIndex(({ inputs }) => inputs.includes(input));
     for (const [first, second] of pastedRows(pasted)) {
       const { inputs } = this.rows[i++] ?? this.add();
@@ -95,6 +103,7 @@ export class CalibrationTable {
 
   /** Shows these rows and one more. */
   fill(rows: readonly (readonly [number, number])[]): void {
+    this.unmark();
     while (this.rows.length < rows.length) this.add();
     this.rows.forEach(({ inputs }, i) => inputs.forEach((input, k) => (input.value = String(rows[i]?.[k] ?? ''))));
   }

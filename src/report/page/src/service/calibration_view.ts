@@ -11,6 +11,7 @@ import { askJson, newKey } from './api';
 import { calibrationPlots } from './calibration_plots';
 import { CalibrationTable } from './calibration_table';
 import { save } from './download';
+import { labelOf } from './flag_words';
 import { numberField, numberIn, selectField } from './forms';
 import { alertPlace, attempt } from './problem_view';
 import { go } from './router';
@@ -92,12 +93,14 @@ class CalibrationView {
     ['deg', 'degrees'],
     ['rad', 'radians'],
   ]);
-  private readonly order = selectField('Order of the curve', kOrders);
-  private readonly bits = numberField('Bits of the converter', 'If known: readings at its ends are then told apart.');
+  private readonly order = selectField(labelOf('order'), kOrders);
+  private readonly bits = numberField(labelOf('bits'), 'If known: readings at its ends are then told apart.');
   private readonly problems = alertPlace();
   private readonly outcome = el('div', { class: 'report' });
 
   constructor(private readonly place: Place) {
+    this.order.input.dataset.flag = 'order';
+    this.bits.input.dataset.flag = 'bits';
     const units = (): void =>
       this.table.name(this.reading.input.value, this.angle.input.value === 'deg' ? 'degrees' : 'radians');
     for (const { input } of [this.reading, this.angle]) input.addEventListener('change', units);
@@ -107,7 +110,7 @@ class CalibrationView {
     const lines = this.table.values().map(([reading, angle]) => `${reading},${angle}`);
     const body = [`${this.reading.input.value},angle_${this.angle.input.value}`, ...lines, ''].join('\n');
     const query = new URLSearchParams({ order: this.order.input.value });
-    const bits = numberIn(this.bits.input, 'Bits of the converter');
+    const bits = numberIn(this.bits.input, labelOf('bits'));
     if (bits !== null) query.set('bits', String(bits));
     const headers = { 'Content-Type': 'text/csv', 'Idempotency-Key': newKey() };
     const answer = await askJson<CalibrationAnswer>(`/v1/calibrations?${query}`, {

@@ -59,6 +59,12 @@ export function shareRecording(all: readonly Compared[]): boolean {
   return hashes.some((hash, i) => hash !== null && hashes.indexOf(hash) !== i);
 }
 
+/** True if all fits are of the same bytes. */
+export function areOneRecording(all: readonly Compared[]): boolean {
+  const [first, ...others] = all.map(({ report }) => report.result.data.sha256);
+  return (first ?? null) !== null && others.every((hash) => hash === first);
+}
+
 /** "1 coulomb.csv" */
 export const labelOf = (one: Compared, k: number): string => `${k + 1} ${elided(one.name, kLabel)}`;
 

@@ -15,6 +15,7 @@ import type { Result, Series } from '../types';
 import { spacedUnit, unitText, wordsOf } from '../units';
 import { askJson } from './api';
 import {
+  areOneRecording,
   commonModels,
   comparedRows,
   differenceInErrors,
@@ -110,7 +111,8 @@ const kShared =
 function parts(all: Compared[]): HTMLElement[] {
   const bars = forests(all);
   const reports = all.map(({ report }) => report);
-  const overlaid = overlaySection({ recordings: reports, result: { data: reports.map(({ result }) => result.data) } }, 'fit');
+  const data = reports.map(({ result }) => result.data);
+  const overlaid = overlaySection({ recordings: reports, result: { data }, oneClock: areOneRecording(all) }, 'fit');
   return [
     section('fits', 'What is compared', fitsTable(all)),
     section(

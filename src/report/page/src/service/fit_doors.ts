@@ -25,17 +25,22 @@ function downloads(id: string, name: string, fitted: boolean, problems: HTMLElem
   const list = el('ul', { class: 'downloads' });
   for (const [words, part, ending] of fitted ? kParts : kParts.slice(-1)) {
     const file = stem(name) + ending;
-    const press = button(words, () => void attempt(press, problems, () => download(fitApi(id, part), file, signal)));
+    const press = button(words, () => {
+      close();
+      void attempt(press, problems, () => download(fitApi(id, part), file, signal));
+    });
     list.append(el('li', {}, press));
   }
   const menu = details('Download', () => list);
+  const close = (): void => {
+    menu.open = false;
+    menu.querySelector('summary')?.focus();
+  };
   document.addEventListener('pointerdown', (event) => menu.contains(event.target as Node) || (menu.open = false), {
     signal,
   });
   menu.addEventListener('keydown', (event) => {
-    if (event.key !== 'Escape' || !menu.open) return;
-    menu.open = false;
-    menu.querySelector('summary')?.focus();
+    if (event.key === 'Escape' && menu.open) close();
   });
   return menu;
 }

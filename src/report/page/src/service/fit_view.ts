@@ -11,8 +11,9 @@ import { askJson } from './api';
 import { commandOf } from './command';
 import { fitDoors } from './fit_doors';
 import { localTime } from './fit_rows';
+import { knownModels } from './model_form';
 import { ProblemError } from './problem';
-import { alertPlace, problemBox } from './problem_view';
+import { alertPlace, tellProblem } from './problem_view';
 import { batchPath, fitApi } from './routes';
 import type { Place, View } from './shell';
 import { freshResult } from './submit';
@@ -36,7 +37,7 @@ function factsOf(request: FitRequest, facts: string): HTMLElement {
     { class: 'quiet facts-line' },
     facts,
     facts !== '' && ' · ',
-    'fitted ',
+    facts === '' ? 'sent ' : 'fitted ',
     localTime(request.created),
   );
   if (request.batch) parts.append(' · ', el('a', { href: batchPath(request.batch) }, 'its batch'));
@@ -75,11 +76,10 @@ function showReport(
 }
 
 /** Of a recording that could not be fitted: why, and how to go on. */
-function showFailure(place: Place, request: FitRequest, error: ProblemError, again: HTMLElement | null): void {
+function showFailure(place: Place, request: FitRequest, error: ProblemError, again: HTMLElement): void {
   const problems = alertPlace();
-  problems.append(problemBox(error));
-  place.main.append(factsOf(request, ''), fitDoors(request.id, request.name, false, problems, place), problems);
-  if (again) place.main.append(again);
+  place.main.append(factsOf(request, ''), fitDoors(request.id, request.name, false, problems, place), problems, again);
+  tellProblem(problems, error);
 }
 
 export const fitView =
@@ -91,13 +91,14 @@ export const fitView =
     main.append(waiting);
     const asked = askJson<FitRequest>(fitApi(id, 'request'), { signal });
     asked.catch(() => undefined); // told by the result below, which is asked for at the same time
+    const named = knownModels(signal).catch(() => undefined); // by their labels sentences name them
     try {
       const result = await resultOf(id, signal);
       const request = await asked;
+      await named;
       name(request.name || 'Recording without a name');
       if (result instanceof ProblemError) {
-        const again = await againSection(place, request, null).catch(() => null);
-        showFailure(place, request, result, again);
+        showFailure(place, request, result, await againSection(place, request, null));
         return;
       }
       const series = askJson<Series>(fitApi(id, 'series'), { signal }).catch(() => null);

@@ -24,7 +24,6 @@ export function labelled<T extends HTMLElement>(label: Child, input: T, hint = '
     input,
     hint !== '' && el('small', { id: `${id}-hint` }, hint),
   );
-  input.addEventListener('input', () => input.removeAttribute('aria-invalid'));
   return { element, input };
 }
 

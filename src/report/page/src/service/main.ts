@@ -6,11 +6,13 @@ import './service.css';
 import 'uplot/dist/uPlot.min.css';
 
 import { start } from '../embedded';
+import { wordWith } from '../prose';
 import { batchView } from './batch_view';
 import { calibrationView } from './calibration_view';
 import { compareView } from './compare_view';
 import { fitView } from './fit_view';
 import { fitsView } from './fits_view';
+import { inFields } from './flag_words';
 import { liveView } from './live_view';
 import { missing, startRouter } from './router';
 import type { Route } from './routes';
@@ -38,4 +40,5 @@ function viewOf(route: Route): View {
   }
 }
 
+wordWith(inFields);
 start('service', 'page', (root) => startRouter(root, viewOf));

@@ -3,6 +3,7 @@
 
 import { choice, el, text } from '../dom';
 import { askJson } from './api';
+import { labelOf, nameModels } from './flag_words';
 import { checkbox } from './forms';
 import { FieldError } from './problem';
 import type { ModelInfo } from './types';
@@ -14,6 +15,7 @@ let known: ModelInfo[] | null = null;
 /** The laws that the service knows, asked for once. */
 export async function knownModels(signal?: AbortSignal): Promise<ModelInfo[]> {
   known ??= (await askJson<{ models: ModelInfo[] }>('/v1/models', { signal })).models;
+  nameModels(known);
   return known;
 }
 
@@ -50,7 +52,7 @@ export class ModelForm {
       { value: 'auto', label: 'find out for me' },
       { value: 'own', label: 'I choose' },
     ];
-    const chooser = choice('Kind of friction', options, this.own ? 'own' : 'auto', (value) => {
+    const chooser = choice(labelOf('model'), options, this.own ? 'own' : 'auto', (value) => {
       this.own = value === 'own';
       this.show();
     });

@@ -19,6 +19,13 @@ function cells(line: string): string[] {
   return spaced ? words : line.split(',');
 }
 
+/** True of two columns or more without a line that names them. */
+export function isHeadless(pasted: string): boolean {
+  const first = pasted.split(/\r\n|\n|\r/).find((line) => line.trim() !== '' && !line.startsWith('#')) ?? '';
+  const [time, value] = cells(first).map((cell) => numberFrom(cell.trim().replace(/^"(.*)"$/, '$1')));
+  return Number.isFinite(time) && Number.isFinite(value);
+}
+
 /** Two columns of what was pasted; a line whose first two cells are no numbers is a heading and left out. */
 export function pastedRows(pasted: string): [string, string][] {
   const rows: [string, string][] = [];

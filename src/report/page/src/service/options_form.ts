@@ -3,41 +3,13 @@
 
 import { button, el, text } from '../dom';
 import type { Loose } from '../types';
+import { labelOf, optionsOf, type FieldFlag } from './flag_words';
 import { fileField, numberField, numberIn, selectField, textField, type Field } from './forms';
 import type { Flags } from './types';
 
-const kStarts: [string, string][] = [
-  ['', 'found in the recording'],
-  ['release', 'held at rest, then released'],
-  ['moving', 'already swinging'],
-];
-const kNoises: [string, string][] = [
-  ['', 'found in the recording'],
-  ['gaussian', 'even scatter'],
-  ['quantized', 'rounding to the steps of the sensor'],
-];
-const kIntervals: [string, string][] = [
-  ['', 'chosen by the fit'],
-  ['covariance', 'from the covariance (fast)'],
-  ['profile', 'from the likelihood'],
-  ['bootstrap', 'from simulated repetitions (slow)'],
-];
-const kLosses: [string, string][] = [
-  ['', 'there are none'],
-  ['huber', 'count less (Huber)'],
-  ['student', 'are expected (Student’s t)'],
-];
-const kUnits: [string, string][] = [
-  ['', 'in the column’s name'],
-  ['deg', 'degrees'],
-  ['rad', 'radians'],
-  ['deg_s', 'degrees per second'],
-  ['rad_s', 'radians per second'],
-  ['counts', 'counts of a converter'],
-  ['volts', 'volts'],
-];
-
 type Input = HTMLInputElement | HTMLSelectElement;
+
+const chosenField = (flag: FieldFlag): Field<HTMLSelectElement> => selectField(labelOf(flag), optionsOf(flag));
 
 /** A calibration that stands ready for the next fit. */
 export interface ReadyCalibration {
@@ -48,22 +20,22 @@ export interface ReadyCalibration {
 export class OptionsForm {
   readonly element: HTMLDetailsElement;
   private readonly numbers: Record<string, Field<HTMLInputElement>> = {
-    from: numberField('Use only from [s]', 'Else from where the free swing begins.'),
-    to: numberField('Use only up to [s]', 'Else to where it ends.'),
-    release: numberField('Which free swing', 'A number from 1; else the longest.'),
-    sample_rate_hz: numberField('Samples per second', 'Only of a file without times.'),
+    from: numberField(`${labelOf('from')} [s]`, 'Else from where the free swing begins.'),
+    to: numberField(`${labelOf('to')} [s]`, 'Else to where it ends.'),
+    release: numberField(labelOf('release'), 'A number from 1; else the longest.'),
+    sample_rate_hz: numberField(labelOf('sample_rate_hz'), 'Only of a file without times.'),
   };
   private readonly words: Record<string, Field<Input>> = {
-    start: selectField('How the recording begins', kStarts),
-    time_column: textField('Column of times', 'Its name, or its number from 1; else found by name.'),
-    value_column: textField('Column of the angle', 'Its name, or its number from 1; else found by unit.'),
-    unit: selectField('Unit of the values', kUnits),
-    noise: selectField('Noise of the sensor', kNoises),
-    interval: selectField('95 % intervals', kIntervals),
-    loss: selectField('Outliers', kLosses),
+    start: chosenField('start'),
+    time_column: textField(labelOf('time_column'), 'Its name, or its number from 1; else found by name.'),
+    value_column: textField(labelOf('value_column'), 'Its name, or its number from 1; else found by unit.'),
+    unit: chosenField('unit'),
+    noise: chosenField('noise'),
+    interval: chosenField('interval'),
+    loss: chosenField('loss'),
   };
   private readonly calibration = fileField(
-    'Calibration file',
+    labelOf('calibration'),
     'Turns counts or volts into an angle; the Calibration page makes one.',
   );
   private readonly ready = el('div', { class: 'ready' });
@@ -86,7 +58,12 @@ export class OptionsForm {
       'interval',
       'loss',
     ];
-    for (const name of order) if (all[name]) fields.append(all[name].element);
+    for (const name of order) {
+      if (!all[name]) continue;
+      all[name].input.dataset.flag = name;
+      fields.append(all[name].element);
+    }
+    this.calibration.input.dataset.flag = 'calibration';
     fields.append(el('div', {}, this.calibration.element, this.ready));
     this.calibration.input.addEventListener('change', () => this.use(null));
     this.element = el('details', { class: 'options' }, el('summary', {}, 'Further options'), fields);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** What went wrong, as the service says it (RFC 9457) or as the page finds it, and what to do about it. */
 
+import { labelOf } from './flag_words';
+
 export interface Problem {
   title: string;
   status: number;
@@ -14,11 +16,12 @@ export class ProblemError extends Error {
   }
 }
 
-/** A field of a form that cannot be understood; the field is to have the focus. */
+/** A field of a form that cannot be understood, with others that take part; the first is to have the focus. */
 export class FieldError extends Error {
   constructor(
     message: string,
     readonly field: HTMLElement,
+    readonly others: HTMLElement[] = [],
   ) {
     super(message);
   }
@@ -37,7 +40,7 @@ const kAdvice: Record<string, string> = {
   too_large: 'Send a shorter recording, or the part of it that matters.',
   unsupported_media_type: 'Choose a text file with columns of numbers, such as the CSV of a logger or a spreadsheet.',
   unusable_data: 'Mend the file there, or tell columns, units and calibration under “Further options”.',
-  no_swing: 'Choose a window that holds a free swing under “Further options”, or another recording.',
+  no_swing: `Choose a window that holds a free swing, “${labelOf('from')}” and “${labelOf('to')}”, or another recording.`,
   key_reused: 'Try again: this counts as a new request.',
   too_many_requests: 'Wait a moment, then try again.',
   headers_too_large: 'Shorten the name or the options.',
@@ -50,6 +53,10 @@ const kAdvice: Record<string, string> = {
 
 /** What to do, in a sentence; empty for what has no advice. */
 export const adviceFor = ({ code }: Problem): string => kAdvice[code] ?? '';
+
+/** The title as the service has it, but for what is said of an address. */
+export const titleOf = ({ code, title }: Problem): string =>
+  code === 'not_found' ? 'There is nothing at this address' : title;
 
 export const unreachable = (host: string): Problem => ({
   title: 'The service does not answer',
@@ -89,6 +96,6 @@ export function retryAfter(header: string | null, now: number): number | null {
 export function problemOf(error: unknown): Problem {
   if (error instanceof ProblemError) return error.problem;
   const detail = error instanceof Error ? error.message : String(error);
-  const title = error instanceof FieldError ? 'Something is missing or cannot be read' : 'This page has a fault';
+  const title = error instanceof FieldError ? 'Something is missing or wrong' : 'This page has a fault';
   return { title, status: 0, detail, code: '' };
 }

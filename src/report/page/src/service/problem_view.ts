@@ -2,7 +2,11 @@
 /** Shows what went wrong where it is read out, with the focus on it. */
 
 import { button, el, text } from '../dom';
-import { adviceFor, Cancelled, FieldError, problemOf } from './problem';
+import { inFields } from './flag_words';
+import { adviceFor, Cancelled, FieldError, problemOf, titleOf } from './problem';
+import { asFieldError, mark } from './problem_fields';
+
+let boxes = 0;
 
 /** A problem in words; `again` is what its button does. */
 export function problemBox(error: unknown, again?: () => void): HTMLElement {
@@ -11,8 +15,8 @@ export function problemBox(error: unknown, again?: () => void): HTMLElement {
   const words = el(
     'div',
     {},
-    el('p', { class: 'title' }, problem.title),
-    el('p', { class: 'detail' }, problem.detail),
+    el('p', { class: 'title' }, titleOf(problem)),
+    el('p', { class: 'detail', id: `problem-${++boxes}` }, inFields(problem.detail)),
     advice !== '' && text(advice, 'advice'),
     again && button('Try again', again),
   );
@@ -23,6 +27,24 @@ export function problemBox(error: unknown, again?: () => void): HTMLElement {
 /** An element for problems, which are read out as they come. */
 export const alertPlace = (): HTMLElement => el('div', { role: 'alert', class: 'alert-place' });
 
+/** Opens everything that hides a field. */
+function uncover(field: HTMLElement): void {
+  for (let box = field.closest('details'); box; box = box.parentElement?.closest('details') ?? null) box.open = true;
+}
+
+/** Appends a problem and marks the fields that it names; what the focus belongs to is the first of them, or the problem. */
+export function tellProblem(place: HTMLElement, error: unknown, again?: () => void): HTMLElement {
+  const main = place.closest('main') ?? document;
+  const told = asFieldError(error, (selector) => main.querySelector<HTMLElement>(selector));
+  const box = problemBox(told, again);
+  place.append(box);
+  if (!(told instanceof FieldError)) return box;
+  const fields = [told.field, ...told.others];
+  fields.forEach(uncover);
+  for (const field of fields) mark(field, box.querySelector('.detail')?.id ?? '');
+  return told.field;
+}
+
 /** Puts the problem into its place; nothing for what the user ended, or for a view that was left. */
 export function showProblem(place: HTMLElement, error: unknown, again?: () => void): void {
   place.replaceChildren();
@@ -31,16 +53,8 @@ export function showProblem(place: HTMLElement, error: unknown, again?: () => vo
     place.append(text(error.message, 'absent'));
     return;
   }
-  const box = problemBox(error, again);
-  place.append(box);
-  if (error instanceof FieldError) {
-    error.field.setAttribute('aria-invalid', 'true');
-    error.field.closest('details')?.setAttribute('open', '');
-    error.field.focus();
-  } else {
-    box.focus();
-  }
-  box.scrollIntoView({ block: 'nearest' });
+  tellProblem(place, error, again).focus();
+  place.lastElementChild?.scrollIntoView({ block: 'nearest' });
 }
 
 /** Runs what a control started; its problems go to `place`, and meanwhile the control is off. */

@@ -3,6 +3,7 @@
 
 import { choice, el, text } from '../dom';
 import type { Loose } from '../types';
+import { labelOf } from './flag_words';
 import { fileField, neededNumber, numberField, numberIn } from './forms';
 import { FieldError } from './problem';
 
@@ -23,6 +24,8 @@ const kMasses: Quantity[] = [
 ];
 const kTorque: Quantity[] = [{ name: 'gravity_torque', label: 'Gravity torque G', unit: 'N m' }];
 
+const deviationOf = ({ label }: Quantity): string => `Standard deviation of: ${label}`;
+
 /** Fields for quantities with their standard deviations, in the unit of each. */
 class QuantityFields {
   readonly element = el('div', { class: 'quantities' });
@@ -32,10 +35,14 @@ class QuantityFields {
     for (const quantity of quantities) {
       const value = numberField(`${quantity.label} [${quantity.unit}]`);
       const error = numberField('±', '', {
-        'aria-label': `Standard deviation of: ${quantity.label} [${quantity.unit}]`,
+        'aria-label': `${deviationOf(quantity)} [${quantity.unit}]`,
       });
       error.input.placeholder = 'unknown';
       value.input.value = quantity.value ?? '';
+      value.input.dataset.rig = quantity.name;
+      error.input.dataset.rig = `std_dev of ${quantity.name}`;
+      value.input.dataset.what = quantity.label;
+      error.input.dataset.what = deviationOf(quantity);
       this.inputs.push({ quantity, value: value.input, error: error.input });
       this.element.append(el('div', { class: 'quantity' }, value.element, error.element));
     }
@@ -46,7 +53,7 @@ class QuantityFields {
     return Object.fromEntries(
       this.inputs.map(({ quantity, value, error }) => {
         const number = neededNumber(value, quantity.label);
-        const deviation = numberIn(error, `Standard deviation of: ${quantity.label}`);
+        const deviation = numberIn(error, deviationOf(quantity));
         return [quantity.name, deviation ? { value: number, std_dev: deviation } : number];
       }),
     );
@@ -74,6 +81,7 @@ export class RigForm {
   private given: Loose | null = null;
 
   constructor() {
+    this.file.input.dataset.rig = 'file';
     this.draw();
   }
 
@@ -84,7 +92,7 @@ export class RigForm {
       { value: 'torque', label: 'its gravity torque' },
       { value: 'file', label: this.given ? 'the rig as given' : 'a rig file' },
     ];
-    const chooser = choice('What I know of the pendulum', options, this.kind, (value) => {
+    const chooser = choice(labelOf('rig'), options, this.kind, (value) => {
       this.kind = value as Kind;
       this.show();
     });

@@ -7,6 +7,7 @@ import { progressWords } from './batch_view';
 import { polynomial } from './calibration_plots';
 import { commandOf } from './command';
 import {
+  areOneRecording,
   commonModels,
   differenceInErrors,
   parameterNames,
@@ -285,6 +286,9 @@ describe('comparisons', () => {
     expect(shareRecording([a, b])).toBe(false);
     expect(shareRecording([a, b, compared('c', 'x', [])])).toBe(true);
     expect(shareRecording([compared('a', null, []), compared('b', null, [])])).toBe(false);
+    expect(areOneRecording([a, compared('c', 'x', [])])).toBe(true);
+    expect(areOneRecording([a, b, compared('c', 'x', [])])).toBe(false);
+    expect(areOneRecording([compared('a', null, []), compared('b', null, [])])).toBe(false);
   });
 
   test('the axis holds every interval', () => {

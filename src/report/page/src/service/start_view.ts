@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Where a fit begins: recordings, what is known of the pendulum, and which friction to look for. */
 
-import { button, details, el, text } from '../dom';
+import { button, el, text } from '../dom';
 import { askJson } from './api';
 import { dropZone, type DropZone } from './drop_zone';
-import { labelled, textField } from './forms';
 import { kCompared, knownModels, ModelForm } from './model_form';
 import { OptionsForm } from './options_form';
-import { FieldError } from './problem';
+import { PasteForm } from './paste_form';
 import { alertPlace, attempt, showProblem } from './problem_view';
 import { RigForm } from './rig_form';
 import { go } from './router';
@@ -86,26 +85,11 @@ class StartView {
     this.held.replaceChildren(text(words, 'quiet'), button('Fit again', again));
   }
 
-  private pasted(): HTMLElement {
-    const area = el('textarea', { rows: '8', spellcheck: 'false', autocomplete: 'off' });
-    area.placeholder = 'time_s,angle_deg\n0.00,24.2\n0.02,24.2\n0.04,23.9';
-    const numbers = labelled('Numbers', area, 'Columns as in a spreadsheet or a file; a first line may name them.');
-    const name = textField('Name of the recording');
-    name.input.value = 'pasted numbers';
-    const fit = (): void => {
-      const content = new Blob([area.value], { type: 'text/csv' });
-      void this.fit([{ name: name.input.value || 'pasted numbers', content }], async () => {
-        if (area.value.trim() === '') throw new FieldError('There are no numbers yet: paste them first.', area);
-        return choices(this.all);
-      });
-    };
-    return el(
-      'div',
-      { class: 'paste' },
-      numbers.element,
-      name.element,
-      button('Fit these numbers', fit, { class: 'primary' }),
-    );
+  private fitPasted(form: PasteForm): void {
+    void this.fit([form.recording], async () => {
+      const made = await choices(this.all);
+      return { ...made, flags: form.flags(made.flags) };
+    });
   }
 
   private example(example: Example): HTMLElement {
@@ -151,11 +135,10 @@ class StartView {
     const list = el('ul', { class: 'examples' });
     const part = (id: string, title: string, ...children: Node[]): HTMLElement =>
       el('section', { 'aria-labelledby': id }, el('h2', { id }, title), ...children);
-    const paste = details('Or paste numbers', () => this.pasted());
-    paste.classList.add('options');
+    const paste = new PasteForm((form) => this.fitPasted(form));
     this.place.main.append(
       text('From a recording of a free swing: how hard the pendulum is to turn, and what slows it down.', 'lead'),
-      part('recording', 'The recording', this.zone.element, this.progress, this.problems, this.held, paste),
+      part('recording', 'The recording', this.zone.element, this.progress, this.problems, this.held, paste.element),
       part('example', 'No recording at hand', text('Try one of these.', 'quiet'), list),
       part('rig-known', 'The pendulum', rig.element),
       part('friction', 'What slows it down', models.element, options.element),
