@@ -234,6 +234,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
+  if (fs::is_other(path, unknown)) return Fault(name, "this is no regular file; name one");
   if (const auto readable = sqlite::CheckReadable(name); mode == Mode::kRead && !readable) {
     return tl::unexpected(readable.error());
   }

@@ -66,8 +66,9 @@ bool BatchProgress::is_deleted() const {
   return is_deleted_;
 }
 
-BatchQueue::BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics)
-    : store_(store), fitter_(fitter), metrics_(metrics) {}
+BatchQueue::BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics,
+                       std::function<void(const std::string&)> say)
+    : store_(store), fitter_(fitter), metrics_(metrics), say_(std::move(say)) {}
 
 BatchQueue::~BatchQueue() {
   Stop();
@@ -159,12 +160,9 @@ void BatchQueue::Work() {
   constexpr std::chrono::seconds kShortest{1}, kLongest{60};
   std::chrono::seconds pause = kShortest;
   while (const auto run = Take()) {
-    if (TryOne(*run)) {
-      pause = kShortest;
-    } else {
-      PutBack(*run, pause);
-      pause = std::min(2 * pause, kLongest);
-    }
+    const auto settled = TryOne(*run);
+    if (!settled) PutBack(*run, settled.error(), pause);
+    pause = settled ? kShortest : std::min(2 * pause, kLongest);
   }
 }
 
@@ -177,8 +175,8 @@ std::optional<FitStore::Waiting> BatchQueue::Take() {
   return run;
 }
 
-/// Whether it is settled. An exception is our bug or the memory's end, and costs this run only.
-bool BatchQueue::TryOne(const FitStore::Waiting& run) {
+/// The error of a store that cannot be had now. An exception is our bug or the memory's end, and costs this run only.
+Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
   try {
     return FitOne(run);
   } catch (const std::exception& error) {
@@ -187,19 +185,19 @@ bool BatchQueue::TryOne(const FitStore::Waiting& run) {
       outcome.exit_code = ExitCode(StatusCode::kInternal);
       outcome.reason = std::string("internal error: ") + error.what();
       return Keep(run, outcome);
-    } catch (const std::exception&) {
-      return false;
+    } catch (const std::exception& another) {
+      return Error(StatusCode::kInternal, another.what());
     }
   }
 }
 
-/// Whether it is settled: kept, deleted meanwhile, or left for the next start.
-bool BatchQueue::FitOne(const FitStore::Waiting& run) {
+/// It is settled where it is kept, was deleted meanwhile, or is left for the next start.
+Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
   auto kept = store_.Find(run.id);
   if (!kept) {
-    const bool is_gone = kept.error().code == StatusCode::kNotFound;
-    if (is_gone) Settle(run, [&](BatchProgress& progress) { progress.Gone(run.id); });
-    return is_gone;
+    if (kept.error().code != StatusCode::kNotFound) return tl::unexpected(kept.error());
+    Settle(run, [&](BatchProgress& progress) { progress.Gone(run.id); });
+    return {};
   }
   FittedRun fitted;
   const auto begin = std::chrono::steady_clock::now();
@@ -211,16 +209,16 @@ bool BatchQueue::FitOne(const FitStore::Waiting& run) {
   }
   {
     const std::scoped_lock lock(mutex_);
-    if (is_stopping_ && fitted.is_stopped) return true;
+    if (is_stopping_ && fitted.is_stopped) return {};
   }
   metrics_.CountFit("batch", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
   return Keep(run, fitted.outcome);
 }
 
-bool BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
-  const auto stored = store_.Put(run.id, outcome);
+Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
+  auto stored = store_.Put(run.id, outcome);
   const bool is_gone = !stored && stored.error().code == StatusCode::kNotFound;
-  if (!stored && !is_gone) return false;
+  if (!stored && !is_gone) return stored;
   Settle(run, [&](BatchProgress& progress) {
     if (is_gone) {
       progress.Gone(run.id);
@@ -228,11 +226,16 @@ bool BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
       progress.Done(run.id, outcome.exit_code, outcome.reason);
     }
   });
-  return true;
+  return {};
 }
 
-/// The store cannot be had now; the run is the first again after a pause.
-void BatchQueue::PutBack(const FitStore::Waiting& run, std::chrono::seconds pause) {
+/// The run is the first again after a pause.
+void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
+  metrics_.CountPutBack();
+  if (say_) {
+    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again in " +
+         std::to_string(pause.count()) + " s");
+  }
   std::unique_lock lock(mutex_);
   if (!batches_.contains(run.batch)) return;
   waiting_.push_front(run);

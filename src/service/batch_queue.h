@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -62,7 +63,8 @@ class BatchProgress {
 /// Whatever ends it, what is in the store goes on next time.
 class BatchQueue {
  public:
-  BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics);
+  /// `say`: whom to tell what no answer does, from any thread; may be empty.
+  BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics, std::function<void(const std::string&)> say);
   BatchQueue(const BatchQueue&) = delete;
   BatchQueue& operator=(const BatchQueue&) = delete;
   BatchQueue(BatchQueue&&) = delete;
@@ -95,16 +97,17 @@ class BatchQueue {
   Result<void> StartThreads(int threads);
   void Work();
   std::optional<FitStore::Waiting> Take();
-  bool TryOne(const FitStore::Waiting& run);
-  bool FitOne(const FitStore::Waiting& run);
-  bool Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
-  void PutBack(const FitStore::Waiting& run, std::chrono::seconds pause);
+  Result<void> TryOne(const FitStore::Waiting& run);
+  Result<void> FitOne(const FitStore::Waiting& run);
+  Result<void> Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
+  void PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   template <typename Tell>
   void Settle(const FitStore::Waiting& run, const Tell& tell);
 
   FitStore& store_;
   Fitter& fitter_;
   ServiceMetrics& metrics_;
+  std::function<void(const std::string&)> say_;
   mutable std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
   std::deque<FitStore::Waiting> waiting_;

@@ -56,8 +56,14 @@ void Connection::Close() {
   serving_.closed(shared_from_this());
 }
 
+std::chrono::steady_clock::duration Connection::waited() const {
+  if (stage_ != Stage::kIdle && stage_ != Stage::kHead) return {};
+  return std::chrono::steady_clock::now() - began_;
+}
+
 void Connection::NextRequest() {
   stage_ = Stage::kIdle;
+  began_ = std::chrono::steady_clock::now();
   parser_.emplace(serving_.options.max_head, serving_.options.max_body, serving_.budget);
   method_.clear();
   target_.clear();

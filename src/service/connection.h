@@ -53,6 +53,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// At once, whatever is under way.
   void Close();
 
+  /// For the head of a request, until it is whole; zero while there is something to do.
+  std::chrono::steady_clock::duration waited() const;
+
  private:
   void NextRequest();
   void Read();
@@ -80,9 +83,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Stage stage_ = Stage::kIdle;
   std::string bytes_;  ///< That have come and are not taken.
   std::optional<RequestParser> parser_;
-  std::string method_, target_;  ///< As they came.
-  std::chrono::steady_clock::time_point began_;
-  HeldBytes held_;  ///< By an answer.
+  std::string method_, target_;                  ///< As they came.
+  std::chrono::steady_clock::time_point began_;  ///< The request, or waiting for it.
+  HeldBytes held_;                               ///< By an answer.
   std::weak_ptr<EventStream> stream_;
   bool keeps_alive_ = false;
   std::optional<Answered> answered_;  ///< What is being answered.

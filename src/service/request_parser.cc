@@ -148,6 +148,10 @@ tl::expected<std::size_t, Refused> RequestParser::ReadBody(std::string_view byte
   return taken;
 }
 
+Refused RequestParser::TooLong() const {
+  return {413, "the request's body is longer than " + std::to_string(max_body_) + " bytes"};
+}
+
 void RequestParser::Forget() {
   request_ = HttpRequest();
   held_.Release();
@@ -156,7 +160,7 @@ void RequestParser::Forget() {
 std::size_t RequestParser::Append(View body, Code& code) {
   std::string& text = request_.body;
   if (body.size() > max_body_ - text.size()) {
-    refused_ = Refused{413, "the request's body is longer than " + std::to_string(max_body_) + " bytes"};
+    refused_ = TooLong();
   } else if (!held_.Take(body.size())) {
     refused_ = Refused{429, "too much is being sent and answered at once; try again later"};
   }
@@ -191,7 +195,11 @@ void RequestParser::on_body_init_impl(const boost::optional<std::uint64_t>&, Cod
 
 std::size_t RequestParser::on_body_impl(View body, Code& code) { return Append(body, code); }
 
-void RequestParser::on_chunk_header_impl(std::uint64_t, View, Code&) {}
+void RequestParser::on_chunk_header_impl(std::uint64_t size, View, Code& code) {
+  if (size <= max_body_ - request_.body.size()) return;
+  refused_ = TooLong();
+  code = boost::beast::http::error::body_limit;
+}
 
 std::size_t RequestParser::on_chunk_body_impl(std::uint64_t, View body, Code& code) { return Append(body, code); }
 

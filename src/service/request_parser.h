@@ -60,6 +60,7 @@ class RequestParser final : private boost::beast::http::basic_parser<true> {
   std::optional<Refused> ReadLength();
   std::optional<Refused> ReadTarget();
   std::size_t Append(View body, Code& code);
+  Refused TooLong() const;
 
   void on_request_impl(boost::beast::http::verb verb, View method, View target, int version, Code& code) override;
   void on_response_impl(int status, View reason, int version, Code& code) override;

@@ -52,6 +52,7 @@ struct Server::State {
 
   Result<void> Bind();
   void Accept();
+  void MakeRoom();
   void Take(tcp::socket socket);
   void Forget(const std::shared_ptr<wire::Connection>& connection);
   void BeginStop();
@@ -89,7 +90,7 @@ Result<void> Server::State::Bind() {
   if (!code) port = acceptor.local_endpoint(code).port();
   if (!code) return {};
   return Error(StatusCode::kCannotWrite,
-               name + ": cannot be listened on, " + code.message() + "; choose another address or port");
+               "cannot listen on " + name + ": " + code.message() + "; choose another address or port");
 }
 
 void Server::State::Accept() {
@@ -106,8 +107,18 @@ void Server::State::Accept() {
   });
 }
 
+/// Who holds many connections and asks nothing keeps nobody out for long.
+void Server::State::MakeRoom() {
+  const auto patience = [](const auto& connection) { return connection->waited(); };
+  const auto longest = std::ranges::max_element(connections, {}, patience);
+  if (longest == connections.end() || patience(*longest) < options.yield_time) return;
+  const std::shared_ptr<wire::Connection> closed = *longest;
+  closed->Close();
+}
+
 void Server::State::Take(tcp::socket socket) {
   ++accepted;
+  if (connections.size() >= options.max_connections) MakeRoom();
   const bool is_one_too_many = connections.size() >= options.max_connections;
   if (is_one_too_many && turned_away.size() >= kMaxTurnedAway) return;
   const auto connection = std::make_shared<wire::Connection>(std::move(socket), serving);

@@ -27,6 +27,9 @@ class ServiceMetrics {
   /// A fit that was made: `kind` is request or batch.
   void CountFit(const std::string& kind, int exit_code, std::chrono::steady_clock::duration time);
 
+  /// A run of a batch that has to wait until the store can be had again.
+  void CountPutBack();
+
   /// What the server says of itself when the metrics are asked for.
   void set_server(std::function<ServerCounts()> counts);
 

@@ -46,7 +46,7 @@ struct ServiceState {
         store(std::move(kept)),
         fitter(options.fit_time),
         batch_fitter(kBatchPatience * options.fit_time),
-        queue(*store, batch_fitter, metrics) {
+        queue(*store, batch_fitter, metrics, options.say) {
     if (!options.live.empty()) live.emplace(options.live);
   }
 

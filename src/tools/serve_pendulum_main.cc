@@ -38,7 +38,7 @@ DEFINE_string(allowed_hosts, "",
               "any with a token.");
 DEFINE_int32(max_body_mb, 32, "Largest body of a request, MiB; default 32.");
 DEFINE_int32(max_samples, 200000, "Longest recording, in samples; default 200000.");
-DEFINE_int32(fit_seconds, 30, "Longest time of one fit, s; default 30.");
+DEFINE_int32(fit_seconds, 30, "Longest time of one fit, s; one of a batch has four times as long; default 30.");
 DEFINE_int32(max_queue, 64, "Requests that may wait for a thread; one more is refused with 429; default 64.");
 DEFINE_int32(max_batch_runs, 10000, "Recordings of batches that may wait; default 10000.");
 DEFINE_int32(max_connections, 512, "Connections at a time; default 512.");
@@ -154,8 +154,9 @@ Result<int> Work(const std::vector<std::string>& positional) {
   const ServePendulumFlags flags = CurrentFlags(positional);
   const auto token = ReadToken(flags.token_file, std::getenv("PENDULUM_TOKEN"));
   if (!token) return tl::unexpected(token.error());
-  const auto options = MakeServePendulumOptions(flags, *token);
+  auto options = MakeServePendulumOptions(flags, *token);
   if (!options) return tl::unexpected(options.error());
+  options->service.say = SayAtTime;
   const sigset_t signals = EndingSignals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before there are threads, which all inherit it
   auto store = FitStore::Open(options->store);

@@ -72,7 +72,8 @@ ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
   server.max_buffered = std::max(server.max_buffered, kBodiesAtOnce * server.max_body);
   server.request_time = std::chrono::seconds(flags.request_seconds);
   server.wait_time = std::chrono::seconds(flags.fit_seconds);
-  server.stop_time = std::chrono::seconds(flags.stop_seconds);
+  constexpr std::chrono::seconds kLastAnswers{5};  // to those whose fits are stopped then
+  server.stop_time = std::chrono::seconds(flags.stop_seconds) + kLastAnswers;
   return server;
 }
 

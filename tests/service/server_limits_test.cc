@@ -74,6 +74,15 @@ TEST_F(ServerLimitsTest, ABodyThatGrowsTooLargeInChunksIsRefused) {
   EXPECT_TRUE(Eventually([&] { return server_->Count().buffered == 0; }));
 }
 
+TEST_F(ServerLimitsTest, AChunkThatWouldBeTooLargeIsRefusedBeforeItComes) {
+  Start();
+  for (const std::string size : {"186a1", "ffffffffffffffff"}) {  // 100001
+    EXPECT_EQ(Connect().Ask("POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n" + size + "\r\n").status,
+              413);
+  }
+  EXPECT_EQ(handler_.calls, 0);
+}
+
 TEST_F(ServerLimitsTest, AClientThatSendsFarTooMuchSeesWhy) {
   Start();
   RawClient client = Connect();
@@ -148,6 +157,7 @@ TEST_F(ServerLimitsTest, WhatWaitsIsServedInItsOrder) {
 
 TEST_F(ServerLimitsTest, OneConnectionTooManyIsToldSo) {
   options_.max_connections = 4;
+  options_.yield_time = std::chrono::minutes(1);
   Start();
   std::vector<RawClient> clients;
   for (int i = 0; i < 4; ++i) {
@@ -165,8 +175,32 @@ TEST_F(ServerLimitsTest, OneConnectionTooManyIsToldSo) {
   EXPECT_EQ(Connect().Ask(Get("/")).status, 200);
 }
 
+// Nobody keeps others out by holding connections that ask nothing, or that never come to the end of a head.
+TEST_F(ServerLimitsTest, WhoAsksNothingMakesRoom) {
+  options_.max_connections = 4;
+  options_.yield_time = milliseconds(0);
+  Start();
+  RawClient fit = Connect();
+  fit.Send(Get("/fit"));
+  EXPECT_TRUE(Eventually([&] { return handler_.waiting == 1; }));
+  RawClient slow = Connect();
+  EXPECT_TRUE(Eventually([&] { return server_->Count().connections == 2; }));
+  RawClient silent = Connect(), idle = Connect();
+  EXPECT_TRUE(Eventually([&] { return server_->Count().connections == 4; }));
+  slow.Send("GET / HTTP/1.1\r\nHost:");
+  EXPECT_EQ(idle.Ask(Get("/")).status, 200);
+  RawClient first = Connect(), second = Connect();
+  EXPECT_EQ(first.Ask(Get("/")).status, 200);
+  EXPECT_EQ(second.Ask(Get("/")).status, 200);
+  EXPECT_TRUE(slow.IsEnded());
+  EXPECT_TRUE(silent.IsEnded());
+  handler_.gate.count_down();
+  EXPECT_EQ(fit.Read().status, 200) << "who is being answered stays";
+}
+
 TEST_F(ServerLimitsTest, AFloodOfConnectionsIsTurnedAwayAndLeavesNothing) {
   options_.max_connections = 4;
+  options_.yield_time = std::chrono::minutes(1);
   Start();
   {
     std::vector<RawClient> clients;

@@ -3,6 +3,7 @@
 """Tests who may ask serve_pendulum what, how often, and where it serves: service_access_test.py PATH_OF_THE_TOOL."""
 
 import hashlib
+import pathlib
 import shutil
 import signal
 import socket
@@ -289,6 +290,10 @@ class Beginnings(Lab):
             before = (self.folder / store).read_bytes()
             self.check_refused(4, store, "--port", 0, store=store)
             self.assertEqual((self.folder / store).read_bytes(), before)
+
+    def test_a_store_that_is_a_device_exits_4(self):
+        self.check_refused(4, "/dev/null", "--port", 0, store="/dev/null")
+        self.assertFalse(pathlib.Path("/dev/null-journal").exists())
 
     def test_a_store_in_use_exits_75(self):
         server = self.serve()

@@ -5,6 +5,7 @@
 import csv
 import http.client
 import json
+import re
 import resource
 import signal
 import sqlite3
@@ -17,6 +18,7 @@ from service import (DATASETS, IS_SANITIZED, RIG, TIMEOUT_S, Lab, Served, data_p
 
 MANY = 30 if IS_SANITIZED else 80  # runs, some of which are under way for a moment
 SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds a run
+ENDLESS = {"model": "all", "interval": "bootstrap"}  # many seconds
 BAD = {"word.csv": b"time_s,angle_deg\n0,1\n0.1,x\n", "empty.csv": b"", "binary.csv": bytes(range(256)) * 50,
        "header.csv": b"0,1\n" * 20,
        "still.csv": b"time_s,angle_deg\n" + b"".join(b"%d.%02d,12.5\n" % divmod(i, 100) for i in range(500))}
@@ -270,6 +272,9 @@ class Survival(Batched):
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
         self.assertEqual(server.post_csv("/v1/fits", (self.folder / names[0]).read_bytes()).status, 507)
         self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
+        told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again in \d+ s\n")
+        self.wait_until(lambda: told.search(server.log()), "a run is put back")  # the log may not grow by questions
+        self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_runs_put_back_total [1-9]")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "all"))
 
@@ -307,6 +312,18 @@ class Survival(Batched):
         self.assertEqual(server.get(answers[0].headers["location"]).body, answers[0].body)
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "viscous,coulomb"))
         self.check_store(server)
+
+    def test_a_fit_that_takes_too_long_then_is_told_so(self):
+        data = (self.folder / self.simulate(1)[0]).read_bytes()
+        server = self.serve("--stop_seconds", "0")
+        answers = []
+        asking = threading.Thread(target=lambda: answers.append(server.post_csv(f"/v1/fits?{query_of(ENDLESS)}", data)))
+        asking.start()
+        self.wait_until(lambda: b"requests_running 2" in server.get("/metrics").body, "the fit is under way, beside the question")
+        server.process.send_signal(signal.SIGTERM)
+        self.assertEqual(server.process.wait(TIMEOUT_S), 0)
+        asking.join(TIMEOUT_S)
+        self.assertEqual([(answer.status, answer.headers["retry-after"]) for answer in answers], [(503, "5")])
 
     def test_an_interrupt_ends_it_as_well_streams_included(self):
         server = self.serve()

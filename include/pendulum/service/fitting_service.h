@@ -19,14 +19,15 @@ namespace pendulum {
 struct ServiceOptions {
   RequestLimits limits;
   AccessRules access;
-  std::chrono::milliseconds fit_time{30'000};  ///< That one fit may take.
-  int threads = 0;                             ///< Runs of batches at a time; 0: cores.
-  std::string live;                            ///< The recording that is being made, as LiveRecording; empty for none.
+  std::chrono::milliseconds fit_time{30'000};   ///< That one fit may take.
+  int threads = 0;                              ///< Runs of batches at a time; 0: cores.
+  std::string live;                             ///< The recording that is being made, as LiveRecording; empty for none.
+  std::function<void(const std::string&)> say;  ///< Told, from any thread, what an operator should know.
 };
 
 struct ServiceState;
 
-/// Answers the requests of HTTP.md's paths (include/pendulum/service/openapi.json): fits recordings, keeps the results
+/// Answers the requests that include/pendulum/service/openapi.json lists: fits recordings, keeps the results
 /// in a store, works off batches, and has the page. What it has answered with success is on the disk.
 class FittingService : public HttpHandler {
  public:

@@ -21,7 +21,10 @@ struct ServerOptions {
   int quick_threads = 2;
   std::size_t max_queue = 64;                   ///< Requests that wait in a lane; one more is 429.
   std::chrono::milliseconds wait_time{30'000};  ///< That a request may wait there; then it is 408.
-  std::size_t max_connections = 512;  ///< One more gets 503 and is closed; half as many streams of events, then 429.
+  /// One more takes the place of the one that has been without a whole head of a request the longest, if that is
+  /// yield_time at least; else it gets 503 and is closed. Half as many streams of events, then 429.
+  std::size_t max_connections = 512;
+  std::chrono::milliseconds yield_time{1000};
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more is 431.
   std::size_t max_body = std::size_t{32} << 20;       ///< Bytes; more is 413.
   std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies in memory, answers too; more is 429.
