@@ -231,7 +231,7 @@ Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& ou
 
 /// The run is the first again after a pause.
 void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
-  metrics_.CountPutBack();
+  metrics_.CountRetry();
   if (say_) {
     say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again in " +
          std::to_string(pause.count()) + " s");

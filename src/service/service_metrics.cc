@@ -84,7 +84,7 @@ struct ServiceMetrics::State {
   Gauge& streams = AddGauge("pendulum_http_event_streams", "Open streams of events.");
   Gauge& buffered = AddGauge("pendulum_http_buffered_bytes", "Bodies of requests in memory.");
   Gauge& batch_runs = AddGauge("pendulum_batch_runs_waiting", "Runs of batches that wait.");
-  Counter& put_back = AddCounter("pendulum_batch_runs_put_back_total",
+  Counter& retries = AddCounter("pendulum_batch_retried_runs_total",
                                  "Times that a run of a batch had to wait because the store could not be had.");
   Gauge& resident = AddGauge("process_resident_memory_bytes", "Resident memory of the process.");
   Counter& cpu = AddCounter("process_cpu_seconds_total", "Processor time of the process.");
@@ -119,7 +119,7 @@ void ServiceMetrics::CountFit(const std::string& kind, int exit_code, std::chron
   state_->fit_seconds.Add({{"kind", kind}}, kSeconds).Observe(Seconds(time));
 }
 
-void ServiceMetrics::CountPutBack() { state_->put_back.Increment(); }
+void ServiceMetrics::CountRetry() { state_->retries.Increment(); }
 
 void ServiceMetrics::set_server(std::function<ServerCounts()> counts) {
   const std::scoped_lock lock(state_->mutex);

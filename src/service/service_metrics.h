@@ -28,7 +28,7 @@ class ServiceMetrics {
   void CountFit(const std::string& kind, int exit_code, std::chrono::steady_clock::duration time);
 
   /// A run of a batch that has to wait until the store can be had again.
-  void CountPutBack();
+  void CountRetry();
 
   /// What the server says of itself when the metrics are asked for.
   void set_server(std::function<ServerCounts()> counts);

@@ -274,7 +274,7 @@ class Survival(Batched):
         self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
         told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again in \d+ s\n")
         self.wait_until(lambda: told.search(server.log()), "a run is put back")  # the log may not grow by questions
-        self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_runs_put_back_total [1-9]")
+        self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_retried_runs_total [1-9]")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "all"))
 
