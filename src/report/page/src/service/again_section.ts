@@ -21,6 +21,16 @@ import { WindowPlot, type Window } from './window_plot';
 
 const kFlagModel = 'coulomb'; // of a request that names none
 
+/** A rig or calibration as an object, which a refit sends. */
+function parsedFile(name: string, content: string): Loose {
+  try {
+    return JSON.parse(content) as Loose;
+  } catch (error) {
+    const detail = `The file of the ${name} is not JSON (${String(error)}).`;
+    throw new ProblemError({ title: 'The request is wrong', status: 400, detail, code: 'wrong_request' });
+  }
+}
+
 export class AgainSection {
   readonly element: HTMLElement;
   private readonly from: Field<HTMLInputElement> = numberField(`${labelOf('from')} [s]`);
@@ -112,7 +122,7 @@ export class AgainSection {
       const own = this.request[name];
       const chosen = parts[name];
       if (chosen === (own && JSON.stringify(own))) continue;
-      replaced[name] = chosen === null ? null : (JSON.parse(chosen) as Loose);
+      replaced[name] = chosen === null ? null : parsedFile(name, chosen);
     }
     return replaced;
   }
