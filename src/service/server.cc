@@ -112,8 +112,8 @@ void Server::State::MakeRoom() {
   const auto patience = [](const auto& connection) { return connection->waited(); };
   const auto longest = std::ranges::max_element(connections, {}, patience);
   if (longest == connections.end() || patience(*longest) < options.yield_time) return;
-  const std::shared_ptr<wire::Connection> closed = *longest;
-  closed->Close();
+  const auto taken_out = connections.extract(longest);  // which keeps it, while it tells that it is closed
+  taken_out.value()->Close();
 }
 
 void Server::State::Take(tcp::socket socket) {
