@@ -185,8 +185,8 @@ Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
       outcome.exit_code = ExitCode(StatusCode::kInternal);
       outcome.reason = std::string("internal error: ") + error.what();
       return Keep(run, outcome);
-    } catch (const std::exception& another) {
-      return Error(StatusCode::kInternal, another.what());
+    } catch (const std::exception&) {
+      return Error(StatusCode::kInternal, "out of memory");  // short enough to need none
     }
   }
 }
@@ -229,15 +229,22 @@ Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& ou
   return {};
 }
 
-/// The run is the first again after a pause.
-void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
-  metrics_.CountRetry();
-  if (say_) {
-    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again in " +
+void BatchQueue::Tell(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
+  try {
+    metrics_.CountRetry();
+    if (!say_) return;
+    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again within " +
          std::to_string(pause.count()) + " s");
+  } catch (const std::exception&) {
+    return;  // words need memory, and the run goes on without
   }
+}
+
+/// The run is the first again, and this thread pauses.
+void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   std::unique_lock lock(mutex_);
   if (!batches_.contains(run.batch)) return;
+  Tell(run, why, pause);
   waiting_.push_front(run);
   changed_.wait_for(lock, pause, [&] { return is_stopping_; });
 }

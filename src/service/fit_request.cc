@@ -229,7 +229,7 @@ OrProblem<void> CheckOptions(const FlagTexts& flags) {
   const std::size_t bytes = JsonText(JsonOf(flags)).size();
   if (bytes <= kMostOptionBytes) return {};
   return Refused(ProblemKind::kTooLarge, "the options have " + std::to_string(bytes) + " bytes, and may have " +
-                                             std::to_string(kMostOptionBytes));
+                                             std::to_string(kMostOptionBytes) + "; leave some out");
 }
 
 /// The options of what was read, and whether there is not too much of it.

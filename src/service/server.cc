@@ -111,7 +111,7 @@ void Server::State::Accept() {
 void Server::State::MakeRoom() {
   const auto patience = [](const auto& connection) { return connection->waited(); };
   const auto longest = std::ranges::max_element(connections, {}, patience);
-  if (longest == connections.end() || patience(*longest) < options.yield_time) return;
+  if (longest == connections.end() || patience(*longest) <= options.yield_time) return;
   const auto taken_out = connections.extract(longest);  // which keeps it, while it tells that it is closed
   taken_out.value()->Close();
 }

@@ -85,7 +85,7 @@ struct ServiceMetrics::State {
   Gauge& buffered = AddGauge("pendulum_http_buffered_bytes", "Bodies of requests in memory.");
   Gauge& batch_runs = AddGauge("pendulum_batch_runs_waiting", "Runs of batches that wait.");
   Counter& retries = AddCounter("pendulum_batch_retried_runs_total",
-                                 "Times that a run of a batch had to wait because the store could not be had.");
+                                "Times that a run of a batch had to wait because the store could not be had.");
   Gauge& resident = AddGauge("process_resident_memory_bytes", "Resident memory of the process.");
   Counter& cpu = AddCounter("process_cpu_seconds_total", "Processor time of the process.");
   Counter& accepted = AddCounter("pendulum_http_connections_total", "Connections that were accepted.");

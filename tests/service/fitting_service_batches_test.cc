@@ -202,6 +202,17 @@ std::int64_t MostMemory() {
 
 void ForgetMostMemory() { std::ofstream("/proc/self/clear_refs") << 5; }  // proc(5)
 
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define PENDULUM_KEEPS_WHAT_IS_FREED
+#endif
+#endif
+#ifdef PENDULUM_KEEPS_WHAT_IS_FREED
+constexpr std::int64_t kMostOfABatch = 260 * 1024;  // KiB
+#else
+constexpr std::int64_t kMostOfABatch = 60 * 1024;
+#endif
+
 // Who sends a megabyte costs the service some megabytes, however many runs share a rig.
 TEST_F(FittingServiceBatchesTest, HoldsASharedRigOnce) {
   constexpr std::size_t kRig = 60'000, kRuns = 3000;  // 170 MiB if each had its own
@@ -212,7 +223,7 @@ TEST_F(FittingServiceBatchesTest, HoldsASharedRigOnce) {
   const std::int64_t before = MostMemory();
   ASSERT_EQ(Post("/v1/batches?model=viscous", kForm, FormOf(parts)).status, 202);
   EXPECT_GT(before, 0);
-  EXPECT_LT(MostMemory() - before, 60 * 1024);
+  EXPECT_LT(MostMemory() - before, kMostOfABatch);
 }
 
 // ---- Deleting ------------------------------------------------------------------------------------------------------

@@ -272,7 +272,7 @@ class Survival(Batched):
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
         self.assertEqual(server.post_csv("/v1/fits", (self.folder / names[0]).read_bytes()).status, 507)
         self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
-        told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again in \d+ s\n")
+        told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again within \d+ s\n")
         self.wait_until(lambda: told.search(server.log()), "a run is put back")  # the log may not grow by questions
         self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_retried_runs_total [1-9]")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))

@@ -22,7 +22,7 @@ struct ServerOptions {
   std::size_t max_queue = 64;                   ///< Requests that wait in a lane; one more is 429.
   std::chrono::milliseconds wait_time{30'000};  ///< That a request may wait there; then it is 408.
   /// One more takes the place of the one that has been without a whole head of a request the longest, if that is
-  /// yield_time at least; else it gets 503 and is closed. Half as many streams of events, then 429.
+  /// more than yield_time; else it gets 503 and is closed. Half as many streams of events, then 429.
   std::size_t max_connections = 512;
   std::chrono::milliseconds yield_time{1000};
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more is 431.

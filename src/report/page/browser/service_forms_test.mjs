@@ -86,6 +86,7 @@ test('a window that ends before it begins marks both of its fields, until one is
   await field(page, 'To [s]').fill('12');
   assert.equal(await field(page, 'To [s]').getAttribute('aria-invalid'), null);
   assert.equal(await field(page, 'To [s]').getAttribute('aria-describedby'), null);
+  assert.equal(await field(page, 'From [s]').getAttribute('aria-invalid'), null);
 });
 
 test('a mass that cannot be is told of its field, of a new fit and of one more', async (t) => {

@@ -15,7 +15,6 @@ import { spacedUnit, symbolOf, unitText, wordsOf } from './units';
 
 const number = 'number' as const;
 
-
 /** "χ² = 14.8 with 12 degrees of freedom, p = 0.25." */
 function testText({ statistic, dof, p }: SharedAgreement): string {
   const small = probabilityText(p);

@@ -18,8 +18,8 @@ export function kept(until: Until, name: string): string | null {
 /** Keeps it. Without a right to, or without room, it is lost with the page, as it was before. */
 export function keep(until: Until, name: string, words: string): void {
   try {
-    if (words === '') storage(until).removeItem(name);
-    else storage(until).setItem(name, words);
+    storage(until).removeItem(name); // lest the former words outlive a lack of room
+    if (words !== '') storage(until).setItem(name, words);
   } catch {
     // nobody waits for it
   }

@@ -54,6 +54,7 @@ export class AgainSection {
     this.rig.fill(request.rig);
     this.options.fill(request.options, request.calibration);
     this.options.element.open = result === null; // what mends it may be there
+    this.moved = result === null && this.plot !== null; // the window that is shown is the whole recording
     for (const name of ['from', 'to'] as const) {
       const { input } = this[name];
       input.dataset.flag = name;

@@ -59,10 +59,15 @@ export function shareRecording(all: readonly Compared[]): boolean {
   return hashes.some((hash, i) => hash !== null && hashes.indexOf(hash) !== i);
 }
 
-/** True if all fits are of the same bytes. */
+/** True if all fits are of the same bytes, read as the same times. */
 export function areOneRecording(all: readonly Compared[]): boolean {
-  const [first, ...others] = all.map(({ report }) => report.result.data.sha256);
-  return (first ?? null) !== null && others.every((hash) => hash === first);
+  const [first, ...others] = all.map(({ report }) => report.result.data);
+  const isAnother = (rate: number): boolean => Math.abs(rate / first.sample_rate_hz - 1) > 0.01; // parts differ by jitter
+  return (
+    first.sha256 !== null &&
+    others.every(({ sha256, clock_scale }) => sha256 === first.sha256 && clock_scale === first.clock_scale) &&
+    !others.some((other) => isAnother(other.sample_rate_hz))
+  );
 }
 
 /** "1 coulomb.csv" */

@@ -45,11 +45,14 @@ export class PasteForm {
   }
 
   private askUnit(): void {
-    this.unit.element.hidden = !isHeadless(this.area.value);
+    const headless = isHeadless(this.area.value);
+    this.unit.element.hidden = !headless;
+    if (headless) this.unit.input.dataset.flag = 'unit';
+    else delete this.unit.input.dataset.flag;
   }
 
   private make(fit: (form: PasteForm) => void): HTMLElement {
-    const hint = 'Two columns, times and angles, as in a spreadsheet or a file. A first line may name them.';
+    const hint = 'Two columns, times and angles, as in a spreadsheet or a file.';
     const press = button('Fit these numbers', () => fit(this), { class: 'primary' });
     const numbers = labelled('Numbers', this.area, hint);
     return el('div', { class: 'paste' }, numbers.element, this.unit.element, this.name.element, press);

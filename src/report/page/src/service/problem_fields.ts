@@ -47,11 +47,16 @@ export function unmark(field: HTMLElement): void {
   delete field.dataset.problem;
 }
 
-/** Marks a field as mistaken, described by the element of that id, until it is changed. */
+/** Takes the marks of a problem from all its fields. */
+export function unmarkAll(id: string): void {
+  for (const field of document.querySelectorAll<HTMLElement>(`[data-problem="${CSS.escape(id)}"]`)) unmark(field);
+}
+
+/** Marks a field as mistaken, described by the element of that id, until one of the problem's fields is changed. */
 export function mark(field: HTMLElement, id: string): void {
   unmark(field);
   field.setAttribute('aria-invalid', 'true');
   field.setAttribute(kDescribedBy, `${field.getAttribute(kDescribedBy) ?? ''} ${id}`.trim());
   field.dataset.problem = id;
-  for (const change of ['input', 'change']) field.addEventListener(change, () => unmark(field), { once: true });
+  for (const change of ['input', 'change']) field.addEventListener(change, () => unmarkAll(id), { once: true });
 }

@@ -4,7 +4,7 @@
 import { button, el, text } from '../dom';
 import { inFields } from './flag_words';
 import { adviceFor, Cancelled, FieldError, problemOf, titleOf } from './problem';
-import { asFieldError, mark } from './problem_fields';
+import { asFieldError, mark, unmarkAll } from './problem_fields';
 
 let boxes = 0;
 
@@ -45,9 +45,15 @@ export function tellProblem(place: HTMLElement, error: unknown, again?: () => vo
   return told.field;
 }
 
+/** Takes problems out of their place, and their marks from fields. */
+export function clearProblems(place: HTMLElement): void {
+  for (const { id } of place.querySelectorAll('.detail')) unmarkAll(id);
+  place.replaceChildren();
+}
+
 /** Puts the problem into its place; nothing for what the user ended, or for a view that was left. */
 export function showProblem(place: HTMLElement, error: unknown, again?: () => void): void {
-  place.replaceChildren();
+  clearProblems(place);
   if (error instanceof DOMException && error.name === 'AbortError') return;
   if (error instanceof Cancelled) {
     place.append(text(error.message, 'absent'));
@@ -64,7 +70,7 @@ export async function attempt(
   action: () => Promise<void>,
 ): Promise<void> {
   const again = (): void => void attempt(control, place, action);
-  place.replaceChildren();
+  clearProblems(place);
   if (control) control.disabled = true;
   try {
     await action();

@@ -7,7 +7,7 @@ import { dropZone, type DropZone } from './drop_zone';
 import { kCompared, knownModels, ModelForm } from './model_form';
 import { OptionsForm } from './options_form';
 import { PasteForm } from './paste_form';
-import { alertPlace, attempt, showProblem } from './problem_view';
+import { alertPlace, attempt, clearProblems, showProblem } from './problem_view';
 import { RigForm } from './rig_form';
 import { go } from './router';
 import type { Place, View } from './shell';
@@ -53,15 +53,16 @@ class StartView {
   ) {
     const hint =
       'CSV or text: times and angles. One file, or several; they are fitted at once, with the choices further down.';
-    const take = (files: File[]): void => void this.fit(files.map(asRecording), () => choices(this.all));
+    const take = (files: File[]): void => void this.fit(() => files.map(asRecording), () => choices(this.all));
     this.zone = dropZone('Drop recordings here, or press to choose', hint, take, place.signal);
   }
 
   /** Fits what was handed over; afterwards the view is that of the fit. */
-  private async fit(recordings: Recording[], what: () => Promise<Choices>): Promise<void> {
+  private async fit(which: () => Recording[], what: () => Promise<Choices>): Promise<void> {
     if (this.busy) return;
+    const recordings = which();
     this.busy = true;
-    this.problems.replaceChildren();
+    clearProblems(this.problems);
     this.held.replaceChildren();
     this.progress.textContent = `Fitting ${inWords(recordings)} …`;
     this.place.main.setAttribute('aria-busy', 'true');
@@ -69,7 +70,7 @@ class StartView {
       go(await sent(await submission(recordings, await what()), this.place.signal));
     } catch (error) {
       if (this.place.signal.aborted) return;
-      const again = (): void => void this.fit(recordings, what);
+      const again = (): void => void this.fit(which, what);
       showProblem(this.problems, error);
       this.hold(recordings, again);
     } finally {
@@ -86,7 +87,7 @@ class StartView {
   }
 
   private fitPasted(form: PasteForm): void {
-    void this.fit([form.recording], async () => {
+    void this.fit(() => [form.recording], async () => {
       const made = await choices(this.all);
       return { ...made, flags: form.flags(made.flags) };
     });
@@ -103,7 +104,7 @@ class StartView {
         calibration: null,
       };
       await this.fit(
-        [{ name: `${example.name}.csv`, content: new Blob([recording], { type: 'text/csv' }) }],
+        () => [{ name: `${example.name}.csv`, content: new Blob([recording], { type: 'text/csv' }) }],
         async () => made,
       );
     };
