@@ -118,9 +118,15 @@ describe('pasted recordings', () => {
     expect(kept('closed', 'x')).toBeNull();
     const stored = new Map<string, string>();
     const getItem = (name: string): string | null => stored.get(name) ?? null;
-    vi.stubGlobal('sessionStorage', { getItem, setItem: (name: string, words: string) => stored.set(name, words) });
+    const setItem = (name: string, words: string): void => {
+      if (words.length > 3) throw new DOMException('no room', 'QuotaExceededError');
+      stored.set(name, words);
+    };
+    vi.stubGlobal('sessionStorage', { getItem, setItem, removeItem: (name: string) => stored.delete(name) });
     keep('closed', 'x', 'y');
     expect(kept('closed', 'x')).toBe('y');
+    keep('closed', 'x', 'too long');
+    expect(kept('closed', 'x')).toBeNull(); // not the former words
     vi.unstubAllGlobals();
   });
 });
