@@ -229,7 +229,7 @@ Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& ou
   return {};
 }
 
-void BatchQueue::Tell(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
+void BatchQueue::SayWhy(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   try {
     metrics_.CountRetry();
     if (!say_) return;
@@ -244,7 +244,7 @@ void BatchQueue::Tell(const FitStore::Waiting& run, const Status& why, std::chro
 void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   std::unique_lock lock(mutex_);
   if (!batches_.contains(run.batch)) return;
-  Tell(run, why, pause);
+  SayWhy(run, why, pause);
   waiting_.push_front(run);
   changed_.wait_for(lock, pause, [&] { return is_stopping_; });
 }

@@ -100,7 +100,7 @@ class BatchQueue {
   Result<void> TryOne(const FitStore::Waiting& run);
   Result<void> FitOne(const FitStore::Waiting& run);
   Result<void> Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
-  void Tell(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
+  void SayWhy(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   void PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   template <typename Tell>
   void Settle(const FitStore::Waiting& run, const Tell& tell);
