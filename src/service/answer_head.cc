@@ -7,20 +7,16 @@
 #include <ostream>  // which Boost 1.74 does not include
 #include <string_view>
 
-#include <boost/beast/core/string.hpp>
 #include <boost/beast/http/status.hpp>
+
+#include "pendulum/service/media_type.h"
 
 namespace pendulum::wire {
 namespace {
 
-bool IsFieldName(std::string_view name) {
-  constexpr std::string_view kToken = "!#$%&'*+-.^_`|~0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-  return !name.empty() && name.find_first_not_of(kToken) == std::string_view::npos;
-}
-
 bool IsOurs(const std::string& name) {
   constexpr std::array<const char*, 4> kOurs = {"Connection", "Content-Length", "Date", "Transfer-Encoding"};
-  return std::ranges::any_of(kOurs, [&](const char* ours) { return boost::beast::iequals(ours, name); });
+  return std::ranges::any_of(kOurs, [&](const char* ours) { return IsSameWord(ours, name); });
 }
 
 std::string Printable(std::string value) {
@@ -53,7 +49,7 @@ std::string HttpDate(std::time_t time) {
 std::string AnswerHead(const HttpResponse& response, const Framing& framing, std::time_t now) {
   std::string head = "HTTP/1.1 " + std::to_string(response.status) + " " + Reason(response.status) + "\r\n";
   for (const HttpField& field : response.fields) {
-    if (IsFieldName(field.name) && !IsOurs(field.name)) head += field.name + ": " + Printable(field.value) + "\r\n";
+    if (IsToken(field.name) && !IsOurs(field.name)) head += field.name + ": " + Printable(field.value) + "\r\n";
   }
   head += "Date: " + HttpDate(now) + "\r\n";
   if (framing.length) head += "Content-Length: " + std::to_string(*framing.length) + "\r\n";

@@ -97,6 +97,18 @@ Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view n
                std::string(name) + " is '" + text + "'; it must be a whole number, at least 1");
 }
 
+Result<ListPage> PageOf(const RequestTarget& target) {
+  constexpr std::int64_t kMost = 500;
+  ListPage page;
+  const auto limit = QueryNumber(target, "limit", page.limit);
+  if (!limit) return tl::unexpected(limit.error());
+  const auto before = QueryNumber(target, "before", 0);
+  if (!before) return tl::unexpected(before.error());
+  page.limit = static_cast<int>(std::min(*limit, kMost));
+  if (*before > 0) page.before = *before;
+  return page;
+}
+
 std::string MakeId() {
   constexpr int kWords = 3;
   std::random_device random;  // the system's own, as hard to guess as any

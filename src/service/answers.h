@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -37,13 +39,30 @@ Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view n
 /// Letters and digits that nobody guesses: 96 bits.
 std::string MakeId();
 
-/// Of a list, whatever its limit.
-inline constexpr std::int64_t kMostListed = 500;
+/// What a client wants of a list: so many, with lesser numbers only.
+struct ListPage {
+  int limit = 50;
+  std::optional<std::int64_t> before;
+};
+
+/// The page that a query asks for by limit, of which 500 are given at most, and before. Errors as QueryNumber.
+Result<ListPage> PageOf(const RequestTarget& target);
 
 /// A run as lists and batches show it.
 nlohmann::ordered_json ItemOf(const ListedFit& fit);
 
 /// A batch without its runs.
 nlohmann::ordered_json ItemOf(const ListedBatch& batch);
+
+/// A page of a list, and `next`: the number to ask for those before, null where it was not full.
+template <typename Listed>
+HttpResponse PageAnswer(const std::string& name, const std::vector<Listed>& all, std::int64_t Listed::*number,
+                        int limit) {
+  using Json = nlohmann::ordered_json;
+  Json items = Json::array();
+  for (const Listed& one : all) items.push_back(ItemOf(one));
+  const bool is_full = static_cast<int>(all.size()) == limit;
+  return JsonAnswer({{name, std::move(items)}, {"next", is_full ? Json(all.back().*number) : Json(nullptr)}});
+}
 
 }  // namespace pendulum

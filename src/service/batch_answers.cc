@@ -98,12 +98,7 @@ Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& sta
   if (const auto batch = state.store->FindBatch(id); !batch) return tl::unexpected(batch.error());
   auto fits = state.store->RunsOf(id);
   if (!fits) return tl::unexpected(fits.error());
-  std::vector<BatchProgress::Run> runs;
-  runs.reserve(fits->size());
-  for (ListedFit& fit : *fits) {
-    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
-  }
-  return std::make_shared<const BatchProgress>(std::move(runs));
+  return std::make_shared<const BatchProgress>(*std::move(fits));
 }
 
 /// After which event a client wants to go on (WHATWG HTML, 9.2.4); 0 where it says none.
@@ -142,18 +137,11 @@ HttpResponse PostBatch(ServiceState& state, const Call& call) {
 
 HttpResponse ListBatches(ServiceState& state, const Call& call) {
   if (auto checked = CheckQuery(call.target, {"limit", "before"}); !checked) return ProblemAnswer(checked.error());
-  constexpr std::int64_t kUsual = 50;
-  const auto limit = QueryNumber(call.target, "limit", kUsual);
-  if (!limit) return ProblemAnswer(limit.error());
-  const auto before = QueryNumber(call.target, "before", 0);
-  if (!before) return ProblemAnswer(before.error());
-  const int most = static_cast<int>(std::min(*limit, kMostListed));
-  const auto batches = state.store->ListBatches(most, *before > 0 ? std::optional(*before) : std::nullopt);
+  const auto page = PageOf(call.target);
+  if (!page) return ProblemAnswer(page.error());
+  const auto batches = state.store->ListBatches(page->limit, page->before);
   if (!batches) return ProblemAnswer(batches.error());
-  Json items = Json::array();
-  for (const ListedBatch& batch : *batches) items.push_back(ItemOf(batch));
-  const bool is_full = static_cast<int>(batches->size()) == most;
-  return JsonAnswer({{"batches", std::move(items)}, {"next", is_full ? Json(batches->back().batch) : Json(nullptr)}});
+  return PageAnswer("batches", *batches, &ListedBatch::batch, page->limit);
 }
 
 HttpResponse GetBatch(ServiceState& state, const Call& call) { return BatchAnswer(state, call.id, 200); }

@@ -21,7 +21,18 @@ void BeNice() {
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
 }
 
+std::vector<BatchProgress::Run> RunsOf(std::vector<ListedFit> fits) {
+  std::vector<BatchProgress::Run> runs;
+  runs.reserve(fits.size());
+  for (ListedFit& fit : fits) {
+    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
+  }
+  return runs;
+}
+
 }  // namespace
+
+BatchProgress::BatchProgress(std::vector<ListedFit> fits) : BatchProgress(RunsOf(std::move(fits))) {}
 
 BatchProgress::BatchProgress(std::vector<Run> runs) : runs_(std::move(runs)) {
   for (std::size_t place = 0; place < runs_.size(); ++place) places_.emplace(runs_[place].id, place);
@@ -84,11 +95,7 @@ Result<void> BatchQueue::Begin(int threads) {
   for (const auto& [batch, runs] : left) {
     auto kept = store_.RunsOf(batch);
     if (!kept) return tl::unexpected(kept.error());
-    std::vector<BatchProgress::Run> all;
-    for (ListedFit& fit : *kept) {
-      all.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
-    }
-    batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(std::move(all)), runs});
+    batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(*std::move(kept)), runs});
   }
   waiting_.insert(waiting_.end(), waiting->begin(), waiting->end());
   return StartThreads(threads);

@@ -33,6 +33,9 @@ class BatchProgress {
 
   explicit BatchProgress(std::vector<Run> runs);
 
+  /// Of a batch as it is kept.
+  explicit BatchProgress(std::vector<ListedFit> fits);
+
   void Done(const std::string& id, int exit_code, const std::string& reason);
   void Gone(const std::string& id);
 

@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::size_t kReadOfHead = std::size_t{4} << 10, kReadOfBody = std::size_t{64} << 10;
 
-constexpr const char* kTooMuch = "too much is being sent and answered at once; try again later";
-
 /// Calls what is the handler's, whose exceptions are its bugs: none comes further than here.
 template <typename Call, typename Failed>
 auto Guarded(const Call& call, const Failed& failed) -> decltype(call()) {
@@ -145,9 +143,9 @@ bool Connection::ParseHead() {
 std::optional<Refused> Connection::RefusalOfHead() const {
   if (parser_->is_done()) return std::nullopt;
   if (parser_->head().content_length > serving_.options.max_body) {
-    return Refused{413, "the request's body is longer than " + std::to_string(serving_.options.max_body) + " bytes"};
+    return BodyTooLong(serving_.options.max_body);
   }
-  if (serving_.budget.is_full()) return Refused{429, kTooMuch};
+  if (serving_.budget.is_full()) return TooMuchAtOnce();
   return std::nullopt;
 }
 
@@ -193,7 +191,7 @@ HttpResponse Connection::Handle(std::chrono::steady_clock::time_point offered) {
     return MakeRefusal({408, "the request waited too long for its turn; try again later"});
   }
   const auto failed = [&](const std::string& what) { return MakeRefusal({500, what}); };
-  if (serving_.budget.is_exceeded()) return MakeRefusal({429, kTooMuch});
+  if (serving_.budget.is_exceeded()) return MakeRefusal(TooMuchAtOnce());
   HttpResponse response = Guarded([&] { return serving_.handler.Handle(parser_->request()); }, failed);
   parser_->Forget();
   if (response.status >= 200 && response.status <= 599) return response;

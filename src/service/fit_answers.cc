@@ -140,10 +140,8 @@ Result<std::string> SinceOf(const RequestTarget& target) {
 
 Result<FitFilter> FilterOf(const RequestTarget& target) {
   FitFilter filter;
-  const auto limit = QueryNumber(target, "limit", filter.limit);
-  if (!limit) return tl::unexpected(limit.error());
-  const auto before = QueryNumber(target, "before", 0);
-  if (!before) return tl::unexpected(before.error());
+  const auto page = PageOf(target);
+  if (!page) return tl::unexpected(page.error());
   std::vector<std::string_view> models;
   for (const MotionModel& model : MotionModels()) models.push_back(model.name);
   auto model = OneOf(target, "model", models);
@@ -152,8 +150,8 @@ Result<FitFilter> FilterOf(const RequestTarget& target) {
   if (!status) return tl::unexpected(status.error());
   auto since = SinceOf(target);
   if (!since) return tl::unexpected(since.error());
-  filter.limit = static_cast<int>(std::min<std::int64_t>(*limit, kMostListed));
-  if (*before > 0) filter.before = *before;
+  filter.limit = page->limit;
+  filter.before = page->before;
   filter.model = *std::move(model);
   filter.status = *std::move(status);
   filter.since = *std::move(since);
@@ -193,10 +191,7 @@ HttpResponse ListFits(ServiceState& state, const Call& call) {
   if (!filter) return ProblemAnswer(filter.error());
   const auto fits = state.store->List(*filter);
   if (!fits) return ProblemAnswer(fits.error());
-  Json items = Json::array();
-  for (const ListedFit& fit : *fits) items.push_back(ItemOf(fit));
-  const bool is_full = static_cast<int>(fits->size()) == filter->limit;
-  return JsonAnswer({{"fits", std::move(items)}, {"next", is_full ? Json(fits->back().run) : Json(nullptr)}});
+  return PageAnswer("fits", *fits, &ListedFit::run, filter->limit);
 }
 
 HttpResponse GetFit(ServiceState& state, const Call& call) {

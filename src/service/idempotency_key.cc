@@ -2,7 +2,7 @@
 #include "pendulum/service/idempotency_key.h"
 
 #include <algorithm>
-#include <optional>
+#include <string_view>
 
 #include "pendulum/base/format.h"
 #include "pendulum/service/media_type.h"
@@ -13,20 +13,16 @@ Result<std::string> IdempotencyKey(const HttpRequest& request) {
   const auto wrong = [](const std::string& sentence) {
     return Error(StatusCode::kInvalidArgument, "the Idempotency-Key " + sentence);
   };
-  std::optional<std::string> key;
-  for (const HttpField& field : request.fields) {
-    if (LowerCase(field.name) != "idempotency-key") continue;
-    if (key) return wrong("comes twice; keep one of them");
-    key = WithoutBlanks(field.value);
+  const auto values = request.Fields("Idempotency-Key");
+  if (values.empty()) return "";
+  if (values.size() > 1) return wrong("comes twice; keep one of them");
+  const std::string_view key = WithoutBlanks(values.front());
+  if (key.empty()) return wrong("is empty; give each request one of its own, or none");
+  if (key.size() > kLongestIdempotencyKey) {
+    return wrong("has " + std::to_string(key.size()) + " bytes; it may have " + std::to_string(kLongestIdempotencyKey));
   }
-  if (!key) return "";
-  if (key->empty()) return wrong("is empty; give each request one of its own, or none");
-  if (key->size() > kLongestIdempotencyKey) {
-    return wrong("has " + std::to_string(key->size()) + " bytes; it may have " +
-                 std::to_string(kLongestIdempotencyKey));
-  }
-  if (std::ranges::all_of(*key, [](char c) { return c > ' ' && c < '\x7F'; })) return *key;
-  return wrong(Quoted(*key) + " has other than visible letters of ASCII; write a random number or a UUID");
+  if (std::ranges::all_of(key, [](char c) { return c > ' ' && c < '\x7F'; })) return std::string(key);
+  return wrong(Quoted(key) + " has other than visible letters of ASCII; write a random number or a UUID");
 }
 
 }  // namespace pendulum

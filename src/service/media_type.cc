@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 
+char LowerLetter(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 bool IsTokenLetter(char c) {
   const bool is_letter_or_digit = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
   return is_letter_or_digit || std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
@@ -60,8 +62,12 @@ bool IsToken(std::string_view text) { return !text.empty() && TokenLength(text) 
 
 std::string LowerCase(std::string_view text) {
   std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::ranges::transform(text, lower.begin(), LowerLetter);
   return lower;
+}
+
+bool IsSameWord(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, {}, LowerLetter, LowerLetter);
 }
 
 std::string_view WithoutBlanks(std::string_view text) {

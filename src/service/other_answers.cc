@@ -126,9 +126,10 @@ HttpResponse NoLive() {
                         "record_pendulum --out run.csv writes"});
 }
 
+std::string TagOf(std::string_view content) { return "\"" + Sha256(content).value_or("").substr(0, 32) + "\""; }
+
 /// A file of the page, which a browser asks again for only once it has changed.
-HttpResponse PageFile(const Call& call, std::string_view type, std::string_view content) {
-  const std::string tag = "\"" + Sha256(content).value_or("").substr(0, 32) + "\"";
+HttpResponse PageFile(const Call& call, std::string_view type, std::string_view content, const std::string& tag) {
   const bool is_known = call.http.Field("If-None-Match").value_or("").find(tag) != std::string_view::npos;
   HttpResponse response = TextAnswer(type, is_known ? "" : std::string(content));
   if (is_known) response.status = 304;
@@ -241,15 +242,18 @@ HttpResponse GetOpenApi(ServiceState& /*state*/, const Call& /*call*/) {
 }
 
 HttpResponse GetPage(ServiceState& /*state*/, const Call& call) {
-  return PageFile(call, "text/html; charset=utf-8", ServicePage());
+  static const std::string tag = TagOf(ServicePage());
+  return PageFile(call, "text/html; charset=utf-8", ServicePage(), tag);
 }
 
 HttpResponse GetScript(ServiceState& /*state*/, const Call& call) {
-  return PageFile(call, "text/javascript; charset=utf-8", ServiceScript());
+  static const std::string tag = TagOf(ServiceScript());
+  return PageFile(call, "text/javascript; charset=utf-8", ServiceScript(), tag);
 }
 
 HttpResponse GetStyle(ServiceState& /*state*/, const Call& call) {
-  return PageFile(call, "text/css; charset=utf-8", ServiceStyle());
+  static const std::string tag = TagOf(ServiceStyle());
+  return PageFile(call, "text/css; charset=utf-8", ServiceStyle(), tag);
 }
 
 }  // namespace pendulum

@@ -17,10 +17,6 @@ constexpr std::size_t kMaxBetweenChunks = std::size_t{8} << 10;
 
 constexpr std::size_t kFirstCapacity = std::size_t{64} << 10;
 
-bool IsSameWord(std::string_view a, std::string_view b) {
-  return boost::beast::iequals({a.data(), a.size()}, {b.data(), b.size()});
-}
-
 tl::unexpected<Refused> Malformed(std::string detail) { return tl::unexpected(Refused{400, std::move(detail)}); }
 
 /// What may not stand at `i` of a head. Beast takes some of these for blanks, and folds lines.
@@ -41,6 +37,12 @@ std::optional<std::string> WrongByte(std::string_view bytes, std::size_t i) {
 }
 
 }  // namespace
+
+Refused BodyTooLong(std::size_t max_body) {
+  return {413, "the request's body is longer than " + std::to_string(max_body) + " bytes"};
+}
+
+Refused TooMuchAtOnce() { return {429, "too much is being sent and answered at once; try again later"}; }
 
 RequestParser::RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget)
     : max_head_(max_head), max_body_(max_body), held_(budget) {
@@ -148,10 +150,6 @@ tl::expected<std::size_t, Refused> RequestParser::ReadBody(std::string_view byte
   return taken;
 }
 
-Refused RequestParser::TooLong() const {
-  return {413, "the request's body is longer than " + std::to_string(max_body_) + " bytes"};
-}
-
 void RequestParser::Forget() {
   request_ = HttpRequest();
   held_.Release();
@@ -160,9 +158,9 @@ void RequestParser::Forget() {
 std::size_t RequestParser::Append(View body, Code& code) {
   std::string& text = request_.body;
   if (body.size() > max_body_ - text.size()) {
-    refused_ = TooLong();
+    refused_ = BodyTooLong(max_body_);
   } else if (!held_.Take(body.size())) {
-    refused_ = Refused{429, "too much is being sent and answered at once; try again later"};
+    refused_ = TooMuchAtOnce();
   }
   if (refused_) {
     code = boost::beast::http::error::body_limit;
@@ -197,7 +195,7 @@ std::size_t RequestParser::on_body_impl(View body, Code& code) { return Append(b
 
 void RequestParser::on_chunk_header_impl(std::uint64_t size, View, Code& code) {
   if (size <= max_body_ - request_.body.size()) return;
-  refused_ = TooLong();
+  refused_ = BodyTooLong(max_body_);
   code = boost::beast::http::error::body_limit;
 }
 

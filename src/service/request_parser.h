@@ -21,6 +21,12 @@ struct Refused {
   std::string detail;
 };
 
+/// The request's body is longer than it may be.
+Refused BodyTooLong(std::size_t max_body);
+
+/// There is no memory left for what comes in and goes out.
+Refused TooMuchAtOnce();
+
 /// What a head says beside the request's own words.
 struct RequestHead {
   bool keeps_alive = false;  ///< Another request may follow on the connection.
@@ -60,7 +66,6 @@ class RequestParser final : private boost::beast::http::basic_parser<true> {
   std::optional<Refused> ReadLength();
   std::optional<Refused> ReadTarget();
   std::size_t Append(View body, Code& code);
-  Refused TooLong() const;
 
   void on_request_impl(boost::beast::http::verb verb, View method, View target, int version, Code& code) override;
   void on_response_impl(int status, View reason, int version, Code& code) override;

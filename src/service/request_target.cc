@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pendulum/base/format.h"
+#include "pendulum/service/media_type.h"
 #include "service/escapes.h"
 
 namespace pendulum {
@@ -91,8 +92,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DecodedQuery(std::strin
 /// What stands before the authority of a target in absolute form; none of another.
 std::size_t SchemeLength(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
-    const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; };
-    if (std::ranges::equal(target.substr(0, scheme.size()), scheme, same)) return scheme.size();
+    if (IsSameWord(target.substr(0, scheme.size()), scheme)) return scheme.size();
   }
   return 0;
 }

@@ -19,20 +19,13 @@
 namespace pendulum::fit_bytes_test {
 namespace {
 
+using small_batch::OptionsFor;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string FileText(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-RunOptions OptionsFor(const std::vector<std::string>& models) {
-  RunOptions options;
-  options.models = models;
-  options.fit.model = models.front();
-  options.fit.threads = 1;
-  return options;
 }
 
 /// A short swing in counts of the sensor of kCalibration.

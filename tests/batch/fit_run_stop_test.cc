@@ -13,25 +13,19 @@
 #include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/provenance.h"
 #include "pendulum/report/json.h"
+#include "tests/batch/small_batch.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::fit_run_stop_test {
 namespace {
 
+using small_batch::OptionsFor;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
 
 using Clock = std::chrono::steady_clock;
-
-RunOptions OptionsFor(const std::vector<std::string>& models) {
-  RunOptions options;
-  options.models = models;
-  options.fit.model = models.front();
-  options.fit.threads = 1;
-  return options;
-}
 
 ReadSwings Read(const std::string& path, const RunOptions& options) {
   return Must(ReadOne(options, path, std::nullopt));

@@ -96,6 +96,15 @@ inline std::string RecordingText(std::uint64_t seed) { return RecordingText(Trut
 
 inline constexpr const char* kRigText = R"({"gravity_torque": {"value": 1.8, "std_dev": 0.002}})";
 
+/// One thread, the models in this order.
+inline RunOptions OptionsFor(const std::vector<std::string>& models) {
+  RunOptions options;
+  options.models = models;
+  options.fit.model = models.front();
+  options.fit.threads = 1;
+  return options;
+}
+
 /// The options of a refit by one thread, unless the environment's cores are to be used.
 inline RefitOptions OptionsWith(const std::vector<std::string>& models) {
   RefitOptions options;

@@ -43,11 +43,7 @@ class FittingServiceTest : public asked_service::ServiceTest {};
 
 /// What fit_pendulum makes of a recording with these models, and its result JSON without a path.
 FitRun FitOf(const std::vector<std::string>& models, RunFiles files) {
-  RunOptions options;
-  options.models = models;
-  options.fit.model = models.front();
-  options.fit.threads = 1;
-  return FitBytes(options, std::move(files)).value();
+  return FitBytes(small_batch::OptionsFor(models), std::move(files)).value();
 }
 
 std::string ResultOf(const FitRun& run) {

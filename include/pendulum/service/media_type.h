@@ -40,6 +40,9 @@ bool IsToken(std::string_view text);
 /// A to Z as a to z, everything else as it is.
 std::string LowerCase(std::string_view text);
 
+/// Whether two texts are the same but for the case of A to Z, as names of fields and codings are compared.
+bool IsSameWord(std::string_view a, std::string_view b);
+
 /// Without blanks and tabs at its ends.
 std::string_view WithoutBlanks(std::string_view text);
 
