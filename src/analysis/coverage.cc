@@ -33,7 +33,7 @@ struct RunOutcome {
 };
 
 std::vector<ParameterInfo> Parameters(const CoverageScenario& scenario) {
-  return FitParameters(scenario.run.model, scenario.run.start, scenario.run.quantity);
+  return FitParameters(scenario.run.model, scenario.run.start, scenario.run.quantity, false, scenario.run.sensor);
 }
 
 /// How many units of the report are one unit of G-relative values.

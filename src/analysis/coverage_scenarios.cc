@@ -6,10 +6,12 @@
 #include <string_view>
 #include <utility>
 
+#include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/sensor_start.h"
 
 namespace pendulum {
 namespace {
@@ -83,6 +85,38 @@ CoverageScenario Saturated() {
   return scenario;
 }
 
+/// In motion when the recording begins, seen by another sensor whose readings have that noise. What of the sensor is
+/// drawn for each recording, as it is known beforehand, ScenarioRun has.
+CoverageScenario Seen(std::string name, std::string description, Quantity quantity, SensorKind kind,
+                      std::vector<double> parameters, double noise) {
+  CoverageScenario scenario = Moving();
+  scenario.name = std::move(name);
+  scenario.description = std::move(description);
+  SyntheticOptions& run = scenario.run;
+  run.initial_angle = -0.5;
+  run.quantity = quantity;
+  run.sensor.kind = kind;
+  if (kind == SensorKind::kAcceleration) run.sensor.gravity = kStandardGravity;
+  run.sensor_parameters = std::move(parameters);
+  run.noise = noise;
+  run.resolution = 0;
+  return scenario;
+}
+
+/// Known of a sensor beforehand to so much, as the fit takes it for granted: draws about it.
+void DrawSensor(const CoverageScenario& scenario, std::mt19937_64& generator, SyntheticOptions& run) {
+  boost::random::normal_distribution<double> draw;
+  std::vector<double>& p = run.sensor_parameters;
+  if (run.sensor.kind == SensorKind::kAcceleration) {
+    p[0] += kAccelerometerBiasStdDev * draw(generator);
+    p[1] += kAccelerometerScaleStdDev * draw(generator);
+    p[2] += kAccelerometerAxisStdDev * draw(generator);
+  }
+  if (run.sensor.kind == SensorKind::kCoordinate) p[0] += kCameraLevelStdDev * draw(generator);
+  if (run.sensor.kind == SensorKind::kArc) p[0] += kCount * draw(generator);
+  if (run.sensor.kind == SensorKind::kScaledRate) p[0] += scenario.run.noise * draw(generator);
+}
+
 CoverageScenario Correlated(CoverageScenario scenario, double correlation, double lowest) {
   scenario.run.noise_correlation = correlation;
   scenario.rule.lowest = lowest;
@@ -127,6 +161,16 @@ std::vector<CoverageScenario> CoverageScenarios() {
       HeavyTails(),
       Without(1, "no_viscous", "b = 0, at its bound; white noise of 0.5 count on counts"),
       Without(2, "no_coulomb", "tau_c = 0, at its bound; white noise of 0.5 count on counts"),
+      Seen("gyro_volts", "a gyro of 0.115 V s/rad with noise of 2 mV, of unknown scale", Quantity::kRate,
+           SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
+      Seen("acceleration_across", "an accelerometer across the rod, 0.25 m from the pivot; noise of 0.05 m/s^2",
+           Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.25}, 0.05),
+      Seen("acceleration_along", "the same along the rod", Quantity::kAcceleration, SensorKind::kAcceleration,
+           {0, 1, kPi / 2, 0.25}, 0.05),
+      Seen("pixels_x", "the horizontal coordinate of a point, 400 px from the pivot; noise of 0.5 px",
+           Quantity::kPosition, SensorKind::kCoordinate, {0, 640, 400}, 0.5),
+      Seen("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc, {0, 640, 120, 400},
+           0.5),
   };
 }
 
@@ -160,6 +204,7 @@ SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t see
   run.seed = seed;
   run.zero += kCount * draw(generator);
   run.release_time += draw(generator) / run.sample_rate;
+  DrawSensor(scenario, generator, run);
   return run;
 }
 

@@ -115,8 +115,9 @@ std::vector<std::optional<double>> BoundsOf(const Eigen::MatrixXd& information) 
 }  // namespace
 
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
-  const std::size_t count = truth.parameters.size() + 3;
+  const std::size_t count = TrueParameters(truth).size();
   std::vector<std::optional<double>> bounds(count);
+  if (truth.sensor.kind != SensorKind::kDirect) return bounds;  // they would have to know what is known beforehand
   const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
   const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
   if (!information) return bounds;

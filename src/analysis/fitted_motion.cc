@@ -12,7 +12,7 @@ namespace pendulum {
 
 FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig,
                            std::stop_token stop)
-    : model_(fit.model), start_(fit.start), quantity_(fit.quantity), stop_(std::move(stop)) {
+    : model_(fit.model), start_(fit.start), quantity_(fit.quantity), sensor_(fit.sensor), stop_(std::move(stop)) {
   instants_ = used.clock_scale * (used.time.array() - used.time[0]);
   const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   for (const ParameterEstimate& parameter : fit.parameters) {
@@ -55,6 +55,7 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
                                                       Eigen::MatrixXd* jacobian) const {
   TrajectoryData data;
   data.quantity = quantity_;
+  data.sensor = sensor_;
   data.time.assign(instants.begin(), instants.end());
   data.value.assign(data.time.size(), 0.0);
   data.natural_frequency = 1 / std::sqrt(parameters_[0]);

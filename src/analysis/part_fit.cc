@@ -113,7 +113,8 @@ std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& 
     const auto k = static_cast<Index>(i);
     if (const auto prior = priors.find(parameter.info.name); prior != priors.end())
       information(k, k) += 1 / (prior->second.std_dev * prior->second.std_dev);
-    if (parameter.fixed || (with_bounds && parameter.at_bound)) continue;
+    // Parts are compared with the sensor held: its parameters may rest on what is known beforehand alone.
+    if (parameter.fixed || IsSensorParameter(parameter.info.name) || (with_bounds && parameter.at_bound)) continue;
     linear.free.push_back(k);
     free.push_back(static_cast<int>(i));
   }
@@ -161,7 +162,8 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
     // What drifts is told at the first sample.
     if (const ParameterEstimate& last = fit_.parameters.back(); IsZero(name) && IsDrift(last.info.name))
       value += last.estimate * instant;
-    const bool hold = parameter.fixed || std::ranges::find(held, name) != held.end();
+    // What both parts would share of the sensor would make them agree.
+    const bool hold = parameter.fixed || IsSensorParameter(name) || std::ranges::find(held, name) != held.end();
     (hold ? options.fixed : options.initial).insert_or_assign(std::string(name), value);
   }
   if (motion_) {

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/closed_form/turns_view.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -70,8 +71,14 @@ tl::unexpected<Status> Stopped() {
 
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop) {
+  if (model.gravity == Gravity::kSine && !recording.is_calibrated()) {
+    return Error(StatusCode::kFailedPrecondition,
+                 "the readings are in " + recording.unit +
+                     ", and closed forms of this model need an angle or a rate; --closed_form_only has those of small "
+                     "angles");
+  }
   const double origin = recording.time[0];
-  const Recording timed = InTrueTime(recording);
+  const Recording timed = InTrueTime(TurnsView(recording));
   ClosedForms forms;
   forms.gravity = model.gravity;
   Result<Decrement> decrement = FitDecrement(timed, model, stop);

@@ -13,6 +13,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/closed_form/turns.h"
+#include "pendulum/closed_form/turns_view.h"
 
 namespace pendulum {
 namespace {
@@ -324,6 +325,7 @@ Result<void> CheckUnit(const TurnTable& table) {
 }  // namespace
 
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
+  if (HasOtherView(recording)) return FindFreeSwings(TurnsView(recording));
   const TurnTable table = TabulateTurns(recording);
   if (table.turns.size() < 3) {
     const Result<std::vector<Extremum>> extrema = FindExtrema(recording);

@@ -85,8 +85,26 @@ bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
          (start.short_hold || !Explains(*attempt.problem, attempt.solution));
 }
 
+/// Log-likelihood of samples and priors.
+double LogPosterior(const Attempt& attempt) {
+  return attempt.solution.log_likelihood - 0.5 * attempt.cost->PriorSum(attempt.solution.parameters);
+}
+
 bool IsBetter(const Attempt& a, const Attempt& b) {
-  return a.solution.usable && (!b.solution.usable || a.solution.log_likelihood > b.solution.log_likelihood);
+  return a.solution.usable && (!b.solution.usable || LogPosterior(a) > LogPosterior(b));
+}
+
+/// From the best of the ways to see the readings.
+Result<Attempt> TrySensorStarts(const Recording& recording, const FitOptions& options) {
+  Result<Attempt> best = TryFit(recording, options);
+  if (!best) return best;
+  FitOptions other = options;
+  const std::size_t starts = best->problem->sensor_starts;
+  for (other.sensor_start = 1; other.sensor_start < starts; ++other.sensor_start) {
+    Result<Attempt> attempt = TryFit(recording, other);
+    if (attempt && IsBetter(*attempt, *best)) best = std::move(attempt);
+  }
+  return best;
 }
 
 /// From the data's other reference rates: the likeliest of those that lead to parameters that are the law's own.
@@ -155,13 +173,13 @@ namespace {
 
 /// The report, unless the fit is stopped: then it may be half made.
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
-  Result<Attempt> attempt = TryFit(recording, options);
+  Result<Attempt> attempt = TrySensorStarts(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());
   if (MayBeginInMotion(*attempt, options)) {
     FitOptions moving = options;
     moving.start = StartChoice::kMoving;
     // Not possible where release_time is fixed.
-    if (Result<Attempt> other = TryFit(recording, moving); other && IsBetter(*other, *attempt))
+    if (Result<Attempt> other = TrySensorStarts(recording, moving); other && IsBetter(*other, *attempt))
       attempt = std::move(other);
   }
   if (!BrokenOrder(*attempt->problem, attempt->solution.parameters).empty()) FallBack(recording, options, attempt);

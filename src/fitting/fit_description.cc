@@ -33,18 +33,36 @@ int PeriodLags(const FitProblem& problem) {
   return static_cast<int>(std::min(lags, static_cast<double>(time.size())));
 }
 
+/// The unit of what is told in that of the readings.
+void SetReadingUnit(const Recording& recording, const SensorModel& sensor, ParameterEstimate& parameter) {
+  const std::string_view name = parameter.info.name;
+  const bool is_length = name == kPivotX.name || name == kPivotY.name || name == kRadius.name;
+  if (is_length && sensor.kind != SensorKind::kAcceleration) parameter.unit = recording.unit;
+  if (sensor.kind == SensorKind::kScaledRate && name == kRateBias.name) parameter.unit = recording.unit;
+  if (name == kRateScale.name) parameter.unit = recording.unit + " s/rad";
+  if (sensor.kind != SensorKind::kDirect || recording.is_calibrated() || !parameter.unit.starts_with("rad")) return;
+  // The motion itself is told in the readings' unit then: of a rate it is a rate.
+  const bool is_rate = parameter.unit == "rad/s";
+  if (recording.quantity != Quantity::kRate) {
+    parameter.unit.replace(0, 3, recording.unit);
+  } else {
+    parameter.unit = is_rate ? recording.unit : parameter.unit == "rad" ? recording.unit + " s" : recording.unit + "/s";
+  }
+}
+
 /// Value, unit and flags of parameter i, without its errors.
 ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                const Solution& solution, std::size_t i) {
   ParameterEstimate parameter;
   parameter.info = problem.infos[i];
   parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
-  const bool is_reading = parameter.unit.starts_with("rad");
-  if (is_reading && !recording.is_calibrated()) parameter.unit.replace(0, 3, recording.unit);
+  SetReadingUnit(recording, problem.data.sensor, parameter);
   parameter.estimate = problem.Reported(i, solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];
   const auto is_one_of = [&](auto... infos) { return ((parameter.info.name == infos.name) || ...); };
-  const bool has_closed_form = !is_one_of(kInitialAngle, kInitialRate, kZeroDrift, kBiasDrift);
+  const bool is_seen = recording.is_calibrated() || problem.data.sensor.kind == SensorKind::kDirect;
+  const bool has_closed_form = is_seen && !IsSensorParameter(parameter.info.name) &&
+                               !is_one_of(kInitialAngle, kInitialRate, kZeroDrift, kBiasDrift);
   if (has_closed_form && !parameter.fixed) parameter.closed_form = problem.Reported(i, problem.start.parameters[i]);
   return parameter;
 }
@@ -69,6 +87,7 @@ FitReport IntroduceFit(const Recording& recording, const FitProblem& problem, co
   report.start = problem.start.start;
   report.start_values = problem.start;
   report.quantity = recording.quantity;
+  report.sensor = problem.data.sensor;
   report.reading_unit = recording.value_unit();
   report.solver = {solution.iterations, cost.traces(), solution.message};
   return report;

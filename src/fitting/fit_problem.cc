@@ -8,6 +8,8 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/fitting/sensor_start.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/nesting.h"
 #include "pendulum/recording/window.h"
@@ -91,8 +93,8 @@ Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
   return {};
 }
 
-/// Puts the user's bounds, start values, fixed values and priors in.
-Result<void> ApplyOptions(const FitOptions& options, FitProblem& problem) {
+/// Puts the user's bounds, start values, fixed values and priors in, and what is known of the sensor.
+Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sensor_priors, FitProblem& problem) {
   if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
   for (const auto& [name, value] : options.initial) {
     const Result<std::size_t> i = FindParameter(problem, name, "begin");
@@ -105,7 +107,8 @@ Result<void> ApplyOptions(const FitOptions& options, FitProblem& problem) {
     if (Result<void> done = BeginAt(value, *i, "fixed at", problem); !done) return done;
     problem.solve.fixed[*i] = true;
   }
-  return ApplyPriors(options.priors, problem);
+  if (Result<void> done = ApplyPriors(options.priors, problem); !done) return done;
+  return ApplyPriors(sensor_priors, problem);
 }
 
 /// Bounds in the units of the problem: those of the parameters, and the hold for the release.
@@ -117,9 +120,10 @@ void SetBounds(FitProblem& problem) {
   }
 }
 
-TrajectoryData MakeData(const Recording& recording, const StartValues& start) {
+TrajectoryData MakeData(const Recording& recording, const SensorModel& sensor, const StartValues& start) {
   TrajectoryData data;
   data.quantity = recording.quantity;
+  data.sensor = sensor;
   data.time.resize(static_cast<std::size_t>(recording.size()));
   std::transform(recording.time.begin(), recording.time.end(), data.time.begin(),
                  [&](double time) { return time - recording.time[0]; });
@@ -197,15 +201,21 @@ double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
   return left / (values.array() - values.mean()).matrix().squaredNorm();
 }
 
-std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, bool drifts) {
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, bool drifts,
+                                         const SensorModel& sensor) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);
   if (start == StartKind::kRelease) {
     infos.insert(infos.end(), {kReleaseAngle, kReleaseTime});
   } else {
     infos.insert(infos.end(), {kInitialAngle, kInitialRate});
   }
-  infos.push_back(quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
-  if (drifts) infos.push_back(quantity == Quantity::kAngle ? kZeroDrift : kBiasDrift);
+  if (sensor.kind != SensorKind::kDirect) {
+    const std::vector<ParameterInfo> of_sensor = sensor.Parameters();
+    infos.insert(infos.end(), of_sensor.begin(), of_sensor.end());
+    return infos;
+  }
+  infos.push_back(quantity == Quantity::kRate ? kRateBias : kZeroAngle);
+  if (drifts) infos.push_back(quantity == Quantity::kRate ? kBiasDrift : kZeroDrift);
   return infos;
 }
 
@@ -222,6 +232,48 @@ Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
       "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
 }
 
+Result<void> CheckSensor(const Recording& recording, const MotionModel& model, const SensorModel& sensor,
+                         const FitOptions& options) {
+  const bool is_raw_angle = recording.quantity == Quantity::kAngle && !recording.is_calibrated();
+  if (is_raw_angle && model.gravity == Gravity::kSine) return NeedsCalibration(recording, model);
+  if (recording.quantity != Quantity::kAcceleration) return {};
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  if (sensor.kind == SensorKind::kDirect && IsRadial(recording)) {
+    return Error(StatusCode::kDataLoss,
+                 where + "an acceleration along the rod swings twice as fast as the pendulum, which " +
+                     "--model linear cannot tell; choose the axis across the rod, or another model");
+  }
+  if (options.start == StartChoice::kRelease) {
+    return Error(
+        StatusCode::kFailedPrecondition,
+        where + "an acceleration jumps at the release, which no sample dates; --start moving fits what follows");
+  }
+  return {};
+}
+
+/// Start values from the readings, seen through the sensor as an angle or a rate.
+Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, const SensorModel& sensor,
+                              const FitOptions& options, std::size_t& sensor_starts) {
+  const auto estimate = [&](const Recording& view) {
+    const StartChoice choice = timed.quantity == Quantity::kAcceleration ? StartChoice::kMoving : options.start;
+    return EstimateStartValues(options.loss == Loss::kNone ? view : WithoutOutliers(view), model, choice);
+  };
+  if (sensor.kind == SensorKind::kDirect) return HasOtherView(timed) ? estimate(TurnsView(timed)) : estimate(timed);
+  const Result<std::vector<SensorStart>> starts = SensorStarts(timed, sensor, options);
+  if (!starts) return tl::unexpected(starts.error());
+  if (starts->empty())
+    return Error(StatusCode::kFailedPrecondition, "no swing of a pendulum gives readings like these");
+  sensor_starts = starts->size();
+  const SensorStart& start = (*starts)[std::min(options.sensor_start, starts->size() - 1)];
+  Result<StartValues> values = estimate(start.view);
+  if (!values) return values;
+  const double zero = values->parameters.back();
+  values->parameters.pop_back();
+  values->parameters.insert(values->parameters.end(), start.parameters.begin(), start.parameters.end());
+  if (sensor.kind == SensorKind::kArc) values->parameters[values->parameters.size() - start.parameters.size()] = zero;
+  return values;
+}
+
 }  // namespace
 
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
@@ -229,29 +281,32 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   Result<MotionModel> model = FindMotionModel(options.model);
   if (!model) return tl::unexpected(model.error());
   model->gravity = options.gravity.value_or(model->gravity);
-  if (!recording.is_calibrated() && model->gravity == Gravity::kSine) return NeedsCalibration(recording, *model);
+  const SensorModel sensor = SensorOf(recording, model->gravity);
+  const bool is_direct = sensor.kind == SensorKind::kDirect;
+  if (const Result<void> checked = CheckSensor(recording, *model, sensor, options); !checked) {
+    return tl::unexpected(checked.error());
+  }
   std::optional<Recording> scaled;
   if (recording.clock_scale != 1) scaled = InTrueTime(recording);
   const Recording& timed = scaled ? *scaled : recording;
-  const Result<StartValues> start =
-      options.start_values
-          ? Result<StartValues>(*options.start_values)
-          : EstimateStartValues(options.loss == Loss::kNone ? timed : WithoutOutliers(timed), *model, options.start);
+  FitProblem problem;
+  const Result<StartValues> start = options.start_values
+                                        ? Result<StartValues>(*options.start_values)
+                                        : FindStart(timed, *model, sensor, options, problem.sensor_starts);
   if (!start)
     return Error(start.error().code,
                  recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
 
-  FitProblem problem;
   problem.model = *model;
   problem.start = *start;
-  const bool drifts = NamesDrift(options);
-  problem.infos = FitParameters(*model, start->start, recording.quantity, drifts);
+  const bool drifts = is_direct && NamesDrift(options);
+  problem.infos = FitParameters(*model, start->start, recording.quantity, drifts, sensor);
   if (drifts) problem.start.parameters.push_back(0);
   if (problem.start.parameters.size() != problem.infos.size()) {
     return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
   }
   problem.first_guess = problem.start.parameters;
-  problem.data = MakeData(timed, *start);
+  problem.data = MakeData(timed, sensor, *start);
   problem.data.drifts = drifts;
   problem.data.stop = options.stop;
   SetCensoring(recording, problem);
@@ -274,7 +329,10 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.restricted = !options.fixed.empty() || !options.bounds.empty() || !options.priors.empty();
   problem.solve.max_iterations = options.max_iterations;
   problem.solve.max_traces = options.max_traces;
-  if (const Result<void> applied = ApplyOptions(options, problem); !applied) return tl::unexpected(applied.error());
+  const ParameterPriors sensor_priors = SensorPriors(recording, sensor, options);
+  if (const Result<void> applied = ApplyOptions(options, sensor_priors, problem); !applied) {
+    return tl::unexpected(applied.error());
+  }
   return problem;
 }
 

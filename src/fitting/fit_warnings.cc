@@ -62,7 +62,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
                  std::vector<Warning>& warnings) {
   constexpr Eigen::Index kFewest = 5;
   constexpr double kSure = 5;  // standard errors
-  if (problem.data.drifts) return;
+  if (problem.data.drifts || problem.data.sensor.kind != SensorKind::kDirect) return;
   const Eigen::VectorXd& time = recording.time;
   const double period = 2 * kPi / (problem.start.natural_frequency * recording.clock_scale);
   std::vector<double> when, mean;
@@ -87,7 +87,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   const double drift = line[1] * (when.back() - when.front());
   if (!(std::abs(line[1]) * spread > kSure * scatter)) return;
   if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
-  const bool angle = recording.quantity == Quantity::kAngle;
+  const bool angle = recording.quantity != Quantity::kRate;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
   warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) + " " +
                                         recording.value_unit() + " over the window; --init " + name +

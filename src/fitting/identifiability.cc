@@ -32,6 +32,13 @@ std::string MeasurementFor(std::string_view parameter) {
       Advice{kRateBias.name, "record the sensor at rest too"},
       Advice{kZeroDrift.name, "record for longer"},
       Advice{kBiasDrift.name, "record for longer"},
+      Advice{kRateScale.name, "turn the gyro by a known angle, and give --prior rate_scale=k:std_dev"},
+      Advice{kAccelerationBias.name, "record the sensor at rest in two opposite positions"},
+      Advice{kAccelerationScale.name, "record the sensor at rest in two opposite positions"},
+      Advice{kAxis.name, "record the sensor at rest as it is mounted, with the pendulum hanging"},
+      Advice{kRadius.name, "measure the distance from the pivot, and give --prior radius=r:std_dev"},
+      Advice{kPivotX.name, "mark the pivot in the picture, and give --prior pivot_x=x:std_dev"},
+      Advice{kPivotY.name, "mark the pivot in the picture, and give --prior pivot_y=y:std_dev"},
   };
   const auto* const found = std::ranges::find(kAdvice, parameter, &Advice::parameter);
   if (found != kAdvice.end()) return std::string(found->measurement);

@@ -8,8 +8,10 @@
 
 #include "block_samples.h"
 #include "depth_table.h"
+#include "known_at.h"
 #include "pendulum/model/dual.h"
 #include "pendulum/model/friction/registry.h"
+#include "sensed_cost.h"
 
 namespace pendulum {
 namespace {
@@ -35,9 +37,10 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
-      : gravity_(gravity), data_(data), used_samples_(data.time.size()), count_(kParameters + (data.drifts ? 1 : 0)) {
-    set_num_residuals(count_ + 1);
-    mutable_parameter_block_sizes()->assign(count_, 1);
+      : TrajectoryCost(kParameters + (data.drifts ? 1 : 0)),
+        gravity_(gravity),
+        data_(data),
+        used_samples_(data.time.size()) {
     noise_.sigma = data.scale;
   }
 
@@ -53,26 +56,6 @@ class TrajectoryCostFor final : public TrajectoryCost {
     }
     noise_ = noise;
     if (noise_.family == NoiseFamily::kQuantized) levels_.Build(noise_.sigma / noise_.resolution);
-  }
-
-  /// A trial whose step is taken is asked for its derivatives next: these cost little more than the residuals alone.
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    std::array<double, kParameters + 1> values{};
-    for (int i = 0; i < count_; ++i) values[i] = *parameters[i];
-    const std::span<const double> p(values.data(), count_);
-    if (jacobians != nullptr) {
-      trials_since_step_ = 0;
-      if (!Sums(p, &scratch_)) return false;
-      CompressResiduals(scratch_, residuals, jacobians);
-      return true;
-    }
-    std::fill_n(residuals, count_, 0.0);
-    double sum = 0;
-    const bool likely_taken = trials_since_step_++ == 0;
-    const bool valid = likely_taken ? Sums(p, &scratch_) : SumOfSquares(p, &sum);
-    if (valid && likely_taken) sum = scratch_(count_, count_);
-    residuals[count_] = std::sqrt(std::max(sum, 0.0));
-    return valid;
   }
 
   bool SumOfSquares(std::span<const double> p, double* sum) const override {
@@ -98,9 +81,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
     if (is_stopped()) return false;
-    if (!last_.IsAt(p, *this)) {
+    if (!last_.IsAt(Asking(p))) {
       if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
-      last_.SetAt(p, *this, *sums);
+      last_.SetAt(Asking(p), *sums);
     }
     *sums = last_.value;
     AddPriors(priors(), p, sums);
@@ -115,7 +98,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     };
     const auto add = [](double /*part*/) {};
     if (jacobian == nullptr) {
-      if (read_.IsAt(p, *this)) {
+      if (read_.IsAt(Asking(p))) {
         *readings = read_.value;
         return true;
       }
@@ -124,7 +107,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       };
       return VisitSamples(values_, p, work, add);
     }
-    jacobian->resize(readings->size(), count_);
+    jacobian->resize(readings->size(), count());
     const auto work = [&](SampleBlock<kParameters>& block, std::size_t first, int count, double& /*part*/) {
       read(block.row[kModel].data(), first, count);
       for (int j = 0; j < kZero; ++j) std::copy_n(block.row[j].data(), count, &(*jacobian)(first, j));
@@ -135,16 +118,20 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return VisitSamples(columns, p, work, add);
   }
 
+  bool Motion(std::span<const double> p, bool with_jacobian, MotionStates* states) const override {
+    return with_jacobian ? FollowMotion<Dual>(p, states) : FollowMotion<double>(p, states);
+  }
+
   /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
   TraceSummary Trace(std::span<const double> p) const override {
     if (is_stopped()) return {};
-    if (traced_.IsAt(p, *this)) return traced_.value;
+    if (traced_.IsAt(Asking(p))) return traced_.value;
     ++traces_;
     TraceOptions options = Options();
     const std::function<void(const Segment<double>&)> nothing = [&](const Segment<double>&) {
       GiveUpIfStopped(options);
     };
-    traced_.SetAt(p, *this, TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
+    traced_.SetAt(Asking(p), TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
     return traced_.value;
   }
 
@@ -236,7 +223,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       for (std::size_t k = 0; k < total.products.size(); ++k) total.products[k] += part.products[k];
     };
     if (!VisitSamples(samples, p, work, add)) return false;
-    read_.SetAt(p, *this);
+    read_.SetAt(Asking(p));
     const double scale = noise_.IsPlain() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
     sums->resize(kResidual + 1, kResidual + 1);
     for (int i = 0, k = 0; i <= kResidual; ++i) {
@@ -296,66 +283,81 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
   }
 
+  /// Traces the motion and hands its segments to take(segment).
+  template <typename T, typename TakeSegment>
+  bool Follow(std::span<const double> p, const TakeSegment& take) const {
+    TraceOptions options = Options();
+    const auto visit = [&](const Segment<T>& segment) {
+      GiveUpIfStopped(options);
+      take(segment);
+    };
+    ++traces_;
+    // One tracer for all visitors: it is by far the most code here.
+    const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
+    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
+    if (summary.outcome != TraceSummary::Outcome::kComplete) return false;
+    if constexpr (DualNumber<T>) traced_.SetAt(Asking(p), summary);
+    return true;
+  }
+
+  /// Values and, of dual numbers, derivatives of the angle and of its rate and acceleration, which are slopes of the
+  /// same segments.
+  template <typename T>
+  bool FollowMotion(std::span<const double> p, MotionStates* states) const {
+    if (is_stopped() || !IsAdmissible(p)) return false;
+    constexpr int kRows = kSegmentRows<T, kStart == StartKind::kRelease>;
+    const auto size = static_cast<Eigen::Index>(used_samples_);
+    std::array<Samples<T, kRows, double>, SensorModel::kStates> samples;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      samples[n].Restart({data_.time.data(), used_samples_}, threads_);
+      states->value[n].resize(size);
+      if constexpr (DualNumber<T>) states->jacobian[n].resize(size, kRows - 1);
+    }
+    const auto take = [&](int n, const Segment<T>& segment) {
+      const auto work = [&](SampleBlock<kRows>& block, std::size_t first, int count, double& /*part*/) {
+        std::copy_n(block.row[kRows - 1].data(), count, states->value[n].data() + first);
+        for (int j = 0; j + 1 < kRows; ++j) std::copy_n(block.row[j].data(), count, &states->jacobian[n](first, j));
+      };
+      samples[n].Take(segment, work, [](double /*part*/) {});
+    };
+    const bool traced = Follow<T>(p, [&](const Segment<T>& angle) {
+      const Segment<T> rate = RateOf(angle);
+      take(0, angle);
+      take(1, rate);
+      take(2, RateOf(rate));
+    });
+    return traced && samples[0].is_complete();
+  }
+
   /// Traces the motion through all samples. The first rows of each block are EvaluateAt's: derivatives by all
   /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
     if (is_stopped() || !IsAdmissible(p)) return false;
     samples.Restart({data_.time.data(), used_samples_}, threads_);
-    TraceOptions options = Options();
-    const auto visit = [&](const Segment<T>& segment) {
-      GiveUpIfStopped(options);
-      if (data_.quantity == Quantity::kAngle) {
-        samples.Take(segment, work, add);
-      } else {
+    const auto take = [&](const Segment<T>& segment) {
+      if (data_.quantity == Quantity::kRate) {
         samples.Take(RateOf(segment), work, add);
+      } else {
+        samples.Take(segment, work, add);
       }
     };
-    ++traces_;
-    // One tracer for all visitors: it is by far the most code here.
-    const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
-    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
-    if (summary.outcome != TraceSummary::Outcome::kComplete || !samples.is_complete()) return false;
-    if constexpr (DualNumber<T>) traced_.SetAt(p, *this, summary);
-    return true;
+    return Follow<T>(p, take) && samples.is_complete();
   }
 
-  /// Something known, and where: solver, active set, search and judgement ask for it at the same point, one by one.
-  template <typename What>
-  struct Known {
-    std::vector<double> parameters;
-    double tolerance = 0;
-    std::size_t samples = 0;
-    What value;
-
-    bool IsAt(std::span<const double> p, const TrajectoryCostFor& cost) const {
-      return std::ranges::equal(p, parameters) && tolerance == cost.tolerance_ && samples == cost.used_samples_;
-    }
-    void SetAt(std::span<const double> p, const TrajectoryCostFor& cost, const What& what) {
-      value = what;
-      SetAt(p, cost);
-    }
-    void SetAt(std::span<const double> p, const TrajectoryCostFor& cost) {
-      parameters.assign(p.begin(), p.end());
-      tolerance = cost.tolerance_;
-      samples = cost.used_samples_;
-    }
-  };
+  Question Asking(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
 
   Gravity gravity_;
   const TrajectoryData& data_;
   std::size_t used_samples_;
-  int count_;  // of parameters
   double tolerance_ = 1e-10;
   int threads_ = 1;
   NoiseModel noise_;
-  DepthTable levels_{1};                 // of quantized noise_
-  mutable Known<Eigen::MatrixXd> last_;  // sums without priors
-  mutable Known<TraceSummary> traced_;
-  mutable Known<Eigen::VectorXd> read_;
-  mutable int trials_since_step_ = 0;  // of the solver that calls Evaluate
+  DepthTable levels_{1};                   // of quantized noise_
+  mutable KnownAt<Eigen::MatrixXd> last_;  // sums without priors
+  mutable KnownAt<TraceSummary> traced_;
+  mutable KnownAt<Eigen::VectorXd> read_;
   // Room that evaluations leave to the next one.
-  mutable Eigen::MatrixXd scratch_;
   mutable Samples<double, 1, double> values_;
   mutable Samples<Dual, kZero + 2, Part<1>> steady_;
   mutable Samples<Dual, kZero + 3, Part<2>> drifting_;
@@ -363,12 +365,38 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
 }  // namespace
 
+TrajectoryCost::TrajectoryCost(int count) : count_(count) {
+  set_num_residuals(count + 1);
+  mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(count), 1);
+}
+
+/// A trial whose step is taken is asked for its derivatives next: these cost little more than the residuals alone.
+bool TrajectoryCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  std::array<double, kMostCompressed> values{};
+  for (int i = 0; i < count_; ++i) values[i] = *parameters[i];
+  const std::span<const double> p(values.data(), count_);
+  if (jacobians != nullptr) {
+    trials_since_step_ = 0;
+    if (!Sums(p, &scratch_)) return false;
+    CompressResiduals(scratch_, residuals, jacobians);
+    return true;
+  }
+  std::fill_n(residuals, count_, 0.0);
+  double sum = 0;
+  const bool likely_taken = trials_since_step_++ == 0;
+  const bool valid = likely_taken ? Sums(p, &scratch_) : SumOfSquares(p, &sum);
+  if (valid && likely_taken) sum = scratch_(count_, count_);
+  residuals[count_] = std::sqrt(std::max(sum, 0.0));
+  return valid;
+}
+
 void TrajectoryCost::AddTo(ceres::Problem& problem, const std::vector<double*>& parameters) {
   problem.AddResidualBlock(this, nullptr, parameters);
 }
 
 std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,
                                                    const TrajectoryData& data) {
+  if (data.sensor.kind != SensorKind::kDirect) return MakeSensedCost(model, start, data);
   std::unique_ptr<TrajectoryCost> cost;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     if (start == StartKind::kRelease) {

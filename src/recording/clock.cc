@@ -249,7 +249,8 @@ Index ClockRepair::SharedRows(std::vector<bool>& keep) const {
   for (Index begin = 0, end = 0; begin < size(); begin = end) {
     bool is_equal = true;
     for (end = begin + 1; end < size() && time()[end] == time()[begin]; ++end) {
-      is_equal = is_equal && samples_.value[end] == samples_.value[begin];
+      is_equal = is_equal && samples_.value[end] == samples_.value[begin] &&
+                 (samples_.second.size() == 0 || samples_.second[end] == samples_.second[begin]);
     }
     if (end - begin == 1) continue;
     std::fill(keep.begin() + begin + (is_equal ? 1 : 0), keep.begin() + end, false);
@@ -285,11 +286,13 @@ void ClockRepair::Keep(const std::vector<bool>& keep) {
     if (!keep[i]) continue;
     samples_.time[kept] = samples_.time[i];
     samples_.value[kept] = samples_.value[i];
+    if (samples_.second.size() > 0) samples_.second[kept] = samples_.second[i];
     lines.Add(samples_.lines.LineOf(i));
     ++kept;
   }
   samples_.time.conservativeResize(kept);
   samples_.value.conservativeResize(kept);
+  if (samples_.second.size() > 0) samples_.second.conservativeResize(kept);
   samples_.lines = std::move(lines);
 }
 

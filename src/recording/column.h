@@ -13,7 +13,8 @@
 /// What a header says: which separator the file uses, and the unit that each column's name tells.
 namespace pendulum::csv {
 
-enum class Kind { kTime, kAngle, kRate, kRaw, kUnusable };
+/// An acceleration or a length is a quantity only where there is none of the others.
+enum class Kind { kTime, kAngle, kRate, kRaw, kAcceleration, kLength };
 
 /// What a column is when its name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 / 1000.0,
 /// the double nearest to 0.033, which 33 * 1e-3 is not.
@@ -29,12 +30,20 @@ struct Unit {
 
 /// A suffix stands before any that it ends in.
 constexpr std::array kUnits = {
-    Unit{"rad_s", Kind::kRate, "rad/s"},   Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
-    Unit{"rad", Kind::kAngle, "rad"},      Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
-    Unit{"s", Kind::kTime, "s"},           Unit{"ms", Kind::kTime, "ms", 1, 1e3},
-    Unit{"us", Kind::kTime, "us", 1, 1e6}, Unit{"counts", Kind::kRaw, "counts"},
-    Unit{"volts", Kind::kRaw, "volts"},    Unit{"m_s2", Kind::kUnusable, "m/s^2"},
-    Unit{"px", Kind::kUnusable, "px"},
+    Unit{"rad_s", Kind::kRate, "rad/s"},
+    Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
+    Unit{"rad", Kind::kAngle, "rad"},
+    Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
+    Unit{"s", Kind::kTime, "s"},
+    Unit{"ms", Kind::kTime, "ms", 1, 1e3},
+    Unit{"us", Kind::kTime, "us", 1, 1e6},
+    Unit{"counts", Kind::kRaw, "counts"},
+    Unit{"volts", Kind::kRaw, "volts"},
+    Unit{"m_s2", Kind::kAcceleration, "m/s^2"},
+    Unit{"px", Kind::kLength, "px"},
+    Unit{"cm", Kind::kLength, "m", 1, 1e2},
+    Unit{"mm", Kind::kLength, "m", 1, 1e3},
+    Unit{"m", Kind::kLength, "m"},
 };
 
 /// Small letters, and what stands in ASCII for ° and for the two code points of µ.

@@ -20,6 +20,8 @@ struct Column {
   std::size_t index = 0;
   std::string name;  // As a message shows it.
   const Unit* unit = nullptr;
+  bool is_gyro = false;             // Its name says so.
+  bool is_without_gravity = false;  // Its name says so: a linear acceleration.
 };
 
 struct Layout {
@@ -29,6 +31,7 @@ struct Layout {
   std::optional<Column> time;  // None: the times are a sample rate's, or the host's.
   bool is_time_unit_told = true;
   Column value;
+  std::optional<Column> second;  // The vertical coordinate, where `value` is the horizontal one of the same point.
 };
 
 /// A name in the header and where it stands.
@@ -123,6 +126,8 @@ class ColumnChooser {
   Check ChooseValue(Layout& layout);
   Result<std::size_t> FindValue(Layout& layout) const;
   Result<std::size_t> OnlyColumnWithoutUnit(const Layout& layout) const;
+  std::optional<std::size_t> FindVertical(std::size_t horizontal) const;
+  Check CheckCoordinate(std::size_t index) const;
   Check SetValueUnit(Layout& layout, std::size_t index);
 
   const Line& line_;
@@ -280,6 +285,7 @@ inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& la
 inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
   if (!options_.value_column.empty()) return FindColumn("--value_column", options_.value_column, layout);
   std::vector<std::size_t> columns = Columns(Kind::kAngle, Kind::kRaw);
+  if (columns.empty()) columns = Columns(Kind::kAcceleration, Kind::kLength);
   std::erase_if(columns, [&](std::size_t i) { return layout.time && layout.time->index == i; });
   if (!options_.unit.empty()) {
     std::vector<std::size_t> asked = columns;
@@ -287,13 +293,40 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
     if (!asked.empty()) columns = asked;
     if (columns.empty()) return OnlyColumnWithoutUnit(layout);
   }
+  for (const std::size_t horizontal : columns) {
+    if (columns.size() == 2 && FindVertical(horizontal)) return horizontal;
+  }
   if (columns.size() > 1) return Ambiguous(columns[0], columns[1], "quantity", "--value_column");
   if (columns.size() == 1) return columns[0];
-  if (const auto unusable = Columns(Kind::kUnusable, Kind::kUnusable); !unusable.empty()) return unusable[0];
   if (layout.width == 1) return 0;
   return line_.Fault(line_.text.data(), "none of the columns " + ColumnNames() +
                                             " is an angle or a rate; end its name in its unit: _rad, _deg, _rad_s, "
                                             "_deg_s, _counts or _volts, or give --value_column and --unit");
+}
+
+/// The column of the same point's other coordinate: bob_y_px beside bob_x_px.
+inline std::optional<std::size_t> ColumnChooser::FindVertical(std::size_t horizontal) const {
+  const std::string x = CanonicalName(names_[horizontal].text);
+  const auto [stem, unit] = SplitName(x);
+  if (unit == nullptr || unit->kind != Kind::kLength || (stem != "x_" && !stem.ends_with("_x_"))) return std::nullopt;
+  std::string y = x;
+  y[stem.size() - 2] = 'y';
+  const auto found = std::ranges::find_if(names_, [&](const Name& name) { return CanonicalName(name.text) == y; });
+  if (found == names_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names_.begin());
+}
+
+/// A point as high on one side as on the other tells neither: fitted alone, it would swing twice as fast.
+inline Result<void> ColumnChooser::CheckCoordinate(std::size_t index) const {
+  if (index >= names_.size()) return {};
+  const std::string name = CanonicalName(names_[index].text);
+  const auto [stem, unit] = SplitName(name);
+  if (unit == nullptr || unit->kind != Kind::kLength || (stem != "y_" && !stem.ends_with("_y_"))) return {};
+  const bool asked = !options_.value_column.empty();
+  const StatusCode code = asked ? StatusCode::kInvalidArgument : StatusCode::kDataLoss;
+  return line_.Fault(PlaceOf(index), "column " + NameOf(index) +
+                              " is the height of the point, which does not tell the side it is on; choose the "
+                              "horizontal coordinate with --value_column, or leave the flag out to have both", code);
 }
 
 inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t index) {
@@ -305,9 +338,9 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
                                            std::string(own->name) + "; name it by the one its values are in");
   }
   const Unit* asked = options_.unit.empty() ? nullptr : UnitOfSuffix(options_.unit);
-  if (!options_.unit.empty() && (asked == nullptr || asked->kind == Kind::kTime || asked->kind == Kind::kUnusable)) {
-    return WrongFlag(index,
-                     "--unit is " + Quoted(options_.unit) + "; it must be rad, deg, rad_s, deg_s, counts or volts");
+  if (!options_.unit.empty() && (asked == nullptr || asked->kind == Kind::kTime)) {
+    return WrongFlag(index, "--unit is " + Quoted(options_.unit) +
+                                "; it must be rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm");
   }
   if (own != nullptr && asked != nullptr && own != asked) {
     return WrongFlag(index, column + " is in " + std::string(own->name) + ", so --unit " + options_.unit +
@@ -319,12 +352,14 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
                                            " does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, "
                                            "_counts or _volts, or give --unit");
   }
-  if (unit->kind == Kind::kUnusable || unit->kind == Kind::kTime) {
+  if (unit->kind == Kind::kTime) {
     return line_.Fault(PlaceOf(index), column + " is in " + std::string(unit->name) +
                                            ", which is no angle; convert it to degrees or radians and end its name in "
                                            "_deg or _rad");
   }
-  layout.value = Column{index, NameOf(index), unit};
+  const std::string name = layout.has_header ? CanonicalName(names_[index].text) : "";
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  layout.value = Column{index, NameOf(index), unit, has("gyro"), has("linear") || has("without_g") || has("without g")};
   return {};
 }
 
@@ -336,7 +371,12 @@ inline Result<void> ColumnChooser::ChooseValue(Layout& layout) {
                                  " cannot be both the time and the quantity; choose another "
                                  "with --value_column");
   }
-  return SetValueUnit(layout, *index);
+  const bool asked = !options_.value_column.empty();
+  if (Check checked = CheckCoordinate(*index); !checked) return checked;
+  if (Check set = SetValueUnit(layout, *index); !set) return set;
+  const std::optional<std::size_t> vertical = asked || *index >= names_.size() ? std::nullopt : FindVertical(*index);
+  if (vertical) layout.second = Column{*vertical, NameOf(*vertical), layout.value.unit};
+  return {};
 }
 
 }  // namespace pendulum::csv

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,10 +45,11 @@ class Reader {
   Check ChooseColumns(const std::vector<csv::Name>& names);
   Check TakeRow();
   Check ReadRow();
+  const csv::Column& LastColumn() const;
   Check ReadField(std::string_view field, const csv::Column& column, double& number);
   Check TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
   Check MakeRoom();
-  void Append(double time, double value);
+  void Append(double time, double value, double second);
   void WarnOfIncompleteRow(const Line& line);
   Check CheckEnd();
   void LeaveOutCutStamp();
@@ -71,6 +73,7 @@ class Reader {
   bool has_layout_ = false;
   Layout layout_;
   std::size_t time_index_ = kNoColumn;
+  std::size_t second_index_ = kNoColumn;
   Line line_;  // The row being read; before there are rows, the header.
   csv::Numbers numbers_;
   std::optional<Status> cut_;  // The fault of a row that may be cut off, should another row follow.
@@ -131,6 +134,7 @@ Check Reader::ChooseColumns(const std::vector<csv::Name>& names) {
     return checked;
   }
   numbers_ = csv::Numbers(layout_.separator != ',');
+  if (layout_.second) second_index_ = layout_.second->index;
   if (layout_.time) {
     time_index_ = layout_.time->index;
     samples_.time_unit = layout_.time->unit->name;
@@ -165,7 +169,7 @@ void Reader::WarnOfIncompleteRow(const Line& line) {
 }
 
 Check Reader::ReadRow() {
-  double time = 0, value = 0;
+  double time = 0, value = 0, second = 0;
   std::size_t index = 0;
   std::string_view row = line_.text;
   if (has_host_) {
@@ -175,18 +179,19 @@ Check Reader::ReadRow() {
   }
   for (FieldCutter fields(row, layout_.separator); !fields.done(); ++index) {
     const bool is_time = index == time_index_;
-    if (is_time || index == layout_.value.index) {
-      double& number = is_time ? time : value;
+    const bool is_second = index == second_index_;
+    if (is_time || is_second || index == layout_.value.index) {
+      double& number = is_time ? time : is_second ? second : value;
       if (fields.NextNumber(numbers_, number)) continue;
-      if (Check read = ReadField(fields.Next(), is_time ? *layout_.time : layout_.value, number); !read) return read;
+      const csv::Column& column = is_time ? *layout_.time : is_second ? *layout_.second : layout_.value;
+      if (Check read = ReadField(fields.Next(), column, number); !read) return read;
     } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
       return line_.Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
                                           " beyond the header's " + std::to_string(layout_.width) +
                                           " columns; name every column, and write decimals with a point");
     }
   }
-  const bool is_time_last = layout_.time && layout_.time->index > layout_.value.index;
-  const csv::Column& last = is_time_last ? *layout_.time : layout_.value;
+  const csv::Column& last = LastColumn();
   if (index <= last.index) {
     is_short_ = true;
     return line_.Fault(line_.text.data() + line_.text.size(),
@@ -196,8 +201,16 @@ Check Reader::ReadRow() {
   if (rows_ == samples_.time.size()) {
     if (Check made = MakeRoom(); !made) return made;
   }
-  Append(time, value);
+  Append(time, value, second);
   return {};
+}
+
+const csv::Column& Reader::LastColumn() const {
+  const csv::Column* last = &layout_.value;
+  for (const std::optional<csv::Column>& other : {std::cref(layout_.time), std::cref(layout_.second)}) {
+    if (other && other->index > last->index) last = &*other;
+  }
+  return *last;
 }
 
 /// A field that is quoted, or at fault.
@@ -231,15 +244,17 @@ Check Reader::MakeRoom() {
   try {
     samples_.time.conservativeResize(room);
     samples_.value.conservativeResize(room);
+    if (layout_.second) samples_.second.conservativeResize(room);
   } catch (const std::exception&) {
     return line_.Fault(line_.text.data(), "the rows up to here fill the memory; split the file");
   }
   return {};
 }
 
-void Reader::Append(double time, double value) {
+void Reader::Append(double time, double value, double second) {
   samples_.time[rows_] = time;
   samples_.value[rows_] = value;
+  if (layout_.second) samples_.second[rows_] = second;
   samples_.lines.Add(line_.number);
   ++rows_;
 }
@@ -273,7 +288,8 @@ void Reader::LeaveOutCutStamp() {
   for (Eigen::Index i = 1; i < rows_; ++i) lines.Add(samples_.lines.LineOf(i));
   samples_.lines = std::move(lines);
   --rows_;
-  for (Eigen::VectorXd* column : {&samples_.time, &samples_.value}) {
+  for (Eigen::VectorXd* column : {&samples_.time, &samples_.value, &samples_.second}) {
+    if (column->size() == 0) continue;
     std::copy(column->begin() + 1, column->begin() + 1 + rows_, column->begin());
   }
 }
@@ -338,6 +354,7 @@ Result<Recording> Reader::Finish() {
   WarnOfClock();
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);
+  if (layout_.second) samples_.second.conservativeResize(rows_);
   Recording recording;
   if (Check set = SetTimes(); !set) return tl::unexpected(std::move(set).error());
   recording.path = lines_.name();
@@ -349,6 +366,11 @@ Result<Recording> Reader::Finish() {
       std::hypot(metadata_.clock_scale_std_dev, metadata_.clock_scale * samples_.clock_std_dev);
   recording.rig_json = metadata_.rig_json;
   csv::SetValues(layout_.value, options_, metadata_, recording);
+  if (layout_.second) {
+    if (Check turned = csv::TurnIntoAngles(*layout_.second, samples_.second, recording); !turned) {
+      return tl::unexpected(std::move(turned).error());
+    }
+  }
   Result<std::string> sha256 = lines_.Sha256();
   if (!sha256) return tl::unexpected(std::move(sha256).error());
   recording.sha256 = *std::move(sha256);

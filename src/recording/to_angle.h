@@ -11,6 +11,7 @@
 #include "layout.h"
 #include "metadata.h"
 #include "pendulum/base/format.h"
+#include "pendulum/recording/arc.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/recording/resolution.h"
 
@@ -123,11 +124,38 @@ inline void Calibrate(const Calibration& calibration, Recording& recording) {
   recording.calibration = calibration;
 }
 
+/// What a column of that name measures: a gyro's volts are a rate.
+inline Quantity QuantityOf(const Column& column) {
+  switch (column.unit->kind) {
+    case Kind::kRate: return Quantity::kRate;
+    case Kind::kAcceleration: return Quantity::kAcceleration;
+    case Kind::kLength: return Quantity::kPosition;
+    case Kind::kRaw: return column.is_gyro ? Quantity::kRate : Quantity::kAngle;
+    default: return Quantity::kAngle;
+  }
+}
+
+/// Both coordinates of a point are the angle about the centre of the circle it moves on.
+inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd& y, Recording& recording) {
+  const Unit& unit = *vertical.unit;
+  const Eigen::VectorXd height = y.unaryExpr([&](double number) { return unit.ToSi(number); });
+  Result<Arc> arc = FitArc(recording.value, height);
+  if (!arc) return Error(arc.error().code, recording.path + ": " + arc.error().message);
+  for (Eigen::Index i = 0; i < height.size(); ++i) recording.value[i] = arc->Angle(recording.value[i], height[i]);
+  recording.quantity = Quantity::kAngle;
+  recording.resolution = 0;  // levels of coordinates are none of the angle
+  recording.resolution_source.clear();
+  recording.range.reset();
+  recording.arc = *std::move(arc);
+  return {};
+}
+
 /// Fills value, unit, quantity, resolution, range and calibration from the numbers that `value` holds.
 inline void SetValues(const Column& column, const ReadOptions& options, const Metadata& metadata,
                       Recording& recording) {
   const Unit& unit = *column.unit;
-  recording.quantity = unit.kind == Kind::kRate ? Quantity::kRate : Quantity::kAngle;
+  recording.quantity = QuantityOf(column);
+  recording.shows_gravity = !column.is_without_gravity;
   recording.unit = unit.name;
   SetResolution(unit, options, metadata, recording);
   SetRange(unit, options, metadata, recording);

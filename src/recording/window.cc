@@ -63,6 +63,8 @@ Recording WithoutSamples(const Recording& recording) {
   copy.clock_scale = recording.clock_scale;
   copy.clock_scale_std_dev = recording.clock_scale_std_dev;
   copy.calibration = recording.calibration;
+  copy.arc = recording.arc;
+  copy.shows_gravity = recording.shows_gravity;
   copy.rig_json = recording.rig_json;
   copy.warnings = recording.warnings;
   return copy;

@@ -43,6 +43,7 @@ Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDeta
 
 Json ExtremaJson(const Recording& used) {
   Json json = Json::array();
+  if (used.quantity == Quantity::kAcceleration) return json;  // its turning points are not the pendulum's
   const Result<std::vector<Extremum>> extrema = FindExtrema(used);
   if (!extrema) return json;
   for (const Extremum& extremum : *extrema) json.push_back(Json::array({extremum.time, extremum.value}));

@@ -103,8 +103,9 @@ std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& mo
       if (std::ranges::find(infos, info.name, &ParameterInfo::name) == infos.end()) infos.push_back(info);
     }
   }
-  infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias,
-                             kZeroDrift, kBiasDrift});
+  infos.insert(infos.end(),
+               {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias, kZeroDrift, kBiasDrift,
+                kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX, kPivotY});
   return infos;
 }
 
@@ -174,7 +175,8 @@ Result<void> CheckReadFlags(const RunFlags& flags) {
   if (is_time_chosen && flags.time_column == flags.value_column) {
     return BadFlag("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
   }
-  constexpr std::array<std::string_view, 6> kUnits = {"rad", "deg", "rad_s", "deg_s", "counts", "volts"};
+  constexpr std::array<std::string_view, 11> kUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
+                                                       "m_s2", "px",  "m",     "cm",    "mm"};
   if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
     return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
   }

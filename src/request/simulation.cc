@@ -15,17 +15,21 @@ namespace pendulum {
 namespace {
 
 constexpr std::array kUnits = {
-    OutputUnit{"deg", "angle_deg", Quantity::kAngle, kRadFromDeg},
-    OutputUnit{"rad", "angle_rad", Quantity::kAngle, 1.0},
-    OutputUnit{"deg_s", "gyro_deg_s", Quantity::kRate, kRadFromDeg},
-    OutputUnit{"rad_s", "gyro_rad_s", Quantity::kRate, 1.0},
+    OutputUnit{"deg", "angle_deg", Quantity::kAngle, kRadFromDeg, "rad"},
+    OutputUnit{"rad", "angle_rad", Quantity::kAngle, 1.0, "rad"},
+    OutputUnit{"deg_s", "gyro_deg_s", Quantity::kRate, kRadFromDeg, "rad_s"},
+    OutputUnit{"rad_s", "gyro_rad_s", Quantity::kRate, 1.0, "rad_s"},
+    OutputUnit{"volts", "gyro_volts", Quantity::kRate, 1.0, "volts", SensorKind::kScaledRate},
+    OutputUnit{"m_s2", "acceleration_m_s2", Quantity::kAcceleration, 1.0, "m_s2", SensorKind::kAcceleration},
+    OutputUnit{"px", "x_px,y_px", Quantity::kPosition, 1.0, "px", SensorKind::kArc},
+    OutputUnit{"m", "x_m,y_m", Quantity::kPosition, 1.0, "m", SensorKind::kArc},
 };
 
 Result<OutputUnit> FindUnit(const std::string& name) {
   for (const OutputUnit& unit : kUnits) {
     if (unit.name == name) return unit;
   }
-  return BadFlag("--unit is '" + name + "'; it must be deg, rad, deg_s or rad_s");
+  return BadFlag("--unit is '" + name + "'; it must be one of " + NameList(kUnits));
 }
 
 Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
@@ -44,10 +48,12 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
 }
 
 /// Every parameter that --set may give, in the order of the truth file.
-std::vector<ParameterInfo> SettableParameters(const MotionModel& model, Quantity quantity) {
-  std::vector<ParameterInfo> infos = PhysicalParameters(model);
+std::vector<ParameterInfo> SettableParameters(const SyntheticOptions& synthetic) {
+  std::vector<ParameterInfo> infos = PhysicalParameters(synthetic.model);
   infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate});
-  infos.push_back(quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
+  const std::vector<ParameterInfo> sensor = synthetic.sensor.Parameters();
+  infos.insert(infos.end(), sensor.begin(), sensor.end());
+  if (sensor.empty()) infos.push_back(synthetic.quantity == Quantity::kRate ? kRateBias : kZeroAngle);
   return infos;
 }
 
@@ -63,6 +69,11 @@ Result<StartKind> ChooseStart(const ParameterValues& values) {
   return BadFlag("--set lacks the start: give release_angle and release_time, or initial_angle and initial_rate");
 }
 
+double ValueOr0(const ParameterValues& values, const ParameterInfo& info) {
+  const auto found = values.find(info.name);
+  return found == values.end() ? 0.0 : found->second;
+}
+
 /// Fills in what --set may leave out: inertia from the rig, no friction, no offset.
 Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::optional<Rig>& rig, StartKind start,
                       ParameterValues& values) {
@@ -72,6 +83,13 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
   if (values[inertia] <= 0) {
     return BadFlag("--set: inertia is " + NumberText(values[inertia]) + "; it must be positive");
   }
+  for (const ParameterInfo& info : infos) {
+    const bool is_scale = info.name == kRadius.name || info.name == kRateScale.name;
+    if (is_scale && ValueOr0(values, info) == 0) {
+      return BadFlag("--set lacks " + std::string(info.name) + ": " + std::string(info.description));
+    }
+    if (info.name == kAccelerationScale.name) values.try_emplace(std::string(info.name), 1.0);
+  }
   const std::array<std::string_view, 2> other_start = start == StartKind::kRelease
                                                           ? std::array{kInitialAngle.name, kInitialRate.name}
                                                           : std::array{kReleaseAngle.name, kReleaseTime.name};
@@ -79,11 +97,6 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
     if (std::ranges::find(other_start, info.name) == other_start.end()) values.try_emplace(std::string(info.name), 0.0);
   }
   return {};
-}
-
-double ValueOr0(const ParameterValues& values, const ParameterInfo& info) {
-  const auto found = values.find(info.name);
-  return found == values.end() ? 0.0 : found->second;
 }
 
 void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOptions& synthetic) {
@@ -96,7 +109,11 @@ void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOp
   synthetic.release_time = ValueOr0(values, kReleaseTime);
   synthetic.initial_angle = ValueOr0(values, kInitialAngle);
   synthetic.initial_rate = ValueOr0(values, kInitialRate);
-  synthetic.zero = ValueOr0(values, synthetic.quantity == Quantity::kAngle ? kZeroAngle : kRateBias);
+  synthetic.zero = ValueOr0(values, synthetic.quantity == Quantity::kRate ? kRateBias : kZeroAngle);
+  synthetic.sensor_parameters.clear();
+  for (const ParameterInfo& info : synthetic.sensor.Parameters()) {
+    synthetic.sensor_parameters.push_back(ValueOr0(values, info));
+  }
 }
 
 /// What --spread asks for; `infos` are those that --set may name, `values` are complete.
@@ -121,7 +138,7 @@ Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> 
 /// The motion that --set asks of the model already chosen: start and parameters, in `simulation` and in its truth.
 Result<void> ChooseMotion(const SimulationFlags& flags, const std::optional<Rig>& rig, Simulation& simulation) {
   SyntheticOptions& synthetic = simulation.synthetic;
-  const std::vector<ParameterInfo> infos = SettableParameters(synthetic.model, synthetic.quantity);
+  const std::vector<ParameterInfo> infos = SettableParameters(synthetic);
   Result<ParameterValues> values = ParseSettings("--set", flags.set, synthetic.model.name, infos);
   if (!values) return tl::unexpected(values.error());
   const Result<StartKind> start = ChooseStart(*values);
@@ -214,6 +231,8 @@ Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optio
   Simulation simulation;
   simulation.unit = *unit;
   simulation.synthetic.quantity = unit->quantity;
+  simulation.synthetic.sensor.kind = unit->sensor;
+  if (unit->sensor == SensorKind::kAcceleration) simulation.synthetic.sensor.gravity = kStandardGravity;
   simulation.synthetic.model = *model;
   if (Result<void> chosen = ChooseSensor(flags, simulation); !chosen) return tl::unexpected(chosen.error());
   if (Result<void> chosen = ChooseMotion(flags, rig, simulation); !chosen) return tl::unexpected(chosen.error());

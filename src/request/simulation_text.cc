@@ -87,24 +87,47 @@ std::string Head(const Simulation& simulation, std::uint64_t seed) {
 
 }  // namespace
 
-std::string RecordingCsv(const Simulation& simulation, const Recording& recording, std::uint64_t seed) {
-  constexpr std::size_t kTypicalLine = 24;  // bytes
+namespace {
+
+/// A head, and columns in SI beside the times.
+std::string Csv(const Simulation& simulation, std::uint64_t seed, const Eigen::VectorXd& time,
+                const std::vector<const Eigen::VectorXd*>& columns) {
+  constexpr std::size_t kTypicalField = 12;  // bytes
   std::string text = Head(simulation, seed);
-  text.reserve(text.size() + kTypicalLine * static_cast<std::size_t>(recording.size()));
+  text.reserve(text.size() + kTypicalField * (1 + columns.size()) * static_cast<std::size_t>(time.size()));
   const FileUnit file_unit(simulation);
-  for (Eigen::Index i = 0; i < recording.size(); ++i) {
-    AppendNumber(recording.time[i], text);
-    text += ',';
-    AppendNumber(file_unit(recording.value[i]), text);
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    AppendNumber(time[i], text);
+    for (const Eigen::VectorXd* column : columns) {
+      text += ',';
+      AppendNumber(file_unit((*column)[i]), text);
+    }
     text += '\n';
   }
   return text;
 }
 
+}  // namespace
+
+std::string RecordingCsv(const Simulation& simulation, const Recording& recording, std::uint64_t seed) {
+  return Csv(simulation, seed, recording.time, {&recording.value});
+}
+
+Result<std::string> SimulatedCsv(const Simulation& simulation, std::uint64_t seed) {
+  if (simulation.unit.sensor == SensorKind::kArc) {
+    const Result<TrackedPoint> point = SimulatePoint(simulation.synthetic);
+    if (!point) return tl::unexpected(point.error());
+    return Csv(simulation, seed, point->time, {&point->x, &point->y});
+  }
+  const Result<Recording> recording = SimulateRecording(simulation.synthetic);
+  if (!recording) return tl::unexpected(recording.error());
+  return RecordingCsv(simulation, *recording, seed);
+}
+
 std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {
   nlohmann::ordered_json json;
   for (const auto& [name, value] : simulation.truth) json[name] = value;
-  const std::string unit = simulation.unit.quantity == Quantity::kAngle ? "_rad" : "_rad_s";
+  const std::string unit = "_" + std::string(simulation.unit.si_name);
   json["sigma" + unit] = simulation.synthetic.noise;
   if (simulation.synthetic.noise_correlation != 0) json["noise_correlation"] = simulation.synthetic.noise_correlation;
   if (simulation.synthetic.noise_freedom > 0) json["noise_freedom"] = simulation.synthetic.noise_freedom;

@@ -155,12 +155,11 @@ HttpResponse PostSimulation(ServiceState& state, const Call& call) {
   }
   const auto simulation = MakeSimulation(*flags, request->rig);
   if (!simulation) return ProblemAnswer(simulation.error());
-  const auto recording = SimulateRecording(simulation->synthetic);
-  if (!recording) return ProblemAnswer(recording.error());
-  std::string csv = RecordingCsv(*simulation, *recording, flags->seed);
-  if (WantsCsv(call.http)) return TextAnswer("text/csv; charset=utf-8", std::move(csv));
+  auto csv = SimulatedCsv(*simulation, flags->seed);
+  if (!csv) return ProblemAnswer(csv.error());
+  if (WantsCsv(call.http)) return TextAnswer("text/csv; charset=utf-8", *std::move(csv));
   const auto truth = Json::parse(TruthJson(*simulation, flags->seed));
-  return JsonAnswer({{"recording", std::move(csv)}, {"truth", truth}});
+  return JsonAnswer({{"recording", *std::move(csv)}, {"truth", truth}});
 }
 
 HttpResponse PostCalibration(ServiceState& /*state*/, const Call& call) {

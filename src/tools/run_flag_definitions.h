@@ -30,7 +30,8 @@ DEFINE_string(time_column, "",
 DEFINE_string(value_column, "",
               "Column of the angle or rate, name or number from 1 on; default by the unit in its name.");
 DEFINE_string(unit, "",
-              "Unit of the values: rad, deg, rad_s, deg_s, counts or volts; default that in the column's name.");
+              "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default that in the "
+              "column's name.");
 DEFINE_string(sample_rate_hz, "", "Samples per second of a file without times; default its line # sample_rate_hz.");
 DEFINE_string(resolution, "",
               "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.");

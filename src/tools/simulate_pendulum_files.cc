@@ -44,13 +44,13 @@ Result<void> WriteRecording(const SimulateOptions& all, int index) {
   const Result<Simulation> simulation = SimulationOfRecording(all, index);
   if (!simulation) return tl::unexpected(simulation.error());
   const std::uint64_t seed = simulation->synthetic.seed;
-  const Result<Recording> recording = SimulateRecording(simulation->synthetic);
-  if (!recording) {
+  Result<std::string> csv = SimulatedCsv(*simulation, seed);
+  if (!csv) {
     const std::string which = all.count == 1 ? "" : "seed " + std::to_string(seed) + ": ";
-    return Error(recording.error().code, which + recording.error().message);
+    return Error(csv.error().code, which + csv.error().message);
   }
   const std::vector<NamedFile> files = all.Outputs(index);
-  std::vector<Output> outputs = {{files.front().path, RecordingCsv(*simulation, *recording, seed)}};
+  std::vector<Output> outputs = {{files.front().path, *std::move(csv)}};
   if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(*simulation, seed)});
   return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
 }

@@ -64,7 +64,7 @@ Result<void> CheckNumbers(const SyntheticOptions& options) {
       NumberRule{"duration", options.duration, Domain::kPositive},
       NumberRule{"sample rate", options.sample_rate, Domain::kPositive},
       NumberRule{"jitter", options.jitter, Domain::kZeroOrMore},
-      NumberRule{options.quantity == Quantity::kAngle ? "zero_angle" : "rate_bias", options.zero},
+      NumberRule{options.quantity == Quantity::kRate ? "rate_bias" : "zero_angle", options.zero},
       NumberRule{"noise", options.noise, Domain::kZeroOrMore},
       NumberRule{"resolution", options.resolution, Domain::kZeroOrMore},
   };
@@ -105,6 +105,17 @@ Result<void> CheckModel(const SyntheticOptions& options) {
 }
 
 Result<void> CheckSensor(const SyntheticOptions& options) {
+  const std::vector<ParameterInfo> infos = options.sensor.Parameters();
+  if (options.sensor_parameters.size() != infos.size()) {
+    return Error(StatusCode::kInvalidArgument, "the sensor takes " + std::to_string(infos.size()) +
+                                                   " parameters, not " +
+                                                   std::to_string(options.sensor_parameters.size()));
+  }
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const NumberRule rule = {infos[i].name, options.sensor_parameters[i]};
+    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+    if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
+  }
   if (!options.range) return {};
   const auto [low, high] = *options.range;
   if (!std::isfinite(low) || !std::isfinite(high) || !(low < high)) {
@@ -198,7 +209,11 @@ std::vector<double> TrueParameters(const SyntheticOptions& options) {
   std::vector<double> parameters = options.parameters;
   parameters.push_back(released ? options.release_angle : options.initial_angle);
   parameters.push_back(released ? options.release_time : options.initial_rate);
-  parameters.push_back(options.zero);
+  if (options.sensor.kind == SensorKind::kDirect) {
+    parameters.push_back(options.zero);
+  } else {
+    parameters.insert(parameters.end(), options.sensor_parameters.begin(), options.sensor_parameters.end());
+  }
   return parameters;
 }
 
@@ -213,10 +228,78 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
   return low + resolution * level;
 }
 
-Result<Recording> SimulateRecording(const SyntheticOptions& options) {
-  for (const auto check : {CheckNumbers, CheckModel, CheckSensor}) {
-    if (Result<void> checked = check(options); !checked) return tl::unexpected(checked.error());
+namespace {
+
+/// The reading without noise.
+double TrueReading(const SyntheticOptions& options, const Trajectory& trajectory, double time) {
+  if (options.sensor.kind != SensorKind::kDirect) {
+    const std::array state = {trajectory.Angle(time), trajectory.Rate(time), trajectory.Acceleration(time)};
+    return options.sensor.At(state, options.sensor_parameters.data()).reading;
   }
+  return (options.quantity == Quantity::kRate ? trajectory.Rate(time) : trajectory.Angle(time)) + options.zero;
+}
+
+/// Unit of the readings. Lengths are in metres unless the file says pixels.
+std::string UnitOf(const SyntheticOptions& options) {
+  switch (options.sensor.kind) {
+    case SensorKind::kDirect: return options.quantity == Quantity::kRate ? "rad/s" : "rad";
+    case SensorKind::kScaledRate: return "volts";
+    case SensorKind::kAcceleration: return "m/s^2";
+    case SensorKind::kCoordinate:
+    case SensorKind::kArc: return "m";
+  }
+  return "rad";
+}
+
+Result<void> CheckAll(const SyntheticOptions& options) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor}) {
+    if (Result<void> checked = check(options); !checked) return checked;
+  }
+  return {};
+}
+
+/// The angles of a point about the circle it moves on.
+Result<Recording> RecordAngles(const SyntheticOptions& options) {
+  Result<TrackedPoint> point = SimulatePoint(options);
+  if (!point) return tl::unexpected(point.error());
+  Result<Arc> arc = FitArc(point->x, point->y);
+  if (!arc) return tl::unexpected(arc.error());
+  Recording recording;
+  recording.unit = UnitOf(options);
+  recording.time = std::move(point->time);
+  recording.value.resize(recording.time.size());
+  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = arc->Angle(point->x[i], point->y[i]);
+  recording.arc = *std::move(arc);
+  return MakeRecording(std::move(recording));
+}
+
+}  // namespace
+
+Result<TrackedPoint> SimulatePoint(const SyntheticOptions& options) {
+  if (Result<void> checked = CheckAll(options); !checked) return tl::unexpected(checked.error());
+  const Result<Eigen::Index> count = SampleCount(options);
+  if (!count) return tl::unexpected(count.error());
+  std::mt19937_64 generator(options.seed);
+  TrackedPoint point;
+  point.x = NoiseSamples(options, *count, generator);
+  point.time = SamplingInstants(options, *count, generator);
+  point.y = NoiseSamples(options, *count, generator);
+  const Result<Trajectory> trajectory = TraceStart(options, point.time[*count - 1]);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  const std::vector<double>& p = options.sensor_parameters;  // zero_angle, pivot_x, pivot_y, radius
+  for (Eigen::Index i = 0; i < *count; ++i) {
+    const double angle = trajectory->Angle(point.time[i]) + p[0];
+    const double x = p[1] + p[3] * std::sin(angle) + point.x[i];
+    const double y = p[2] + options.sensor.down * p[3] * std::cos(angle) + point.y[i];
+    point.x[i] = SensorReading(x, options.resolution, options.range);
+    point.y[i] = SensorReading(y, options.resolution, options.range);
+  }
+  return point;
+}
+
+Result<Recording> SimulateRecording(const SyntheticOptions& options) {
+  if (options.sensor.kind == SensorKind::kArc) return RecordAngles(options);
+  if (Result<void> checked = CheckAll(options); !checked) return tl::unexpected(checked.error());
   const Result<Eigen::Index> count = SampleCount(options);
   if (!count) return tl::unexpected(count.error());
 
@@ -227,16 +310,15 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   const Result<Trajectory> trajectory = TraceStart(options, recording.time[*count - 1]);
   if (!trajectory) return tl::unexpected(trajectory.error());
 
-  const bool is_angle = options.quantity == Quantity::kAngle;
   recording.quantity = options.quantity;
-  recording.unit = is_angle ? "rad" : "rad/s";
+  recording.unit = UnitOf(options);
+  recording.shows_gravity = options.sensor.gravity > 0;
   recording.resolution = options.resolution;
   recording.range = options.range;
   recording.value.resize(*count);
   for (Eigen::Index i = 0; i < *count; ++i) {
-    const double time = recording.time[i];
-    const double truth = is_angle ? trajectory->Angle(time) : trajectory->Rate(time);
-    recording.value[i] = SensorReading(truth + options.zero + noise[i], options.resolution, options.range);
+    const double truth = TrueReading(options, *trajectory, recording.time[i]);
+    recording.value[i] = SensorReading(truth + noise[i], options.resolution, options.range);
   }
   if (!recording.value.allFinite()) {
     return Error(StatusCode::kFailedPrecondition,

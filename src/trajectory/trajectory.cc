@@ -27,6 +27,14 @@ double Trajectory::Rate(double time) const {
   return rate;
 }
 
+double Trajectory::Acceleration(double time) const {
+  const Segment<double>& segment = SegmentAt(time);
+  const double tau = time - segment.start;
+  double acceleration = 0;
+  for (int k = segment.order; k >= 2; --k) acceleration = acceleration * tau + k * (k - 1) * segment.angle[k];
+  return acceleration;
+}
+
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
                                   const Start<double>& start, const TraceOptions& options) {
   if (parameters.size() != PhysicalParameters(model).size()) {

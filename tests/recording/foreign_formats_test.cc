@@ -109,7 +109,8 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
             "run.csv:1:8: column \"angle_deg\" is in deg, so --unit rad contradicts it; leave the flag out, or choose "
             "another column with --value_column");
   EXPECT_EQ(WrongFlag(text, Unit("grad")),
-            "run.csv:1:8: --unit is \"grad\"; it must be rad, deg, rad_s, deg_s, counts or volts");
+            "run.csv:1:8: --unit is \"grad\"; it must be rad, deg, rad_s, deg_s, counts, volts, "
+            "m_s2, px, m, cm or mm");
   EXPECT_EQ(
       WrongFlag(text, Unit("", 50)),
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "

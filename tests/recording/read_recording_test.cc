@@ -227,13 +227,6 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
           "run.csv:1:19: columns \"time_s\" and \"Time (ms)\" could both be the time; choose one with --time_column"));
 }
 
-TEST(ParseRecording, RefusesQuantitiesThatAreNoAngle) {
-  EXPECT_EQ(FaultOf("time_s,bob_px\n" + Rows()),
-            "run.csv:1:8: column \"bob_px\" is in px, which is no angle; convert it to degrees or radians and end its "
-            "name in _deg or _rad");
-  EXPECT_THAT(FaultOf("time_s,acc (m/s^2)\n" + Rows()), HasSubstr("is in m/s^2, which is no angle"));
-}
-
 TEST(ParseRecording, AsksForAHeaderWhenTheFirstRowHoldsNumbers) {
   EXPECT_EQ(FaultOf(Rows()),
             "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above "

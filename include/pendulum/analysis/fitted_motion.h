@@ -48,6 +48,7 @@ class FittedMotion {
   MotionModel model_;
   StartKind start_;
   Quantity quantity_;
+  SensorModel sensor_;
   bool drifts_ = false;
   std::vector<double> parameters_;  // P, units of G, times from the first sample
   std::vector<double> reported_;    // P: report's unit per unit of parameters_

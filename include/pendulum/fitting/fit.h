@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "pendulum/fitting/start_values.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
+#include "pendulum/model/sensor_model.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
 
@@ -43,6 +45,7 @@ struct FitOptions {
   ParameterValues fixed;
   ParameterValues initial;                  ///< Where parameters begin instead of where the data say.
   std::optional<StartValues> start_values;  ///< Complete ones, instead of those of EstimateStartValues.
+  std::size_t sensor_start = 0;             ///< Of SensorStarts, the one to begin with.
   ParameterRanges bounds;                   ///< Bounds within a parameter's own.
   ParameterPriors priors;                   ///< Each adds the residual (p - mean) / std_dev; priors are no samples.
   NoiseChoice noise = NoiseChoice::kAuto;
@@ -124,8 +127,9 @@ struct FitReport {
   std::string reason;  ///< A sentence, whatever the termination.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
-  std::string reading_unit = "rad";           ///< Of readings, residuals and noise: rad, rad/s, counts or volts.
-  std::vector<ParameterEstimate> parameters;  ///< Inertia, friction, start (two), zero: the order of covariance's rows.
+  SensorModel sensor;
+  std::string reading_unit = "rad";  ///< Of readings, residuals and noise: rad, rad/s, or the recording's unit.
+  std::vector<ParameterEstimate> parameters;  ///< As FitParameters: the order of covariance's rows.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
   Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
@@ -155,9 +159,9 @@ void WithdrawErrors(std::string_view why, FitReport& fit);
 FitOptions AskAlike(const FitReport& fit, FitOptions options);
 
 /// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
-/// initial_rate, zero_angle or rate_bias, and its drift if it `drifts`.
+/// initial_rate, then those of the sensor: zero_angle or rate_bias, and its drift if it `drifts`, of a direct one.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
-                                         bool drifts = false);
+                                         bool drifts = false, const SensorModel& sensor = {});
 
 /// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
 /// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.

@@ -20,7 +20,8 @@ struct FitProblem {
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
   SolveOptions solve;
-  bool restricted = false;  ///< The user fixed or bounded parameters, or gave priors.
+  std::size_t sensor_starts = 1;  ///< Ways to begin that there are, of which one is `start`.
+  bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
   std::vector<PriorTerm> priors;
   NoiseModel noise;  ///< With which a search begins: σ is data.scale; `censored` saturated readings.
   Eigen::Index censored = 0;
@@ -30,8 +31,8 @@ struct FitProblem {
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
   double Internal(std::size_t i, double reported) const { return (reported - offset[i]) / si_per_internal[i]; }
 
-  /// Index of the zero, which its drift may follow.
-  std::size_t zero() const { return infos.size() - (data.drifts ? 2 : 1); }
+  /// Index of the zero, the first parameter of the sensor.
+  std::size_t zero() const { return static_cast<std::size_t>(solve.last_friction) + 3; }
 
   /// σ below this is rounding: a millionth of the data's scale.
   double negligible_sigma() const { return 1e-6 * data.scale; }

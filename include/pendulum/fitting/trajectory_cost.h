@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -13,6 +14,7 @@
 #include "pendulum/fitting/least_squares.h"
 #include "pendulum/fitting/noise.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/model/sensor_model.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
 
@@ -21,7 +23,8 @@ namespace pendulum {
 /// What a trajectory is compared with. Times are from the first sample: a clock of large numbers costs no digits.
 struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
-  std::vector<double> time, value;  ///< N: s, increasing, time[0] = 0; rad or rad/s.
+  std::vector<double> time, value;  ///< N: s, increasing, time[0] = 0; rad or rad/s, or the unit of another sensor.
+  SensorModel sensor;               ///< How readings follow from the motion.
   double natural_frequency = 0;     ///< rad/s, roughly; a trial of a very different time scale is refused.
   double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
   bool drifts = false;              ///< The zero moves: one parameter more.
@@ -32,10 +35,18 @@ struct TrajectoryData {
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
 };
 
+/// The motion at N instants: angle [rad], rate [rad/s] and acceleration [rad/s²], and unless they are not wanted their
+/// derivatives (N x M each) by the parameters before the zero.
+struct MotionStates {
+  std::array<Eigen::VectorXd, SensorModel::kStates> value;
+  std::array<Eigen::MatrixXd, SensorModel::kStates> jacobian;
+};
+
 /// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
-/// the reading per s] where the data ask for it. The squared residual of a sample is its deviance under the noise,
+/// the reading per s] where the data ask for it; instead of the zero the parameters of data.sensor unless it is direct.
+/// The squared residual of a sample is its deviance under the noise,
 /// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale). As a ceres::CostFunction it has
 /// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
 /// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
@@ -46,9 +57,14 @@ struct TrajectoryData {
 /// at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
   /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
   virtual bool Readings(std::span<const double> parameters, Eigen::VectorXd* readings,
                         Eigen::MatrixXd* jacobian) const = 0;
+
+  /// The motion at the samples, whatever sees it; or false.
+  virtual bool Motion(std::span<const double> parameters, bool with_jacobian, MotionStates* states) const = 0;
 
   virtual TraceSummary Trace(std::span<const double> parameters) const = 0;
 
@@ -68,9 +84,16 @@ class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
   int traces() const override { return traces_; }
 
  protected:
+  explicit TrajectoryCost(int count);  ///< Of parameters.
+
+  int count() const { return count_; }
+
   mutable int traces_ = 0;
 
  private:
+  int count_;
+  mutable int trials_since_step_ = 0;  // of the solver that calls Evaluate
+  mutable Eigen::MatrixXd scratch_;
   std::vector<PriorTerm> priors_;
 };
 

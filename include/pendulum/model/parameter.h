@@ -67,6 +67,25 @@ inline constexpr ParameterInfo kZeroAngle{
     "zero_angle", "z", "rad", "rad", -kUnbounded, kUnbounded, "reading at which gravity's torque vanishes"};
 inline constexpr ParameterInfo kRateBias{
     "rate_bias", "z", "rad/s", "rad/s", -kUnbounded, kUnbounded, "reading of the gyro at rest"};
+inline constexpr ParameterInfo kRateScale{
+    "rate_scale", "k", "rad s/rad", "rad s/rad", -kUnbounded, kUnbounded, "reading of the gyro per unit of rate"};
+inline constexpr ParameterInfo kAccelerationBias{
+    "acceleration_bias", "c", "m/s^2", "m/s^2", -kUnbounded, kUnbounded, "reading of the accelerometer in free fall"};
+inline constexpr ParameterInfo kAccelerationScale{
+    "acceleration_scale", "k", "1", "1", 0.0, kUnbounded, "reading of the accelerometer per unit of acceleration"};
+inline constexpr ParameterInfo kAxis{"axis",
+                                     "ψ",
+                                     "rad",
+                                     "rad",
+                                     -kUnbounded,
+                                     kUnbounded,
+                                     "direction the accelerometer measures: 0 along the motion, π/2 towards the pivot"};
+inline constexpr ParameterInfo kRadius{
+    "radius", "r", "m", "m", 0.0, kUnbounded, "distance of the accelerometer, or the tracked point, from the pivot"};
+inline constexpr ParameterInfo kPivotX{
+    "pivot_x", "x_P", "m", "m", -kUnbounded, kUnbounded, "horizontal coordinate of the pivot"};
+inline constexpr ParameterInfo kPivotY{
+    "pivot_y", "y_P", "m", "m", -kUnbounded, kUnbounded, "vertical coordinate of the pivot"};
 inline constexpr ParameterInfo kZeroDrift{"zero_drift",
                                           "z'",
                                           "rad/s",

@@ -38,6 +38,7 @@ struct RawSamples {
   std::string time_unit = "s";  ///< s, ms or us.
   Eigen::VectorXd time;         ///< N x 1, in time_unit, finite, as the file has them.
   Eigen::VectorXd value;        ///< N x 1, finite, in any unit.
+  Eigen::VectorXd second;       ///< N x 1 beside it, or 0 x 1: the other coordinate of a point.
   LineNumbers lines;            ///< N of them.
   double clock_std_dev = 0;     ///< Of a clock rebuilt from coarse stamps: relative standard deviation of its rate.
   std::vector<Warning> warnings;

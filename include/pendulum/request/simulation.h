@@ -23,7 +23,7 @@ struct SimulationFlags {
   std::string gravity;       ///< "sin" or "linear"; empty is the model's own.
   std::string set;           ///< name=value,...
   std::string spread;        ///< name=std_dev,...; empty scatters nothing.
-  std::string unit = "deg";  ///< deg, rad, deg_s or rad_s
+  std::string unit = "deg";  ///< deg, rad, deg_s, rad_s, volts (of a gyro), m_s2, px or m
   double duration = 20;      ///< s
   double rate = 100;         ///< Hz
   double jitter = 0;         ///< s
@@ -41,7 +41,9 @@ struct OutputUnit {
   std::string_view name;    ///< As in --unit.
   std::string_view column;  ///< As in the header of the CSV file.
   Quantity quantity;
-  double si;  ///< rad or rad/s per unit.
+  double si;                 ///< rad or rad/s per unit, 1 of another.
+  std::string_view si_name;  ///< Of the unit in SI, as in the keys of the truth.
+  SensorKind sensor = SensorKind::kDirect;
 };
 
 /// What is to be simulated, and how it is written down.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "pendulum/base/status.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/request/simulation.h"
 
@@ -14,8 +15,12 @@ namespace pendulum {
 /// whose resolution and range are decimals are those decimals, low + k resolution, without the rounding of radians.
 std::string RecordingCsv(const Simulation& simulation, const Recording& recording, std::uint64_t seed);
 
+/// What the simulation records, as such a file: both coordinates of a point where that is what it sees. Errors as
+/// SimulateRecording.
+Result<std::string> SimulatedCsv(const Simulation& simulation, std::uint64_t seed);
+
 /// The truth as a flat JSON object: the parameters' names, SI with a rig, then sigma_rad, resolution_rad and seed;
-/// sigma_rad_s and resolution_rad_s for a rate. noise_correlation and
+/// sigma_rad_s and resolution_rad_s for a rate, likewise for other units. noise_correlation and
 /// noise_freedom stand there where they are not 0; sigma is the scale of Student's t noise.
 std::string TruthJson(const Simulation& simulation, std::uint64_t seed);
 

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/model/sensor_model.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
 
@@ -28,9 +29,11 @@ struct SyntheticOptions {
   double jitter = 0;  ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
 
   Quantity quantity = Quantity::kAngle;
-  double zero = 0;               ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
-  double noise = 0;              ///< Standard deviation of the noise [rad or rad/s], before quantization.
-  double noise_correlation = 0;  ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
+  SensorModel sensor;                     ///< Between the motion and the reading.
+  std::vector<double> sensor_parameters;  ///< S, of a sensor that is not direct; `zero` is then not used.
+  double zero = 0;                        ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
+  double noise = 0;                       ///< Standard deviation of the noise [rad or rad/s], before quantization.
+  double noise_correlation = 0;           ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
   std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
@@ -38,7 +41,8 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
 
-/// Parameters the recording is made with, in the order of a fit: of the model (units of G), of the start, and the zero.
+/// Parameters the recording is made with, in the order of a fit: of the model (units of G), of the start, of the
+/// sensor.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
 /// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the
@@ -52,5 +56,13 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
 /// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);
+
+/// Both coordinates of a point, N samples each, as a sensor of kind kArc sees it before the angles are made of them.
+struct TrackedPoint {
+  Eigen::VectorXd time, x, y;
+};
+
+/// The point of which SimulateRecording makes angles about the circle it moves on. Errors as SimulateRecording.
+Result<TrackedPoint> SimulatePoint(const SyntheticOptions& options);
 
 }  // namespace pendulum

@@ -63,8 +63,9 @@ class Trajectory {
  public:
   void Append(const Segment<double>& segment) { segments_.push_back(segment); }
 
-  double Angle(double time) const;  ///< rad, time in s
-  double Rate(double time) const;   ///< rad/s
+  double Angle(double time) const;         ///< rad, time in s
+  double Rate(double time) const;          ///< rad/s
+  double Acceleration(double time) const;  ///< rad/s^2
   const TraceSummary& summary() const { return summary_; }
   void set_summary(const TraceSummary& summary) { summary_ = summary; }
 

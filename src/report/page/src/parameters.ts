@@ -19,6 +19,13 @@ export const kCircumstances = new Set([
   'rate_bias',
   'zero_drift',
   'bias_drift',
+  'rate_scale',
+  'acceleration_bias',
+  'acceleration_scale',
+  'axis',
+  'radius',
+  'pivot_x',
+  'pivot_y',
 ]);
 
 /** Words, symbol and the name that flags and JSON use. */

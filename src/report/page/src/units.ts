@@ -30,7 +30,7 @@ export function inDegrees(unit: string): { unit: string; factor: number } | null
 }
 
 /** Key suffixes of the JSON and what they mean. */
-const kUnitOfSuffix: Record<string, string> = { rad: 'rad', rad_s: 'rad/s', counts: 'counts', volts: 'V' };
+const kUnitOfSuffix: Record<string, string> = { rad: 'rad', rad_s: 'rad/s', counts: 'counts', volts: 'V', m_s2: 'm/s²', m: 'm', px: 'px' };
 
 /** The number under `name` + "_" + unit, such as rms_residual_rad, with its unit; null where there is none. */
 export function withUnit(object: Loose | null | undefined, name: string): { value: number; unit: string } | null {
@@ -57,6 +57,13 @@ const kSymbols: Record<string, string> = {
   rate_bias: 'z',
   zero_drift: 'z′',
   bias_drift: 'z′',
+  rate_scale: 'k',
+  acceleration_bias: 'c',
+  acceleration_scale: 'k',
+  axis: 'ψ',
+  radius: 'r',
+  pivot_x: 'x_P',
+  pivot_y: 'y_P',
   natural_frequency: 'ω_n',
   damped_frequency: 'ω_d',
   damping_ratio: 'ζ',
@@ -94,6 +101,13 @@ const kWords: Record<string, string> = {
   rate_bias: 'bias of the sensor',
   zero_drift: 'drift of the zero',
   bias_drift: 'drift of the bias',
+  rate_scale: 'scale of the gyro',
+  acceleration_bias: 'bias of the accelerometer',
+  acceleration_scale: 'scale of the accelerometer',
+  axis: 'axis of the accelerometer',
+  radius: 'distance from the pivot',
+  pivot_x: 'pivot, horizontally',
+  pivot_y: 'pivot, vertically',
   natural_frequency: 'natural frequency',
   small_angle_period: 'period of small swings',
   damping_ratio: 'damping ratio',

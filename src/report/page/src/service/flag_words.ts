@@ -39,6 +39,11 @@ const kUnits: Options = [
   ['rad_s', 'radians per second'],
   ['counts', 'counts of a converter'],
   ['volts', 'volts'],
+  ['m_s2', 'metres per second squared'],
+  ['px', 'pixels'],
+  ['m', 'metres'],
+  ['cm', 'centimetres'],
+  ['mm', 'millimetres'],
 ];
 const kOfModel: FlagWords = { label: 'Kind of friction', options: [['all', 'all']] };
 

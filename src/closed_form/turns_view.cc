@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/turns_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/extrema.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The passages through the bottom: maxima of the reading.
+std::vector<Extremum> Bottoms(const Recording& upright) {
+  const double noise = SuccessiveDifferenceNoise(upright);
+  const std::vector<Extremum> turns = FindTurns(upright, TurningThreshold(upright, noise));
+  std::vector<Extremum> bottoms;
+  for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima in turn
+    if (turns[i].value > turns[i + 1].value) bottoms.push_back(turns[i]);
+  }
+  return bottoms;
+}
+
+/// MODEL.md eq. (74), with the bottoms' readings joined by lines.
+Recording Unfolded(Recording recording) {
+  if (recording.value.mean() < 0) recording.value = -recording.value;
+  const std::vector<Extremum> bottoms = Bottoms(recording);
+  if (bottoms.size() < 2) return recording;
+  const double spacing = (bottoms.back().time - bottoms.front().time) / static_cast<double>(bottoms.size() - 1);
+  std::size_t next = 0;
+  for (Index i = 0; i < recording.size(); ++i) {
+    const double time = recording.time[i];
+    while (next < bottoms.size() && bottoms[next].time <= time) ++next;
+    const Extremum& before = bottoms[next == 0 ? 0 : next - 1];
+    const Extremum& after = bottoms[std::min(next, bottoms.size() - 1)];
+    const double step = after.time - before.time;
+    const double share = step > 0 ? (time - before.time) / step : 0;
+    const double bottom = before.value + share * (after.value - before.value);
+    const double side = next % 2 == 0 ? 1 : -1;
+    // Beyond the last bottom that stands out of the noise there is no swing to be seen.
+    const bool is_over = next == bottoms.size() && time > bottoms.back().time + spacing;
+    recording.value[i] = is_over ? 0.0 : side * std::sqrt(std::max(bottom - recording.value[i], 0.0));
+  }
+  return recording;
+}
+
+}  // namespace
+
+bool IsRadial(const Recording& recording) {
+  const double mean = recording.value.mean();
+  if (recording.shows_gravity) return std::abs(mean) > 0.5 * kStandardGravity;
+  return std::abs(mean) > 0.25 * (recording.value.maxCoeff() - recording.value.minCoeff());
+}
+
+Recording TurnsView(const Recording& recording) {
+  if (!HasOtherView(recording)) return recording;
+  const bool is_folded = recording.quantity == Quantity::kAcceleration && IsRadial(recording);
+  Recording view = is_folded ? Unfolded(recording) : recording;
+  if (is_folded) view.resolution = 0;
+  view.quantity = Quantity::kAngle;  // in a unit that is none, so that nobody takes it for radians
+  return view;
+}
+
+}  // namespace pendulum

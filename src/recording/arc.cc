@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/arc.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Centre and radius.
+using Circle = Eigen::Vector3d;
+
+/// Taubin's fit of centred and scaled points, as a generalized eigenvalue problem: the smallest singular direction of
+/// [(z - z̄) / 2 sqrt(z̄), x, y], z = x² + y² (N. Chernov, Circular and Linear Regression, CRC 2010, section 5.10).
+Circle AlgebraicFit(const VectorXd& x, const VectorXd& y) {
+  const VectorXd z = x.array().square() + y.array().square();
+  const double mean = z.mean();
+  Eigen::MatrixX3d basis(x.size(), 3);
+  basis << (z.array() - mean) / (2 * std::sqrt(mean)), x, y;
+  const Eigen::Matrix3d moments = basis.transpose() * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  const Eigen::Vector3d direction = solver.eigenvectors().col(0);
+  const double a = direction[0] / (2 * std::sqrt(mean));
+  const double centre_x = -0.5 * direction[1] / a;
+  const double centre_y = -0.5 * direction[2] / a;
+  return {centre_x, centre_y, std::sqrt(centre_x * centre_x + centre_y * centre_y + mean)};
+}
+
+/// Distances from the circle (N) and their derivatives (N x 3).
+VectorXd Distances(const VectorXd& x, const VectorXd& y, const Circle& circle, Eigen::MatrixX3d& jacobian) {
+  const VectorXd from_x = x.array() - circle[0];
+  const VectorXd from_y = y.array() - circle[1];
+  const VectorXd distance = (from_x.array().square() + from_y.array().square()).sqrt();
+  jacobian.resize(x.size(), 3);
+  jacobian << -from_x.cwiseQuotient(distance), -from_y.cwiseQuotient(distance), -VectorXd::Ones(x.size());
+  return distance.array() - circle[2];
+}
+
+tl::unexpected<Status> NoArc(const std::string& why) {
+  return Error(StatusCode::kFailedPrecondition,
+               "the points (x, y) tell no circle about a pivot: " + why +
+                   "; choose one coordinate with --value_column, or record a larger swing");
+}
+
+}  // namespace
+
+double Arc::Angle(double point_x, double point_y) const { return std::atan2(point_x - x, down * (point_y - y)); }
+
+Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
+  constexpr int kMostSteps = 50;
+  constexpr double kConverged = 1e-12;
+  constexpr double kLargestError = 0.2;  // of the radius: beyond, no angle is known to mean one
+  const double x_mean = x.mean();
+  const double y_mean = y.mean();
+  const double scale = std::sqrt(((x.array() - x_mean).square() + (y.array() - y_mean).square()).mean());
+  if (!(scale > 0)) return NoArc("all of them are one");
+  const VectorXd at_x = (x.array() - x_mean) / scale;
+  const VectorXd at_y = (y.array() - y_mean) / scale;
+  Circle circle = AlgebraicFit(at_x, at_y);
+  Eigen::MatrixX3d jacobian;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (int step = 0; step < kMostSteps && circle.allFinite(); ++step) {
+    const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
+    information = jacobian.transpose() * jacobian;
+    const Eigen::Vector3d change = information.ldlt().solve(jacobian.transpose() * distance);
+    circle -= change;
+    if (change.norm() < kConverged * circle.norm()) break;
+  }
+  const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
+  const double variance = distance.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(x.size() - 3, 1));
+  const Eigen::Matrix3d covariance = variance * information.inverse();
+  if (!circle.allFinite() || !covariance.allFinite()) return NoArc("they stand on a line");
+  const double error = std::sqrt(covariance.diagonal().maxCoeff()) / circle[2];
+  if (!(error < kLargestError)) {
+    return NoArc("its radius would be uncertain by " + NumberText(100 * error, 2) + " %");
+  }
+  Arc arc;
+  arc.x = x_mean + scale * circle[0];
+  arc.y = y_mean + scale * circle[1];
+  arc.radius = scale * circle[2];
+  arc.down = circle[1] < 0 ? 1 : -1;
+  arc.covariance = scale * scale * covariance;
+  arc.std_dev = scale * std::sqrt(variance);
+  return arc;
+}
+
+}  // namespace pendulum

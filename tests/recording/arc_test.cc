@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/arc.h"
+
+#include <cmath>
+#include <random>
+
+#include <boost/random/normal_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::arc_test {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+
+/// Points at angles from -half to half about (640, 120), 400 away, y downwards, with noise of that standard deviation.
+struct Points {
+  Points(double half, double noise, unsigned seed) : x(kCount), y(kCount) {
+    std::mt19937_64 generator(seed);
+    boost::random::normal_distribution<double> draw(0, 1);
+    for (Eigen::Index i = 0; i < kCount; ++i) {
+      const double angle = half * std::sin(0.37 * static_cast<double>(i));
+      x[i] = 640 + 400 * std::sin(angle) + noise * draw(generator);
+      y[i] = 120 + 400 * std::cos(angle) + noise * draw(generator);
+    }
+  }
+
+  static constexpr Eigen::Index kCount = 500;
+  Eigen::VectorXd x, y;
+};
+
+TEST(FitArc, FindsTheCircleOfExactPoints) {
+  const Points points(0.3, 0, 1);
+  const Result<Arc> arc = FitArc(points.x, points.y);
+  ASSERT_TRUE(arc) << arc.error().message;
+  EXPECT_THAT(arc->x, DoubleNear(640, 1e-6));
+  EXPECT_THAT(arc->y, DoubleNear(120, 1e-6));
+  EXPECT_THAT(arc->radius, DoubleNear(400, 1e-6));
+  EXPECT_EQ(arc->down, 1);
+  EXPECT_THAT(arc->Angle(640 + 400 * std::sin(0.2), 120 + 400 * std::cos(0.2)), DoubleNear(0.2, 1e-8));
+}
+
+TEST(FitArc, SeesWhichWayYGrows) {
+  const Points points(0.3, 0, 1);
+  const Result<Arc> arc = FitArc(points.x, -points.y);
+  ASSERT_TRUE(arc) << arc.error().message;
+  EXPECT_EQ(arc->down, -1);
+  EXPECT_THAT(arc->Angle(640 + 400 * std::sin(0.2), -120 - 400 * std::cos(0.2)), DoubleNear(0.2, 1e-8));
+}
+
+/// Over 300 seeds the squared distances to the truth, in the covariance given, are χ² of 3 degrees of freedom: their
+/// mean 3 ± 0.14.
+TEST(FitArc, HasTheErrorsItSays) {
+  double sum = 0;
+  constexpr int kSeeds = 300;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const Points points(0.5, 0.5, seed);
+    const Result<Arc> arc = FitArc(points.x, points.y);
+    ASSERT_TRUE(arc) << arc.error().message;
+    const Eigen::Vector3d error(arc->x - 640, arc->y - 120, arc->radius - 400);
+    sum += error.dot(arc->covariance.inverse() * error);
+  }
+  EXPECT_THAT(sum / kSeeds, DoubleNear(3, 0.5));
+}
+
+TEST(FitArc, RefusesPointsThatTellNoPivot) {
+  const Points points(0.02, 1, 1);
+  const Result<Arc> arc = FitArc(points.x, points.y);
+  ASSERT_FALSE(arc);
+  EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(arc.error().message, HasSubstr("tell no circle about a pivot"));
+  const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(100, 0, 1);
+  EXPECT_FALSE(FitArc(line, 2 * line));
+  EXPECT_FALSE(FitArc(Eigen::VectorXd::Ones(100), Eigen::VectorXd::Ones(100)));
+}
+
+}  // namespace
+}  // namespace pendulum::arc_test
