@@ -104,6 +104,21 @@ Result<void> CheckModel(const SyntheticOptions& options) {
   return CheckNumber({infos[0].name, options.parameters[0], NumberRule::Domain::kPositive});
 }
 
+Result<void> CheckLostCounts(const SyntheticOptions& options) {
+  for (const LostCounts& lost : options.lost_counts) {
+    if (!std::isfinite(lost.time)) return BadOption("the time of lost counts", lost.time, "finite");
+  }
+  if (options.lost_counts.empty() || options.resolution > 0) return {};
+  return Error(StatusCode::kInvalidArgument, "counts are lost by a sensor with levels; give a resolution");
+}
+
+/// What lost counts add to the readings from some time on.
+double LostBefore(const SyntheticOptions& options, double time) {
+  double counts = 0;
+  for (const LostCounts& lost : options.lost_counts) counts += time >= lost.time ? lost.counts : 0;
+  return counts * options.resolution;
+}
+
 Result<void> CheckSensor(const SyntheticOptions& options) {
   if (!options.range) return {};
   const auto [low, high] = *options.range;
@@ -214,7 +229,7 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 }
 
 Result<Recording> SimulateRecording(const SyntheticOptions& options) {
-  for (const auto check : {CheckNumbers, CheckModel, CheckSensor}) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts}) {
     if (Result<void> checked = check(options); !checked) return tl::unexpected(checked.error());
   }
   const Result<Eigen::Index> count = SampleCount(options);
@@ -237,6 +252,7 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
     const double time = recording.time[i];
     const double truth = is_angle ? trajectory->Angle(time) : trajectory->Rate(time);
     recording.value[i] = SensorReading(truth + options.zero + noise[i], options.resolution, options.range);
+    recording.value[i] += LostBefore(options, time);
   }
   if (!recording.value.allFinite()) {
     return Error(StatusCode::kFailedPrecondition,
