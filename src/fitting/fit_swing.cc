@@ -237,7 +237,13 @@ void WithdrawJumping(const std::string& why, FitReport& fit) {
   WithdrawErrors("the zero jumps", fit);
 }
 
-void WarnOfJumps(const std::optional<ZeroJumps>& jumps, FitReport& fit) {
+/// Says what became of jumps, and where there may be one that is too small to be told.
+void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
+  if (!jumps && !lacks && MayJump(fit)) {
+    fit.warnings.push_back({"zero_unsteady",
+                            "the mean of the residuals changes within the window by more than chance has it: the zero "
+                            "may have jumped or drifted by too little to be told; look at --residuals"});
+  }
   if (!jumps) return;
   if (!jumps->AreMended()) return WithdrawJumping(jumps->message, fit);
   fit.warnings.push_back({"lost_counts", jumps->message});
@@ -330,11 +336,11 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
            result->fit.Warns("correlated_residuals");
   };
   std::optional<ZeroJumps> jumps;
-  if (lacks() || MayJump(result->fit.residual)) jumps = MendZero(swing, options, result);
+  if (lacks() || MayJump(result->fit)) jumps = MendZero(swing, options, result);
   if (!result) return result;
   if (!lacks()) {
     WarnOfLargerMotion(swing, result->fit);
-    WarnOfJumps(jumps, result->fit);
+    WarnOfJumps(jumps, false, result->fit);
     return result;
   }
   if (const auto why = WhyNoPendulum(*result, options.stop)) {
@@ -356,7 +362,7 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
   WarnOfLargerMotion(swing, result->fit);
-  WarnOfJumps(jumps, result->fit);
+  WarnOfJumps(jumps, lacks(), result->fit);
   if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit, options.stop) : std::nullopt)
     Withdraw(*why, result->fit);
   return result;

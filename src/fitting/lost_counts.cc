@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include "pendulum/base/format.h"
@@ -35,9 +33,24 @@ FitOptions RichestLaw(const Recording& recording, const FitOptions& options) {
   return richest;
 }
 
-/// What a fit to `corrected` leaves of `recording`, which differs by steps alone.
-std::optional<FitResiduals> ResidualsOf(const Recording& recording, const Recording& corrected,
-                                        const FitOptions& options) {
+/// What a fit to readings that are moved back leaves of them, and of those that are not.
+struct Left {
+  double rms = 0;
+  bool lacks = false;  // more than noise
+  FitResiduals residuals;
+};
+
+Eigen::VectorXd RateOf(const Eigen::VectorXd& time, const Eigen::VectorXd& readings) {
+  const Index last = readings.size() - 1;
+  Eigen::VectorXd rate(last + 1);
+  for (Index i = 0; i <= last; ++i) {
+    const Index before = std::max<Index>(i - 1, 0), after = std::min(i + 1, last);
+    rate[i] = (readings[after] - readings[before]) / (time[after] - time[before]);
+  }
+  return rate;
+}
+
+std::optional<Left> FitCorrected(const Recording& recording, const Recording& corrected, const FitOptions& options) {
   const Result<FitReport> fit = FitRecording(corrected, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
   const Result<FitProblem> problem = MakeFitProblem(corrected, AskAlike(*fit, options));
@@ -47,19 +60,14 @@ std::optional<FitResiduals> ResidualsOf(const Recording& recording, const Record
     parameters.push_back(problem->Internal(i, fit->parameters[i].estimate));
   }
   const auto cost = MakeTrajectoryCost(problem->model, problem->start.start, problem->data);
-  FitResiduals residuals;
+  Left left{fit->statistics.rms_residual, fit->Warns("lack_of_fit") || fit->Warns("correlated_residuals"), {}};
   Eigen::VectorXd readings;
-  if (!cost->Readings(parameters, &readings, &residuals.jacobian)) return std::nullopt;
-  residuals.time = problem->data.times();
-  residuals.residual = recording.value - readings;
-  residuals.period = 2 * kPi / problem->start.natural_frequency;
-  const Index count = readings.size();
-  residuals.rate.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const Index a = std::max<Index>(i - 1, 0), b = std::min(i + 1, count - 1);
-    residuals.rate[i] = (readings[b] - readings[a]) / (residuals.time[b] - residuals.time[a]);
-  }
-  return residuals;
+  if (!cost->Readings(parameters, &readings, &left.residuals.jacobian)) return std::nullopt;
+  left.residuals.time = problem->data.times();
+  left.residuals.residual = recording.value - readings;
+  left.residuals.rate = RateOf(left.residuals.time, readings);
+  left.residuals.period = 2 * kPi / problem->start.natural_frequency;
+  return left;
 }
 
 /// A step as a number of counts.
@@ -74,21 +82,25 @@ struct Counts {
   }
 };
 
-Counts InCounts(const ZeroStep& step, double resolution) {
-  if (!(resolution > 0)) return {};
-  return {step.size / resolution, step.std_error / resolution};
+/// Not a whole number of counts without levels, nor with a range, which would move along with the readings.
+Counts InCounts(const ZeroStep& step, const Recording& recording) {
+  if (!(recording.resolution > 0) || recording.range) return {};
+  return {step.size / recording.resolution, step.std_error / recording.resolution};
 }
 
-/// What matters of the steps found: those of a size, and surely.
-bool Matters(const ZeroStep& step, double resolution) {
+/// Whether a step is more than rounding, of readings or of numbers.
+bool Matters(const ZeroStep& step, const Recording& recording) {
   constexpr double kLeastCount = 0.75;
   constexpr double kSurely = 5;
-  return std::abs(step.size) > kSurely * step.std_error && std::abs(step.size) > kLeastCount * resolution;
+  constexpr double kRounding = 1e-6;
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  const double least = std::max({kSurely * step.std_error, kLeastCount * recording.resolution, kRounding * range});
+  return std::abs(step.size) > least;
 }
 
 Recording MovedBack(Recording recording, const std::vector<ZeroStep>& steps) {
   for (const ZeroStep& step : steps) {
-    const Counts counts = InCounts(step, recording.resolution);
+    const Counts counts = InCounts(step, recording);
     const double size = counts.IsWhole() ? std::round(counts.number) * recording.resolution : step.size;
     recording.value.tail(recording.size() - step.sample).array() -= size;
   }
@@ -101,15 +113,22 @@ bool AreAlike(const std::vector<ZeroStep>& a, const std::vector<ZeroStep>& b) {
   });
 }
 
+std::string SizeText(const Recording& recording, const ZeroStep& step) {
+  const Counts counts = InCounts(step, recording);
+  if (!counts.IsWhole()) {
+    return NumberText(step.size, 3) + " +- " + NumberText(step.std_error, 2) + " " + recording.value_unit();
+  }
+  const double whole = std::round(counts.number);
+  return NumberText(whole) + (std::abs(whole) == 1 ? " count" : " counts");
+}
+
+/// "by 3 counts at 12.34 s, by ...".
 std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps) {
   constexpr std::size_t kMostSaid = 5;
   std::string text;
   for (std::size_t k = 0; k < std::min(steps.size(), kMostSaid); ++k) {
-    const Counts counts = InCounts(steps[k], recording.resolution);
-    const std::string size = counts.IsWhole()
-                                 ? NumberText(std::round(counts.number)) + " counts"
-                                 : NumberText(steps[k].size, 3) + " " + recording.value_unit();
-    text += (k == 0 ? "by " : ", by ") + size + " at " + NumberText(recording.time[steps[k].sample], 6) + " s";
+    text += (k == 0 ? "by " : ", by ") + SizeText(recording, steps[k]) + " at " +
+            NumberText(recording.time[steps[k].sample], 6) + " s";
   }
   if (steps.size() > kMostSaid) text += " and " + std::to_string(steps.size() - kMostSaid) + " times more";
   return text;
@@ -117,56 +136,77 @@ std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps
 
 }  // namespace
 
-bool MayJump(const Eigen::VectorXd& residual) {
+bool MayJump(const FitReport& fit) {
   constexpr double kDeviations = 4;
-  const Index count = residual.size();
-  const double mean = residual.mean();
-  const double scatter = std::sqrt((residual.array() - mean).square().mean());
+  constexpr double kRounding = 1e-9;  // of the swing: residuals of numbers, not of a model
+  const Index count = fit.residual.size();
+  if (fit.quantity != Quantity::kAngle || count < 2) return false;
+  const double mean = fit.residual.mean();
+  const double scatter = std::sqrt((fit.residual.array() - mean).square().mean());
+  if (!(scatter > kRounding * (fit.fitted.maxCoeff() - fit.fitted.minCoeff()))) return false;
   double sum = 0;
   for (Index i = 0; i + 1 < count; ++i) {
-    sum += residual[i] - mean;
+    sum += fit.residual[i] - mean;
     const auto before = static_cast<double>(i + 1), after = static_cast<double>(count - i - 1);
     if (std::abs(sum) > kDeviations * scatter * std::sqrt(before * after / static_cast<double>(count))) return true;
   }
   return false;
 }
 
-std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
-  constexpr int kMostRounds = 8;
-  if (recording.quantity != Quantity::kAngle) return std::nullopt;
-  const FitOptions richest = RichestLaw(recording, options);
-  ZeroJumps jumps;
-  jumps.corrected = recording;
+namespace {
+
+/// Steps that fit and search agree upon, with the readings they lead to.
+struct Settled {
   std::vector<ZeroStep> steps;
-  bool settled = false;
-  for (int round = 0; round < kMostRounds && !settled && !options.stop.stop_requested(); ++round) {
-    const auto residuals = ResidualsOf(recording, jumps.corrected, richest);
-    if (!residuals) return std::nullopt;
-    std::vector<ZeroStep> found = FindZeroSteps(*residuals, kMostSteps, options.stop);
-    std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording.resolution); });
-    settled = AreAlike(found, steps);
-    steps = std::move(found);
-    jumps.corrected = MovedBack(recording, steps);
-    if (getenv("VERBOSE"))
-      for (auto& s : steps)
-        fprintf(stderr, "ROUND %d t %.5f size %.3f +- %.3f\n", round, recording.time[s.sample],
-                s.size / recording.resolution, s.std_error / recording.resolution);
+  Recording corrected;
+  bool is_settled = false;
+  bool explain = false;  // what the fit lacked, or a good part of it
+};
+
+/// Fits and looks for steps in turn. Nothing where a fit fails.
+std::optional<Settled> Settle(const Recording& recording, const FitOptions& options) {
+  constexpr int kMostRounds = 8;
+  constexpr double kGoodPart = 0.9;
+  Settled settled{{}, recording, false, false};
+  double rms = 0;
+  for (int round = 0; round < kMostRounds && !settled.is_settled; ++round) {
+    const auto left = FitCorrected(recording, settled.corrected, options);
+    if (!left) return std::nullopt;
+    if (round == 0) rms = left->rms;
+    settled.explain = round > 0 && (!left->lacks || left->rms < kGoodPart * rms);
+    std::vector<ZeroStep> found = FindZeroSteps(left->residuals, kMostSteps, options.stop);
+    if (options.stop.stop_requested()) return std::nullopt;
+    std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording); });
+    settled.is_settled = AreAlike(found, settled.steps);
+    settled.steps = std::move(found);
+    settled.corrected = MovedBack(recording, settled.steps);
   }
-  if (steps.empty() || options.stop.stop_requested()) return std::nullopt;
-  const auto is_whole = [&](const ZeroStep& step) { return InCounts(step, recording.resolution).IsWhole(); };
-  const std::string found = "the zero jumps " + Jumps(recording, steps);
-  if (settled && std::ranges::all_of(steps, is_whole)) {
-    for (const ZeroStep& step : steps) {
-      const double counts = std::round(InCounts(step, recording.resolution).number);
-      jumps.lost.push_back({recording.time[step.sample], static_cast<int>(counts)});
-    }
-    jumps.message = found +
-                    ": counts were lost; the readings after it are moved back by as much, in all that follows and in "
-                    "the series";
+  return settled;
+}
+
+}  // namespace
+
+std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
+  if (recording.quantity != Quantity::kAngle) return std::nullopt;
+  std::optional<Settled> settled = Settle(recording, RichestLaw(recording, options));
+  if (!settled || settled->steps.empty() || !settled->explain) return std::nullopt;
+  const std::vector<ZeroStep>& steps = settled->steps;
+  ZeroJumps jumps;
+  jumps.message = "the zero jumps " + Jumps(recording, steps);
+  const auto is_whole = [&](const ZeroStep& step) { return InCounts(step, recording).IsWhole(); };
+  if (!settled->is_settled || !std::ranges::all_of(steps, is_whole)) {
+    jumps.message +=
+        ", not surely by whole counts: the sensor slipped, or counts were lost that cannot be told; choose a window "
+        "before it or after it with --from and --to";
     return jumps;
   }
-  jumps.message = found + ", and not by whole counts: the sensor slipped, or counts were lost that cannot be told; "
-                          "choose a window before it or after it with --from and --to";
+  for (const ZeroStep& step : steps) {
+    const double counts = std::round(InCounts(step, recording).number);
+    jumps.lost.push_back({recording.time[step.sample], static_cast<int>(counts)});
+  }
+  jumps.corrected = std::move(settled->corrected);
+  jumps.message +=
+      ": counts were lost; the readings after it are moved back by as much, in all that follows and in the series";
   return jumps;
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,37 +17,37 @@ namespace {
 
 using Eigen::Index;
 
-/// Means of residuals and derivatives over bins of neighbouring samples.
+/// Means over bins of neighbouring samples, about a hundred in a period. For M bins.
 struct Bins {
-  std::vector<Index> first;         ///< M + 1: bin i has samples first[i]..first[i + 1] - 1
-  Eigen::VectorXd time, residual, rate;  ///< M; of the modelled reading
-  Eigen::MatrixXd jacobian;         ///< M x P
-  std::vector<Stretch> stretches;   ///< of bins, without gaps in time
+  std::vector<Index> first;              // M + 1: bin i has samples first[i]..first[i + 1] - 1
+  Eigen::VectorXd time, residual, rate;  // M, as in FitResiduals
+  Eigen::MatrixXd jacobian;              // M x P
+  std::vector<Stretch> stretches;        // of bins, without gaps in time
 };
 
-Bins MakeBins(const FitResiduals& data) {
+/// Where bins begin, and which of them follow each other without a gap in time.
+Bins DivideIntoBins(const FitResiduals& data) {
   constexpr double kPerPeriod = 100;
   constexpr double kGap = 0.25;  // of a period
   const Index count = data.time.size();
-  const double duration = data.time[count - 1] - data.time[0];
-  const double per_period = static_cast<double>(count - 1) / duration * data.period;
-  const Index width = std::max<Index>(static_cast<Index>(per_period / kPerPeriod), 1);
+  const double samples_per_second = static_cast<double>(count - 1) / (data.time[count - 1] - data.time[0]);
+  const Index width = std::max<Index>(static_cast<Index>(samples_per_second * data.period / kPerPeriod), 1);
   Bins bins;
-  for (Index i = 0; i < count;) {
-    const bool gap = i > 0 && data.time[i] - data.time[i - 1] > kGap * data.period;
-    const auto bin = static_cast<Index>(bins.first.size());
-    if (i == 0 || gap) bins.stretches.push_back({bin, 0});
+  for (Index i = 0; i < count; ++i) {
+    const bool gap = i == 0 || data.time[i] - data.time[i - 1] > kGap * data.period;
+    if (!gap && i < bins.first.back() + width) continue;
+    if (gap) bins.stretches.push_back({static_cast<Index>(bins.first.size()), 0});
     ++bins.stretches.back().size;
     bins.first.push_back(i);
-    const Index begin = i;
-    do ++i;
-    while (i < count && i < begin + width && data.time[i] - data.time[i - 1] <= kGap * data.period);
   }
   bins.first.push_back(count);
+  return bins;
+}
+
+Bins MakeBins(const FitResiduals& data) {
+  Bins bins = DivideIntoBins(data);
   const auto size = static_cast<Index>(bins.first.size()) - 1;
-  bins.time.resize(size);
-  bins.residual.resize(size);
-  bins.rate.resize(size);
+  for (Eigen::VectorXd* const column : {&bins.time, &bins.residual, &bins.rate}) column->resize(size);
   bins.jacobian.resize(size, data.jacobian.cols());
   for (Index i = 0; i < size; ++i) {
     const Index begin = bins.first[static_cast<std::size_t>(i)];
@@ -74,16 +72,17 @@ Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::MatrixX
   return all;
 }
 
-/// Residuals explained by columns and an autoregression.
+/// Residuals explained by K columns and an autoregression.
 struct Explained {
-  std::vector<double> memory;  ///< φ_1..φ_p
-  Eigen::MatrixXd basis;       ///< M x K, orthonormal: spans the whitened columns
-  Eigen::VectorXd rest;        ///< M, whitened, what these leave; 0 where a stretch begins
-  Eigen::VectorXd size, std_error;  ///< K
-  double sigma = 0;            ///< of `rest`
-  double criterion = 0;        ///< -2 log L and what the order costs
+  std::vector<double> memory;       // φ_1..φ_p
+  Eigen::MatrixXd basis;            // M x K, orthonormal: spans the whitened columns
+  Eigen::VectorXd rest;             // M, whitened, what these leave; 0 where a stretch begins
+  Eigen::VectorXd size, std_error;  // K
+  double sigma = 0;                 // of `rest`
+  double criterion = 0;             // -2 log L and what the order costs
 };
 
+/// Generalised least squares with the residuals' own memory.
 class Search {
  public:
   explicit Search(const FitResiduals& data) : bins_(MakeBins(data)) {
@@ -96,6 +95,10 @@ class Search {
   }
 
   Index size() const { return bins_.time.size(); }
+
+  /// Whether there are samples to tell parameters, memory and a step from.
+  bool IsEnough() const { return kept_.sum() > 5.0 * static_cast<double>(bins_.jacobian.cols() + 1); }
+
   const Bins& bins() const { return bins_; }
 
   Explained Explain(const Eigen::MatrixXd& columns) const {
@@ -107,13 +110,15 @@ class Search {
       left = bins_.residual - columns * explained.size;
     }
     const double kept = kept_.sum();
-    explained.criterion = 2 * kept * std::log(explained.sigma) +
-                          static_cast<double>(explained.memory.size()) * std::log(kept);
+    explained.criterion =
+        2 * kept * std::log(explained.sigma) + static_cast<double>(explained.memory.size()) * std::log(kept);
     return explained;
   }
 
-  /// The place where one step more explains most, with that memory.
+  /// The bin where one step more explains most, with that memory; -1: none.
   Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
+    constexpr Index kEdge = 3;           // bins on either side
+    constexpr double kToldApart = 1e-6;  // of a step, beside the columns
     Explained explained;
     explained.memory = std::move(memory);
     Regress(columns, &explained);
@@ -122,16 +127,15 @@ class Search {
     std::vector<double> squares = rise;
     for (double& value : squares) value *= value;
     Eigen::VectorXd norm = Along(squares, kept_);
-    const Eigen::VectorXd whole = norm;
+    const Eigen::VectorXd smallest = kToldApart * norm;
     for (Index k = 0; k < explained.basis.cols(); ++k) norm -= Along(rise, explained.basis.col(k)).cwiseAbs2();
     Index best = -1;
     double most = 0;
-    constexpr Index kEdge = 3;
     for (const Stretch& stretch : bins_.stretches) {
       for (Index i = stretch.begin + kEdge; i + kEdge <= stretch.begin + stretch.size; ++i) {
-        if (!(norm[i] > 1e-6 * whole[i])) continue;
-        const double gain = product[i] * product[i] / norm[i];
-        if (gain > most) most = gain, best = i;
+        if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
+        most = product[i] * product[i] / norm[i];
+        best = i;
       }
     }
     return best;
@@ -170,12 +174,17 @@ class Search {
     explained->rest = value - explained->basis * (explained->basis.transpose() * value);
     explained->size = qr.solve(value).cwiseQuotient(scale);
     explained->sigma = explained->rest.norm() / std::sqrt(std::max(kept_.sum() - static_cast<double>(qr.rank()), 1.0));
-    const Eigen::MatrixXd inverse =
-        qr.matrixR().topLeftCorner(qr.rank(), qr.rank()).triangularView<Eigen::Upper>().solve(
-            Eigen::MatrixXd::Identity(qr.rank(), qr.rank()));
-    Eigen::VectorXd error = Eigen::VectorXd::Constant(columns.cols(), std::numeric_limits<double>::infinity());
-    for (Index k = 0; k < qr.rank(); ++k) error[qr.colsPermutation().indices()[k]] = inverse.row(k).norm() * explained->sigma;
-    explained->std_error = error.cwiseQuotient(scale);
+    explained->std_error = explained->sigma * RootVariances(qr).cwiseQuotient(scale);
+  }
+
+  /// Standard errors of the coefficients at unit variance; infinite where a column tells nothing beside the others.
+  static Eigen::VectorXd RootVariances(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+    const Index rank = qr.rank();
+    const Eigen::MatrixXd root = qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd inverse = root.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(rank, rank));
+    Eigen::VectorXd errors = Eigen::VectorXd::Constant(qr.cols(), std::numeric_limits<double>::infinity());
+    for (Index k = 0; k < rank; ++k) errors[qr.colsPermutation().indices()[k]] = inverse.row(k).norm();
+    return errors;
   }
 
   /// What the memory makes of a step: 1, 1 - φ_1, 1 - φ_1 - φ_2, ...
@@ -193,7 +202,8 @@ class Search {
     for (Index i = size() - 1; i >= 0; --i) {
       if (i + length < size()) after += value[i + length];
       sum[i] = rise.back() * after;
-      for (Index k = 0; k < std::min(length, size() - i); ++k) sum[i] += rise[static_cast<std::size_t>(k)] * value[i + k];
+      for (Index k = 0; k < std::min(length, size() - i); ++k)
+        sum[i] += rise[static_cast<std::size_t>(k)] * value[i + k];
     }
     return sum;
   }
@@ -203,7 +213,8 @@ class Search {
   Eigen::VectorXd kept_;  // M: 1, or 0 where a stretch begins
 };
 
-/// Other explanations of what looks like a step at a bin.
+/// Other explanations of what looks like a step at a bin: a zero that drifts, a spike, a kink, a pendulum that was
+/// touched then, a clock that slipped.
 std::vector<Eigen::MatrixXd> Rivals(const Bins& bins, Index bin) {
   const Index size = bins.time.size();
   const Eigen::ArrayXd t = (bins.time.array() - bins.time[0]) / (bins.time[size - 1] - bins.time[0]) * 2 - 1;
@@ -238,20 +249,8 @@ class Pursuit {
     const std::optional<Trial> best = BestTrial();
     if (!best) return false;
     const double gain = now_.criterion - best->explained.criterion;
-    if (verbose)
-      fprintf(stderr, "  t %.4f bin %ld size %g +- %g gain %.1f order %zu sigma %g\n",
-              search_.bins().time[best->place], best->place,
-              best->explained.size[best->explained.size.size() - 1], best->explained.std_error[best->explained.size.size() - 1], gain,
-              best->explained.memory.size(), best->explained.sigma);
     if (!(gain > kSure)) return false;
-    const Eigen::MatrixXd columns = Columns(places_);
-    const double each = std::log(static_cast<double>(search_.size()));
-    for (const Eigen::MatrixXd& rival : Rivals(search_.bins(), best->place)) {
-      const Explained its = search_.Explain(WithColumns(columns, rival));
-      const double its_gain = now_.criterion - its.criterion - each * static_cast<double>(rival.cols() - 1);
-      if (verbose) fprintf(stderr, "     rival %.1f\n", its_gain);
-      if (!(gain > its_gain + kClearly)) return false;
-    }
+    if (!(gain > kClearly + BestRival(best->place))) return false;
     places_.push_back(best->place);
     now_ = best->explained;
     Settle();
@@ -263,8 +262,8 @@ class Pursuit {
     const Index first = search_.bins().jacobian.cols();
     for (std::size_t k = 0; k < size(); ++k) {
       const Index column = first + static_cast<Index>(k);
-      steps.push_back({search_.bins().first[static_cast<std::size_t>(places_[k])], now_.size[column],
-                       now_.std_error[column]});
+      steps.push_back(
+          {search_.bins().first[static_cast<std::size_t>(places_[k])], now_.size[column], now_.std_error[column]});
     }
     return steps;
   }
@@ -283,6 +282,18 @@ class Pursuit {
       columns.col(parameters + static_cast<Index>(k)) = StepAt(places[k], search_.size());
     }
     return columns;
+  }
+
+  /// What the best of the other explanations gains, by Schwarz's criterion beside a step's.
+  double BestRival(Index place) const {
+    const Eigen::MatrixXd columns = Columns(places_);
+    const double each = std::log(static_cast<double>(search_.size()));
+    double most = 0;
+    for (const Eigen::MatrixXd& rival : Rivals(search_.bins(), place)) {
+      const double gain = now_.criterion - search_.Explain(WithColumns(columns, rival)).criterion;
+      most = std::max(most, gain - each * static_cast<double>(rival.cols() - 1));
+    }
+    return most;
   }
 
   /// One step more, at the best place for independent residuals or for those with the memory that is left now.
@@ -327,13 +338,13 @@ class Pursuit {
   const Search& search_;
   std::vector<Index> places_;  // bins
   Explained now_;
-  bool verbose = std::getenv("VERBOSE");
 };
 
 }  // namespace
 
 std::vector<ZeroStep> FindZeroSteps(const FitResiduals& residuals, int most, const std::stop_token& stop) {
   const Search search(residuals);
+  if (!search.IsEnough()) return {};
   Pursuit pursuit(search);
   while (static_cast<int>(pursuit.size()) < most && !stop.stop_requested() && pursuit.Add()) {
   }

@@ -21,8 +21,9 @@ struct ZeroJumps {
   bool AreMended() const { return !lost.empty(); }
 };
 
-/// Whether the mean of residuals [rad or rad/s, N x 1] changes at some sample by more than chance has it.
-bool MayJump(const Eigen::VectorXd& residual);
+/// Whether the mean of a fit's residuals changes at some sample by four standard errors of independent ones: the zero
+/// of an angle may jump.
+bool MayJump(const FitReport& fit);
 
 /// Jumps of an angle's zero (MODEL.md eq. (67)), looked for in what the richest law leaves, the more exactly the less
 /// that is. Nothing where there are none, where the recording cannot be fitted, or once a stop is requested.

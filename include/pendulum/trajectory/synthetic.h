@@ -39,7 +39,7 @@ struct SyntheticOptions {
   double noise_correlation = 0;  ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
-  std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
+  std::optional<SensorRange> range;     ///< rad or rad/s; none is unlimited.
   std::vector<LostCounts> lost_counts;  ///< Of a sensor with levels; range is that of the levels before.
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
