@@ -138,6 +138,7 @@ std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps
 
 bool MayJump(const FitReport& fit) {
   constexpr double kDeviations = 4;
+  constexpr double kLeastCount = 0.4;
   constexpr double kRounding = 1e-9;  // of the swing: residuals of numbers, not of a model
   const Index count = fit.residual.size();
   if (fit.quantity != Quantity::kAngle || count < 2) return false;
@@ -148,7 +149,10 @@ bool MayJump(const FitReport& fit) {
   for (Index i = 0; i + 1 < count; ++i) {
     sum += fit.residual[i] - mean;
     const auto before = static_cast<double>(i + 1), after = static_cast<double>(count - i - 1);
-    if (std::abs(sum) > kDeviations * scatter * std::sqrt(before * after / static_cast<double>(count))) return true;
+    const double weight = before * after / static_cast<double>(count);
+    // Readings that hardly scatter repeat their rounding throughout a hold.
+    const double least = std::max(kDeviations * scatter / std::sqrt(weight), kLeastCount * fit.noise.resolution);
+    if (std::abs(sum) > least * weight) return true;
   }
   return false;
 }

@@ -21,8 +21,8 @@ struct ZeroJumps {
   bool AreMended() const { return !lost.empty(); }
 };
 
-/// Whether the mean of a fit's residuals changes at some sample by four standard errors of independent ones: the zero
-/// of an angle may jump.
+/// Whether the mean of a fit's residuals changes at some sample by four standard errors of independent ones, and a good
+/// part of a resolution: the zero of an angle may jump.
 bool MayJump(const FitReport& fit);
 
 /// Jumps of an angle's zero (MODEL.md eq. (67)), looked for in what the richest law leaves, the more exactly the less
