@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kMostSteps = 60;
+constexpr int kMostJumps = 60;
 
 FitOptions RichestLaw(const Recording& recording, const FitOptions& options) {
   constexpr int kMostTraces = 200;
@@ -71,7 +71,7 @@ std::optional<Left> FitCorrected(const Recording& recording, const Recording& co
 }
 
 /// A step as a number of counts.
-struct Counts {
+struct StepInCounts {
   double number = 0, std_error = 0;
 
   bool IsWhole() const {
@@ -83,7 +83,7 @@ struct Counts {
 };
 
 /// Not a whole number of counts without levels, nor with a range, which would move along with the readings.
-Counts InCounts(const ZeroStep& step, const Recording& recording) {
+StepInCounts InCounts(const ZeroStep& step, const Recording& recording) {
   if (!(recording.resolution > 0) || recording.range) return {};
   return {step.size / recording.resolution, step.std_error / recording.resolution};
 }
@@ -100,7 +100,7 @@ bool Matters(const ZeroStep& step, const Recording& recording) {
 
 Recording MovedBack(Recording recording, const std::vector<ZeroStep>& steps) {
   for (const ZeroStep& step : steps) {
-    const Counts counts = InCounts(step, recording);
+    const StepInCounts counts = InCounts(step, recording);
     const double size = counts.IsWhole() ? std::round(counts.number) * recording.resolution : step.size;
     recording.value.tail(recording.size() - step.sample).array() -= size;
   }
@@ -114,7 +114,7 @@ bool AreAlike(const std::vector<ZeroStep>& a, const std::vector<ZeroStep>& b) {
 }
 
 std::string SizeText(const Recording& recording, const ZeroStep& step) {
-  const Counts counts = InCounts(step, recording);
+  const StepInCounts counts = InCounts(step, recording);
   if (!counts.IsWhole()) {
     return NumberText(step.size, 3) + " +- " + NumberText(step.std_error, 2) + " " + recording.value_unit();
   }
@@ -168,7 +168,7 @@ struct Settled {
 };
 
 /// Fits and looks for steps in turn. Nothing where a fit fails.
-std::optional<Settled> Settle(const Recording& recording, const FitOptions& options) {
+std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions& options) {
   constexpr int kMostRounds = 8;
   constexpr double kGoodPart = 0.9;
   Settled settled{{}, recording, false, false};
@@ -178,7 +178,7 @@ std::optional<Settled> Settle(const Recording& recording, const FitOptions& opti
     if (!left) return std::nullopt;
     if (round == 0) rms = left->rms;
     settled.explain = round > 0 && (!left->lacks || left->rms < kGoodPart * rms);
-    std::vector<ZeroStep> found = FindZeroSteps(left->residuals, kMostSteps, options.stop);
+    std::vector<ZeroStep> found = FindZeroSteps(left->residuals, kMostJumps, options.stop);
     if (options.stop.stop_requested()) return std::nullopt;
     std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording); });
     settled.is_settled = AreAlike(found, settled.steps);
@@ -192,7 +192,7 @@ std::optional<Settled> Settle(const Recording& recording, const FitOptions& opti
 
 std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
-  std::optional<Settled> settled = Settle(recording, RichestLaw(recording, options));
+  std::optional<Settled> settled = SettleSteps(recording, RichestLaw(recording, options));
   if (!settled || settled->steps.empty() || !settled->explain) return std::nullopt;
   const std::vector<ZeroStep>& steps = settled->steps;
   ZeroJumps jumps;

@@ -23,7 +23,7 @@ struct FitResiduals {
   double period = 0;         ///< s, of a small swing
 };
 
-/// Steps in residuals that their memory does not explain (MODEL.md eq. (32a)), in time order, `most` at most. Each
+/// Steps in residuals that their memory does not explain (MODEL.md eq. (67)), in time order, `most` at most. Each
 /// raises the likelihood of an autoregression about the fit by e^18 and more, and by more than a zero that drifts, a
 /// spike, a kink, a pendulum touched at that instant or a clock that slipped would; or all together leave white noise.
 std::vector<ZeroStep> FindZeroSteps(const FitResiduals& residuals, int most, const std::stop_token& stop = {});
