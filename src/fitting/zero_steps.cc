@@ -43,6 +43,26 @@ std::vector<Eigen::MatrixXd> Rivals(const Bins& bins, Index bin) {
   return rivals;
 }
 
+/// The sample of a step that was found at a bin: where residuals change from their mean in the bin before those next to
+/// it to that and the step.
+Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double size) {
+  const auto first = [&](Index k) {
+    return bins.first[static_cast<std::size_t>(std::clamp<Index>(k, 0, bins.time.size()))];
+  };
+  const Index begin = first(bin - 1), end = first(bin + 1);
+  if (end - begin <= 2 || bin < 2) return first(bin);
+  const double before = bins.residual[bin - 2];
+  double sum = 0;  // of squares, over those if the step were at `begin`
+  double least = 0;
+  Index best = begin;
+  for (Index i = begin; i < end; ++i) {
+    const double left = data.residual[i] - before;
+    sum += left * left - (left - size) * (left - size);
+    if (sum < least) least = sum, best = i + 1;
+  }
+  return best;
+}
+
 /// Steps found one after the other, and what they and the fit's parameters leave.
 class Pursuit {
  public:
@@ -76,13 +96,13 @@ class Pursuit {
     return true;
   }
 
-  std::vector<ZeroStep> Steps() const {
+  std::vector<ZeroStep> Steps(const FitResiduals& data) const {
     std::vector<ZeroStep> steps;
     const Index first = regression_.bins().jacobian.cols();
     for (std::size_t k = 0; k < size(); ++k) {
       const Index column = first + static_cast<Index>(k);
-      steps.push_back(
-          {regression_.bins().first[static_cast<std::size_t>(places_[k])], now_.size[column], now_.std_error[column]});
+      const Index sample = SampleOf(data, regression_.bins(), places_[k], now_.size[column]);
+      steps.push_back({sample, now_.size[column], now_.std_error[column]});
     }
     return steps;
   }
@@ -128,7 +148,7 @@ class Pursuit {
   void EraseDoubtful() {
     now_ = regression_.Explain(Columns(places_));
     while (size() > 0) {
-      const Index steps = static_cast<Index>(size());
+      const auto steps = static_cast<Index>(size());
       Index least = 0;
       const Eigen::ArrayXd deviations = (now_.size.tail(steps).array() / now_.std_error.tail(steps).array()).abs();
       if (deviations.minCoeff(&least) > std::sqrt(kSure)) return;
@@ -213,7 +233,7 @@ std::vector<ZeroStep> FindZeroSteps(const FitResiduals& residuals, int most, con
   constexpr int kMostAtOnce = 24;
   Pursuit all(regression);
   const bool better = all.AddAll(std::min(most, kMostAtOnce)) && all.criterion() < pursuit.criterion();
-  return (better ? all : pursuit).Steps();
+  return (better ? all : pursuit).Steps(residuals);
 }
 
 }  // namespace pendulum

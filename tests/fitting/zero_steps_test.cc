@@ -109,6 +109,16 @@ TEST(FindZeroSteps, TakesNeitherADriftNorASpikeNorASlippedClockForAStep) {
   EXPECT_THAT(FindZeroSteps(slipped, 5), IsEmpty());
 }
 
+// A swing of 20 s has 2000 samples, of which means over 20 are looked at.
+TEST(FindZeroSteps, DatesAStepWithinTheMeansItLooksAt) {
+  FitResiduals residuals = Noise(9);
+  residuals.period = 20;
+  AddStep(1007, 5, residuals);
+  const std::vector<ZeroStep> steps = FindZeroSteps(residuals, 5);
+  ASSERT_THAT(steps, SizeIs(1));
+  EXPECT_THAT(static_cast<double>(steps[0].sample), DoubleNear(1007, 1));
+}
+
 TEST(FindZeroSteps, EndsAtTheMostAskedFor) {
   FitResiduals residuals = Noise(8);
   for (Index sample = 200; sample < 2000; sample += 200) AddStep(sample, 10, residuals);
