@@ -2,6 +2,7 @@
 #include "pendulum/analysis/fit_models.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -48,13 +49,15 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
   return fit;
 }
 
-/// What is no pendulum's swing is none for any model.
+/// What is no pendulum's swing, or swings about several zeros, is so for any model.
 void ShareVerdict(const FitReport& lead, FitReport& fit) {
-  const auto said = std::ranges::find(lead.warnings, "not_a_pendulum", &Warning::code);
+  const auto said = std::ranges::find_if(lead.warnings, [](const Warning& warning) {
+    return warning.code == "not_a_pendulum" || warning.code == "zero_jumps";
+  });
   if (said == lead.warnings.end() || fit.termination == Termination::kFailed) return;
   fit.termination = Termination::kNotConverged;
   fit.reason = said->message;
-  WithdrawErrors("not a pendulum", fit);
+  WithdrawErrors(said->code == "zero_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
 /// The fits of one run of FitModels.
@@ -96,8 +99,8 @@ class SharedFits {
       Fit(i, lead);
       for (Warning& warning : said) {
         const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
-        const bool of_window =
-            warning.code == "disturbed" || warning.code == "left_out" || warning.code == "not_a_pendulum";
+        constexpr std::array kOfWindow = {"disturbed", "left_out", "not_a_pendulum", "lost_counts", "zero_jumps"};
+        const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
         if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
       }
     }

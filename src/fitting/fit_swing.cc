@@ -11,6 +11,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/lost_counts.h"
 #include "pendulum/fitting/not_a_pendulum.h"
 #include "pendulum/fitting/undersampled.h"
 #include "pendulum/recording/window.h"
@@ -228,6 +229,33 @@ void Withdraw(const std::string& why, FitReport& fit) {
   WithdrawErrors("not a pendulum", fit);
 }
 
+/// The same of readings about several zeros.
+void WithdrawJumping(const std::string& why, FitReport& fit) {
+  fit.termination = Termination::kNotConverged;
+  fit.reason = why;
+  fit.warnings.push_back({"zero_jumps", fit.reason});
+  WithdrawErrors("the zero jumps", fit);
+}
+
+/// Says what became of jumps, and where there may be one that is too small to be told.
+void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
+  if (!jumps && !lacks && fit.noise.family != NoiseFamily::kQuantized && MayJump(fit)) {
+    fit.warnings.push_back({"zero_unsteady",
+                            "the mean of the residuals changes within the window by more than chance has it: the zero "
+                            "may have jumped or drifted by too little to be told; look at --residuals"});
+  }
+  if (!jumps) return;
+  if (!jumps->AreMended()) return WithdrawJumping(jumps->message, fit);
+  fit.warnings.push_back({"lost_counts", jumps->message});
+}
+
+/// Moves back the readings that counts were lost before, and fits them; says what was found.
+std::optional<ZeroJumps> MendZero(const FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
+  std::optional<ZeroJumps> jumps = FindZeroJumps(result->used, options);
+  if (jumps && jumps->AreMended()) result = FitBetween(std::exchange(jumps->corrected, {}), swing, options);
+  return jumps;
+}
+
 std::optional<std::string> WhyNoPendulum(const SwingFit& result, const std::stop_token& stop) {
   if (result.swing.beats) return "its amplitude grows again and again, as that of two pendulums that are coupled does";
   return WhyLinear(result.used, result.fit, stop);
@@ -307,8 +335,12 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
     return result->fit.termination != Termination::kConverged || result->fit.Warns("lack_of_fit") ||
            result->fit.Warns("correlated_residuals");
   };
+  std::optional<ZeroJumps> jumps;
+  if (lacks() || MayJump(result->fit)) jumps = MendZero(swing, options, result);
+  if (!result) return result;
   if (!lacks()) {
     WarnOfLargerMotion(swing, result->fit);
+    WarnOfJumps(jumps, false, result->fit);
     return result;
   }
   if (const auto why = WhyNoPendulum(*result, options.stop)) {
@@ -318,6 +350,7 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
   Trim(result->used, options, swing);
   const bool disturbed = swing.from != result->swing.from || swing.to != result->swing.to;
   if (disturbed) result = FitBetween(std::move(result->used), swing, options);
+  if (result && disturbed && !(jumps && jumps->AreMended())) jumps = MendZero(swing, options, result);
   if (!result) return result;
   if (result->fit.termination != Termination::kConverged && !swing.to_given) {
     result = EndEarlier(*std::move(result), options);
@@ -329,6 +362,7 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
   WarnOfLargerMotion(swing, result->fit);
+  WarnOfJumps(jumps, lacks(), result->fit);
   if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit, options.stop) : std::nullopt)
     Withdraw(*why, result->fit);
   return result;

@@ -49,12 +49,13 @@ constexpr std::array<RunFlag<std::string>, 20> kRunTexts = {{{"model", &RunFlags
                                                              {"seed", &RunFlags::seed}}};
 constexpr std::array<RunFlag<bool>, 1> kRunSwitches = {{{"closed_form_only", &RunFlags::closed_form_only}}};
 
-constexpr std::array<SimulationFlag<std::string>, 6> kSimulationTexts = {{{"model", &SimulationFlags::model},
+constexpr std::array<SimulationFlag<std::string>, 7> kSimulationTexts = {{{"model", &SimulationFlags::model},
                                                                           {"gravity", &SimulationFlags::gravity},
                                                                           {"set", &SimulationFlags::set},
                                                                           {"spread", &SimulationFlags::spread},
                                                                           {"unit", &SimulationFlags::unit},
-                                                                          {"range", &SimulationFlags::range}}};
+                                                                          {"range", &SimulationFlags::range},
+                                                                          {"lose", &SimulationFlags::lose}}};
 constexpr std::array<SimulationFlag<double>, 8> kSimulationNumbers = {
     {{"duration", &SimulationFlags::duration},
      {"rate", &SimulationFlags::rate},

@@ -220,6 +220,27 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
   return {};
 }
 
+/// What --lose asks for.
+Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
+  constexpr double kMost = 1e6;
+  std::vector<LostCounts> lost;
+  for (const std::string& part : Split(flags.lose, ',')) {
+    const std::vector<std::string> words = Split(part, ':');
+    if (words.size() != 2) return BadFlag("--lose: '" + part + "' must be time:counts");
+    const Result<double> time = ParseNumber("--lose", words[0], "a time in s");
+    const Result<double> counts = ParseNumber("--lose", words[1], "a whole number of counts");
+    if (!time) return tl::unexpected(time.error());
+    if (!counts) return tl::unexpected(counts.error());
+    if (*counts != std::round(*counts) || std::abs(*counts) > kMost) {
+      return BadFlag("--lose: " + NumberText(*counts) +
+                     " counts; it must be a whole number of them, at most a million");
+    }
+    lost.push_back({*time, static_cast<int>(*counts)});
+  }
+  if (!lost.empty() && flags.resolution == 0) return BadFlag("--lose: counts have a size; give --resolution");
+  return lost;
+}
+
 }  // namespace
 
 Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optional<Rig>& rig) {
@@ -235,6 +256,9 @@ Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optio
   if (unit->sensor == SensorKind::kAcceleration) simulation.synthetic.sensor.gravity = kStandardGravity;
   simulation.synthetic.model = *model;
   if (Result<void> chosen = ChooseSensor(flags, simulation); !chosen) return tl::unexpected(chosen.error());
+  const Result<std::vector<LostCounts>> lost = ParseLostCounts(flags);
+  if (!lost) return tl::unexpected(lost.error());
+  simulation.synthetic.lost_counts = *lost;
   if (Result<void> chosen = ChooseMotion(flags, rig, simulation); !chosen) return tl::unexpected(chosen.error());
   if (const auto first = SimulationOfRecording(simulation, 0); !first) return tl::unexpected(first.error());
   return simulation;

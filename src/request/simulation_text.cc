@@ -132,6 +132,9 @@ std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {
   if (simulation.synthetic.noise_correlation != 0) json["noise_correlation"] = simulation.synthetic.noise_correlation;
   if (simulation.synthetic.noise_freedom > 0) json["noise_freedom"] = simulation.synthetic.noise_freedom;
   json["resolution" + unit] = simulation.synthetic.resolution;
+  for (const auto& [time, counts] : simulation.synthetic.lost_counts) {
+    json["lost_counts"].push_back({{"time_s", time}, {"counts", counts}});
+  }
   json["seed"] = seed;
   constexpr int kIndent = 2;
   return json.dump(kIndent) + "\n";

@@ -49,6 +49,9 @@ DEFINE_double(noise_freedom, 0,
               "Degrees of freedom, above 2, of Student's t noise, whose scale --noise then is; default 0, Gaussian.");
 DEFINE_double(resolution, 0, "Spacing of the sensor's levels, in --unit; default 0, none.");
 DEFINE_string(range, "", "What the sensor can show, low,high in --unit; its levels start at low; default unlimited.");
+DEFINE_string(lose, "",
+              "Counts that are lost, time:counts,... with times in s: from then on the readings stand so many "
+              "--resolution higher; default none.");
 
 namespace pendulum {
 namespace {
@@ -87,6 +90,7 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.noise_freedom = FLAGS_noise_freedom;
   flags.resolution = FLAGS_resolution;
   flags.range = FLAGS_range;
+  flags.lose = FLAGS_lose;
   flags.seed = FLAGS_seed;
   flags.plan = FLAGS_plan;
   flags.count = FLAGS_count;
@@ -105,7 +109,9 @@ Result<std::optional<Rig>> RigOfFlag() {
 }
 
 Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>& rig) {
-  const Result<Plan> plan = MakePlan(options.synthetic);
+  SyntheticOptions planned = options.synthetic;
+  planned.lost_counts.clear();
+  const Result<Plan> plan = MakePlan(planned);
   if (!plan) return tl::unexpected(plan.error());
   return WriteOutputs(std::vector<Output>{{"-", PlanText(*plan, rig)}});
 }

@@ -104,6 +104,21 @@ Result<void> CheckModel(const SyntheticOptions& options) {
   return CheckNumber({infos[0].name, options.parameters[0], NumberRule::Domain::kPositive});
 }
 
+Result<void> CheckLostCounts(const SyntheticOptions& options) {
+  for (const LostCounts& lost : options.lost_counts) {
+    if (!std::isfinite(lost.time)) return BadOption("the time of lost counts", lost.time, "finite");
+  }
+  if (options.lost_counts.empty() || options.resolution > 0) return {};
+  return Error(StatusCode::kInvalidArgument, "counts are lost by a sensor with levels; give a resolution");
+}
+
+/// What lost counts add to the readings from some time on.
+double LostBefore(const SyntheticOptions& options, double time) {
+  double counts = 0;
+  for (const LostCounts& lost : options.lost_counts) counts += time >= lost.time ? lost.counts : 0;
+  return counts * options.resolution;
+}
+
 Result<void> CheckSensor(const SyntheticOptions& options) {
   const std::vector<ParameterInfo> infos = options.sensor.Parameters();
   if (options.sensor_parameters.size() != infos.size()) {
@@ -252,7 +267,7 @@ std::string UnitOf(const SyntheticOptions& options) {
 }
 
 Result<void> CheckAll(const SyntheticOptions& options) {
-  for (const auto check : {CheckNumbers, CheckModel, CheckSensor}) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts}) {
     if (Result<void> checked = check(options); !checked) return checked;
   }
   return {};
@@ -312,13 +327,14 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
 
   recording.quantity = options.quantity;
   recording.unit = UnitOf(options);
-  recording.shows_gravity = options.sensor.gravity > 0;
+  recording.shows_gravity = options.quantity != Quantity::kAcceleration || options.sensor.gravity > 0;
   recording.resolution = options.resolution;
   recording.range = options.range;
   recording.value.resize(*count);
   for (Eigen::Index i = 0; i < *count; ++i) {
     const double truth = TrueReading(options, *trajectory, recording.time[i]);
     recording.value[i] = SensorReading(truth + noise[i], options.resolution, options.range);
+    recording.value[i] += LostBefore(options, recording.time[i]);
   }
   if (!recording.value.allFinite()) {
     return Error(StatusCode::kFailedPrecondition,

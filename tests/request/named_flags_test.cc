@@ -35,7 +35,7 @@ TEST(FlagNames, AreThoseOfTheTools) {
                                    "range", "noise", "loss", "interval", "seed", "closed_form_only"));
   EXPECT_THAT(SimulationFlagNames(),
               IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
-                            "noise_correlation", "noise_freedom", "resolution", "range", "seed"}));
+                            "noise_correlation", "noise_freedom", "resolution", "range", "lose", "seed"}));
   EXPECT_THAT(SimulationFlagNames(), Not(Contains("out")));
   EXPECT_THAT(CalibrationFlagNames(), UnorderedElementsAre("order", "input_range", "bits"));
 }
@@ -128,6 +128,7 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
                                         {"spread", "inertia=0.01"},
                                         {"unit", "rad"},
                                         {"range", "-1,1"},
+                                        {"lose", "5:-3"},
                                         {"duration", "1.5"},
                                         {"rate", "2e2"},
                                         {"jitter", "0.25"},
@@ -144,6 +145,7 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
   EXPECT_EQ(flags->spread, "inertia=0.01");
   EXPECT_EQ(flags->unit, "rad");
   EXPECT_EQ(flags->range, "-1,1");
+  EXPECT_EQ(flags->lose, "5:-3");
   EXPECT_EQ(flags->duration, 1.5);
   EXPECT_EQ(flags->rate, 200);
   EXPECT_EQ(flags->jitter, 0.25);

@@ -202,6 +202,19 @@ TEST(SimulationOfRecording, KeepsTheOrderOfAModelsParameters) {
   }
 }
 
+TEST(MakeSimulation, LosesCountsAtTheTimesGiven) {
+  SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
+  flags.resolution = 0.5;
+  flags.lose = "5.25:-3,8:1";
+  const Result<Simulation> simulation = MakeSimulation(flags, {});
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_EQ(simulation->synthetic.lost_counts.size(), 2U);
+  EXPECT_EQ(simulation->synthetic.lost_counts[0].time, 5.25);
+  EXPECT_EQ(simulation->synthetic.lost_counts[0].counts, -3);
+  EXPECT_EQ(simulation->synthetic.lost_counts[1].time, 8);
+  EXPECT_EQ(simulation->synthetic.lost_counts[1].counts, 1);
+}
+
 struct Refusal {
   std::string message;
   void (*spoil)(SimulationFlags&);
@@ -238,6 +251,10 @@ TEST(MakeSimulation, RefusesWrongFlagsAndNamesThem) {
       {"--range is '2,3'; it must be two numbers", [](SimulationFlags& f) { f.range = "1,2,3"; }},
       {"low must be less than high", [](SimulationFlags& f) { f.range = "1,1"; }},
       {"--set: 'inertia=0.04,' ends with a comma", [](SimulationFlags& f) { f.set = "inertia=0.04,"; }},
+      {"--lose: '5' must be time:counts", [](SimulationFlags& f) { (f.resolution = 1, f.lose = "5"); }},
+      {"--lose is 'x'; it must be a time in s", [](SimulationFlags& f) { (f.resolution = 1, f.lose = "x:1"); }},
+      {"--lose: 1.5 counts; it must be a whole", [](SimulationFlags& f) { (f.resolution = 1, f.lose = "5:1.5"); }},
+      {"--lose: counts have a size; give --resolution", [](SimulationFlags& f) { f.lose = "5:1"; }},
       {"--spread: 'inertia' must be name=value", [](SimulationFlags& f) { f.spread = "inertia"; }},
       {"--spread: model coulomb has no parameter 'drag'", [](SimulationFlags& f) { f.spread = "drag=1"; }},
       {"--spread: viscous is -1; it must be at least 0", [](SimulationFlags& f) { f.spread = "viscous=-1"; }},

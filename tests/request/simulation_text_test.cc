@@ -143,6 +143,15 @@ TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
   EXPECT_EQ(truth.at("noise_freedom"), 4);
 }
 
+TEST(TruthJson, ListsTheCountsThatAreLost) {
+  SimulationFlags flags;
+  EXPECT_FALSE(nlohmann::json::parse(TruthJson(Options(flags), 1)).contains("lost_counts"));
+  flags.resolution = 0.5;
+  flags.lose = "5.25:-3";
+  const nlohmann::json truth = nlohmann::json::parse(TruthJson(Options(flags), 1));
+  EXPECT_EQ(truth.at("lost_counts"), nlohmann::json::parse(R"([{"time_s": 5.25, "counts": -3}])"));
+}
+
 TEST(TruthJson, GivesARateItsOwnNames) {
   SimulationFlags flags;
   flags.unit = "rad_s";

@@ -252,6 +252,19 @@ TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
 
 // ---- What is refused ---------------------------------------------------------------------------------------------
 
+// An encoder that misses edges shows the same angle so many levels away from then on.
+TEST(SimulateRecording, LosesCountsFromATimeOn) {
+  SyntheticOptions options = TextbookRig();
+  options.resolution = 0.0078125;  // 2^-7: sums of levels are exact
+  const Recording whole = *SimulateRecording(options);
+  options.lost_counts = {{whole.time[700], -3}, {whole.time[1200] - 1e-9, 1}};
+  const Recording lost = *SimulateRecording(options);
+  const Eigen::VectorXd levels = (lost.value - whole.value) / options.resolution;
+  EXPECT_TRUE((levels.head(700).array() == 0).all());
+  EXPECT_TRUE((levels.segment(700, 500).array() == -3).all());
+  EXPECT_TRUE((levels.tail(levels.size() - 1200).array() == -2).all());
+}
+
 struct Refusal {
   StatusCode code;
   std::string message;
@@ -288,6 +301,14 @@ TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
       {invalid, "no wider than the range",
        [](SyntheticOptions& o) {
          (o.range = {0, 1}, o.resolution = 2);
+       }},
+      {invalid, "a sensor with levels; give a resolution",
+       [](SyntheticOptions& o) {
+         o.lost_counts = {{5, 1}};
+       }},
+      {invalid, "the time of lost counts is nan",
+       [](SyntheticOptions& o) {
+         (o.resolution = 0.01, o.lost_counts = {{kNan, 1}});
        }},
       {unusable, "7 samples; at least 8", [](SyntheticOptions& o) { o.duration = 0.07; }},
       {unusable, "it never moves", [](SyntheticOptions& o) { o.release_angle = 0; }},

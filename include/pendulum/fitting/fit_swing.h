@@ -42,7 +42,9 @@ struct SwingFit {
 /// Fits a free swing. Where more than noise is left, turning points at its ends are left out as long as the rest then
 /// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
 /// stay. A swing that is undersampled goes to FitUndersampled. Warns `left_out` of larger motion outside. What is no
-/// pendulum's swing ends kNotConverged, `not_a_pendulum`. Errors as FitRecording. Cost: that of FitRecording, and where
+/// pendulum's swing ends kNotConverged, `not_a_pendulum`. Readings before which an angle's zero jumped by whole counts
+/// are moved back, in `used` too (`lost_counts`); a zero that jumps otherwise ends kNotConverged, `zero_jumps`, and one
+/// that may have jumped is said, `zero_unsteady`. Errors as FitRecording. Cost: that of FitRecording, and where
 /// something is wrong some tens of small fits more.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 

@@ -33,6 +33,7 @@ struct SimulationFlags {
   double noise_freedom = 0;
   double resolution = 0;
   std::string range;  ///< "low,high"; empty is unlimited.
+  std::string lose;   ///< "time:counts,..." [s]; empty loses none.
   std::uint64_t seed = 1;
 };
 

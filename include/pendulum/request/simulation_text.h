@@ -21,7 +21,8 @@ Result<std::string> SimulatedCsv(const Simulation& simulation, std::uint64_t see
 
 /// The truth as a flat JSON object: the parameters' names, SI with a rig, then sigma_rad, resolution_rad and seed;
 /// sigma_rad_s and resolution_rad_s for a rate, likewise for other units. noise_correlation and
-/// noise_freedom stand there where they are not 0; sigma is the scale of Student's t noise.
+/// noise_freedom stand there where they are not 0; sigma is the scale of Student's t noise. lost_counts, an array of
+/// time_s and counts, where there are any.
 std::string TruthJson(const Simulation& simulation, std::uint64_t seed);
 
 }  // namespace pendulum

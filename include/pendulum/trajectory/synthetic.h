@@ -13,6 +13,12 @@
 
 namespace pendulum {
 
+/// From a time [s] on a sensor's readings stand so many resolutions higher: an incremental encoder missed edges.
+struct LostCounts {
+  double time = 0;
+  int counts = 0;
+};
+
 /// A recording to be made, and with it the truth a fit of that recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
@@ -36,7 +42,8 @@ struct SyntheticOptions {
   double noise_correlation = 0;           ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
-  std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
+  std::optional<SensorRange> range;     ///< rad or rad/s; none is unlimited.
+  std::vector<LostCounts> lost_counts;  ///< Of a sensor with levels; range is that of the levels before.
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };

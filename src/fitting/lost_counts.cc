@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/lost_counts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/fit_problem.h"
+#include "pendulum/fitting/zero_steps.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+constexpr int kMostJumps = 60;
+
+FitOptions RichestLaw(const Recording& recording, const FitOptions& options) {
+  constexpr int kMostTraces = 200;
+  FitOptions richest;
+  richest.model = "drag";
+  if (!recording.is_calibrated()) richest.gravity = Gravity::kLinear;
+  richest.start = options.start;
+  richest.max_traces = kMostTraces;
+  richest.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
+  richest.loss = options.loss;
+  richest.interval = IntervalMethod::kCovariance;
+  richest.threads = options.threads;
+  richest.stop = options.stop;
+  return richest;
+}
+
+/// What a fit to readings that are moved back leaves of them, and of those that are not.
+struct Left {
+  double rms = 0;
+  bool lacks = false;  // more than noise
+  FitResiduals residuals;
+};
+
+Eigen::VectorXd RateOf(const Eigen::VectorXd& time, const Eigen::VectorXd& readings) {
+  const Index last = readings.size() - 1;
+  Eigen::VectorXd rate(last + 1);
+  for (Index i = 0; i <= last; ++i) {
+    const Index before = std::max<Index>(i - 1, 0), after = std::min(i + 1, last);
+    rate[i] = (readings[after] - readings[before]) / (time[after] - time[before]);
+  }
+  return rate;
+}
+
+std::optional<Left> FitCorrected(const Recording& recording, const Recording& corrected, const FitOptions& options) {
+  const Result<FitReport> fit = FitRecording(corrected, options);
+  if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
+  const Result<FitProblem> problem = MakeFitProblem(corrected, AskAlike(*fit, options));
+  if (!problem || problem->infos.size() != fit->parameters.size()) return std::nullopt;
+  std::vector<double> parameters;
+  for (std::size_t i = 0; i < problem->infos.size(); ++i) {
+    parameters.push_back(problem->Internal(i, fit->parameters[i].estimate));
+  }
+  const auto cost = MakeTrajectoryCost(problem->model, problem->start.start, problem->data);
+  Left left{fit->statistics.rms_residual, fit->Warns("lack_of_fit") || fit->Warns("correlated_residuals"), {}};
+  Eigen::VectorXd readings;
+  if (!cost->Readings(parameters, &readings, &left.residuals.jacobian)) return std::nullopt;
+  left.residuals.time = problem->data.times();
+  left.residuals.residual = recording.value - readings;
+  left.residuals.rate = RateOf(left.residuals.time, readings);
+  left.residuals.period = 2 * kPi / problem->start.natural_frequency;
+  return left;
+}
+
+/// A step as a number of counts.
+struct StepInCounts {
+  double number = 0, std_error = 0;
+
+  bool IsWhole() const {
+    constexpr double kSurely = 0.2;
+    constexpr double kWithin = 3.5;
+    const double off = std::abs(number - std::round(number));
+    return std_error < kSurely && off < std::max(kWithin * std_error, 0.1) && std::round(number) != 0;
+  }
+};
+
+/// Not a whole number of counts without levels, nor with a range, which would move along with the readings.
+StepInCounts InCounts(const ZeroStep& step, const Recording& recording) {
+  if (!(recording.resolution > 0) || recording.range) return {};
+  return {step.size / recording.resolution, step.std_error / recording.resolution};
+}
+
+/// Whether a step is more than rounding, of readings or of numbers.
+bool Matters(const ZeroStep& step, const Recording& recording) {
+  constexpr double kLeastCount = 0.75;
+  constexpr double kSurely = 5;
+  constexpr double kRounding = 1e-6;
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  const double least = std::max({kSurely * step.std_error, kLeastCount * recording.resolution, kRounding * range});
+  return std::abs(step.size) > least;
+}
+
+Recording MovedBack(Recording recording, const std::vector<ZeroStep>& steps) {
+  for (const ZeroStep& step : steps) {
+    const StepInCounts counts = InCounts(step, recording);
+    const double size = counts.IsWhole() ? std::round(counts.number) * recording.resolution : step.size;
+    recording.value.tail(recording.size() - step.sample).array() -= size;
+  }
+  return recording;
+}
+
+bool AreAlike(const std::vector<ZeroStep>& a, const std::vector<ZeroStep>& b) {
+  return std::ranges::equal(a, b, [](const ZeroStep& one, const ZeroStep& other) {
+    return one.sample == other.sample && std::abs(one.size - other.size) < 0.2 * other.std_error;
+  });
+}
+
+std::string SizeText(const Recording& recording, const ZeroStep& step) {
+  const StepInCounts counts = InCounts(step, recording);
+  if (!counts.IsWhole()) {
+    return NumberText(step.size, 3) + " +- " + NumberText(step.std_error, 2) + " " + recording.value_unit();
+  }
+  const double whole = std::round(counts.number);
+  return NumberText(whole) + (std::abs(whole) == 1 ? " count" : " counts");
+}
+
+/// "by 3 counts at 12.34 s, by ...".
+std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps) {
+  constexpr std::size_t kMostSaid = 5;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(steps.size(), kMostSaid); ++k) {
+    text += (k == 0 ? "by " : ", by ") + SizeText(recording, steps[k]) + " at " +
+            NumberText(recording.time[steps[k].sample], 6) + " s";
+  }
+  if (steps.size() > kMostSaid) text += " and " + std::to_string(steps.size() - kMostSaid) + " times more";
+  return text;
+}
+
+}  // namespace
+
+bool MayJump(const FitReport& fit) {
+  constexpr double kDeviations = 4;
+  constexpr double kLeastCount = 0.4;
+  constexpr double kRounding = 1e-9;  // of the swing: residuals of numbers, not of a model
+  const Index count = fit.residual.size();
+  if (fit.quantity != Quantity::kAngle || count < 2) return false;
+  const double mean = fit.residual.mean();
+  const double scatter = std::sqrt((fit.residual.array() - mean).square().mean());
+  if (!(scatter > kRounding * (fit.fitted.maxCoeff() - fit.fitted.minCoeff()))) return false;
+  double sum = 0;
+  for (Index i = 0; i + 1 < count; ++i) {
+    sum += fit.residual[i] - mean;
+    const auto before = static_cast<double>(i + 1), after = static_cast<double>(count - i - 1);
+    const double weight = before * after / static_cast<double>(count);
+    // Readings that hardly scatter repeat their rounding throughout a hold.
+    const double least = std::max(kDeviations * scatter / std::sqrt(weight), kLeastCount * fit.noise.resolution);
+    if (std::abs(sum) > least * weight) return true;
+  }
+  return false;
+}
+
+namespace {
+
+/// Steps that fit and search agree upon, with the readings they lead to.
+struct Settled {
+  std::vector<ZeroStep> steps;
+  Recording corrected;
+  bool is_settled = false;
+  bool explain = false;  // what the fit lacked, or a good part of it
+};
+
+/// Fits and looks for steps in turn. Nothing where a fit fails.
+std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions& options) {
+  constexpr int kMostRounds = 8;
+  constexpr double kGoodPart = 0.9;
+  Settled settled{{}, recording, false, false};
+  double rms = 0;
+  for (int round = 0; round < kMostRounds && !settled.is_settled; ++round) {
+    const auto left = FitCorrected(recording, settled.corrected, options);
+    if (!left) return std::nullopt;
+    if (round == 0) rms = left->rms;
+    settled.explain = round > 0 && (!left->lacks || left->rms < kGoodPart * rms);
+    std::vector<ZeroStep> found = FindZeroSteps(left->residuals, kMostJumps, options.stop);
+    if (options.stop.stop_requested()) return std::nullopt;
+    std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording); });
+    settled.is_settled = AreAlike(found, settled.steps);
+    settled.steps = std::move(found);
+    settled.corrected = MovedBack(recording, settled.steps);
+  }
+  return settled;
+}
+
+}  // namespace
+
+std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
+  if (recording.quantity != Quantity::kAngle) return std::nullopt;
+  std::optional<Settled> settled = SettleSteps(recording, RichestLaw(recording, options));
+  if (!settled || settled->steps.empty() || !settled->explain) return std::nullopt;
+  const std::vector<ZeroStep>& steps = settled->steps;
+  ZeroJumps jumps;
+  jumps.message = "the zero jumps " + Jumps(recording, steps);
+  const auto is_whole = [&](const ZeroStep& step) { return InCounts(step, recording).IsWhole(); };
+  if (!settled->is_settled || !std::ranges::all_of(steps, is_whole)) {
+    jumps.message +=
+        ", not surely by whole counts: the sensor slipped, or counts were lost that cannot be told; choose a window "
+        "before it or after it with --from and --to";
+    return jumps;
+  }
+  for (const ZeroStep& step : steps) {
+    const double counts = std::round(InCounts(step, recording).number);
+    jumps.lost.push_back({recording.time[step.sample], static_cast<int>(counts)});
+  }
+  jumps.corrected = std::move(settled->corrected);
+  jumps.message +=
+      ": counts were lost; the readings after it are moved back by as much, in all that follows and in the series";
+  return jumps;
+}
+
+}  // namespace pendulum
