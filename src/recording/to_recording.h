@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "layout.h"
+#include "metadata.h"
+#include "pendulum/recording/clock.h"
+#include "pendulum/recording/recording.h"
+
+/// The last step of every reader: from the numbers of two columns to a Recording.
+namespace pendulum::csv {
+
+/// What a reader has of a file.
+struct ReadColumns {
+  RawSamples samples;  // N x 1 each; the times are not looked at where the sample rate tells them.
+  Layout layout;
+  Metadata metadata;
+  bool is_host_time = false;
+  std::string sha256;
+};
+
+/// Seconds from a clock that is repaired, values in SI, and what there is to be warned of. `line` is that of the names.
+Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options);
+
+}  // namespace pendulum::csv
