@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/in_child.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -41,7 +42,7 @@ bool WriteAll(int descriptor, std::string_view bytes) {
 
 /// The child: other threads of the process are not there, and nothing of theirs may be waited for.
 [[noreturn]] void BeChild(int descriptor, const std::function<std::string()>& work) {
-  constexpr rlim_t kSeconds = 30, kMemory = rlim_t{1} << 32;
+  constexpr rlim_t kSeconds = 10, kMemory = rlim_t{1} << 32;
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);

@@ -2,12 +2,13 @@
 #include "recording/mat_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <utility>
 
 #include <matio.h>
@@ -176,13 +177,25 @@ class Collector {
     }
   }
 
+  /// MATLAB writes letters in one byte or two; in a unit those beyond ASCII are not needed.
+  static std::string AsciiOf(const matvar_t& text) {
+    const std::size_t count = CountOf(text);
+    std::string ascii;
+    if (text.data_size <= 0 || count > text.nbytes / static_cast<std::size_t>(text.data_size)) return ascii;
+    const auto take = [&]<typename T>(const T* letters) {
+      for (std::size_t i = 0; i < count; ++i) ascii += letters[i] < 0x80 ? static_cast<char>(letters[i]) : '?';
+    };
+    if (text.data_size == 1) take(static_cast<const std::uint8_t*>(text.data));
+    if (text.data_size == 2) take(static_cast<const std::uint16_t*>(text.data));
+    return ascii;
+  }
+
   /// The text in the field `label` where it tells a unit, else `otherwise`.
   static std::string LabelOf(std::span<matvar_t* const> fields, const std::string& otherwise) {
     for (const matvar_t* field : fields) {
       const bool is_label = field != nullptr && field->name != nullptr && std::string_view(field->name) == "label";
       if (!is_label || field->class_type != MAT_C_CHAR || field->data == nullptr) continue;
-      if (field->data_type != MAT_T_UTF8 && field->data_type != MAT_T_UINT8) continue;
-      const std::string label(static_cast<const char*>(field->data), std::min(CountOf(*field), field->nbytes));
+      const std::string label = AsciiOf(*field);
       if (csv::FindUnit(label) != nullptr) return label;
     }
     return otherwise;

@@ -6,12 +6,15 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
-#include <optional>
+#include <filesystem>
+#include <span>
+#include <system_error>
 #include <utility>
 #include <vector>
 
-#include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "in_child.h"
@@ -58,37 +61,45 @@ Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   return {};
 }
 
-/// A file in memory that matio can open by a path.
-class MemoryFile {
+/// A file that matio can open: it reads no memory, and HDF5 follows the links of /proc, so it must be a real one.
+class TemporaryFile {
  public:
-  explicit MemoryFile(std::string_view bytes) : descriptor_(::memfd_create("recording", MFD_CLOEXEC)) {
-    while (descriptor_ >= 0 && !bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written <= 0) return;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
+  explicit TemporaryFile(std::string_view bytes) {
+    std::error_code unknown;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(unknown);
+    path_ = ((unknown ? "/tmp" : folder) / "pendulum_XXXXXX").string();
+    const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
+    if (descriptor < 0) return;
+    exists_ = true;
+    ssize_t written = 1;
+    for (; !bytes.empty() && written > 0; bytes.remove_prefix(std::max<ssize_t>(written, 0))) {
+      written = ::write(descriptor, bytes.data(), bytes.size());
     }
-    is_whole_ = descriptor_ >= 0;
+    is_whole_ = ::close(descriptor) == 0 && bytes.empty();
   }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile(MemoryFile&&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  MemoryFile& operator=(MemoryFile&&) = delete;
-  ~MemoryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile(TemporaryFile&&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    if (exists_) ::unlink(path_.c_str());
   }
 
   bool is_whole() const { return is_whole_; }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  const std::string& path() const { return path_; }
 
  private:
-  int descriptor_;
+  std::string path_;
+  bool exists_ = false;
   bool is_whole_ = false;
 };
 
 Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
   if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
-  const MemoryFile file(bytes);
-  if (!file.is_whole()) return Error(StatusCode::kTryAgain, name + ": there is no memory for this file; try again");
+  const TemporaryFile file(bytes);
+  if (!file.is_whole()) {
+    return Error(StatusCode::kTryAgain, name + ": there is no room for a copy in the folder of temporary files; make some");
+  }
   const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); });
   if (!packed && packed.error().message.empty()) {
     return Fault(name, "this MAT-file is damaged: matio, which reads it, did not come to its end; save it again");
@@ -148,12 +159,8 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
   }
   samples.time.conservativeResize(rows);
   samples.value.conservativeResize(rows);
-  const auto left_out = static_cast<Eigen::Index>(value.size()) - rows;
-  if (left_out > 0) {
-    samples.warnings.push_back({"empty_cells", name + ": " + std::to_string(left_out) +
-                                                   " rows without a number in column " + layout.value.name +
-                                                   " or its time were left out"});
-  }
+  const std::size_t left_out = value.size() - static_cast<std::size_t>(rows);
+  if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
   if (rows >= kMinimumSamples) return samples;
   return Error(StatusCode::kFailedPrecondition,
                name + ": column " + layout.value.name + " has " + std::to_string(rows) + " numbers; at least " +

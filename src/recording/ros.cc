@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "joint_table.h"
+
 namespace pendulum::csv {
 namespace {
 
@@ -145,7 +147,9 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
     table.nanoseconds = kNone;
   }
   if (table.seconds != kNone) columns[table.seconds].meaning = "time_s";
-  if (options.value_column.empty() && options.unit.empty()) HideRates(columns);
+  const bool is_joint = table.joint != kNone;  // Then the user may name one, and none of its columns.
+  const std::string asked = is_joint ? ChoiceOf(columns, options.value_column).column : options.value_column;
+  if (asked.empty() && options.unit.empty()) HideRates(columns);
   return table;
 }
 

@@ -410,9 +410,7 @@ void Reader::LeaveOutCutValue() {
 /// Cells that are empty before the first row and after the last are those of other columns that are longer.
 void Reader::WarnOfEmptyCells() {
   if (inner_gap_rows_ == 0) return;
-  samples_.warnings.push_back(
-      {"empty_cells", lines_.name() + ": " + std::to_string(inner_gap_rows_) + " rows without a number in column " +
-                          layout_.value.name + " or its time were left out"});
+  samples_.warnings.push_back(csv::EmptyCells(lines_.name(), inner_gap_rows_, layout_.value.name));
 }
 
 Result<Recording> Reader::Finish() {

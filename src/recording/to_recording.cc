@@ -2,6 +2,7 @@
 #include "recording/to_recording.h"
 
 #include <cmath>
+#include <utility>
 
 #include "to_angle.h"
 
@@ -62,6 +63,11 @@ Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions&
 }
 
 }  // namespace
+
+Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column) {
+  const std::string count = rows == 1 ? "1 row was" : std::to_string(rows) + " rows were";
+  return {"empty_cells", file + ": " + count + " left out, with no number in column " + column + " or in its time"};
+}
 
 Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options) {
   WarnOfClock(columns, options);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
-#include <utility>
 
 #include "layout.h"
 #include "metadata.h"
@@ -20,6 +20,9 @@ struct ReadColumns {
   bool is_host_time = false;
   std::string sha256;
 };
+
+/// Of rows that were left out because one of their two cells is empty.
+Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column);
 
 /// Seconds from a clock that is repaired, values in SI, and what there is to be warned of. `line` is that of the names.
 Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options);
