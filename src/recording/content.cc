@@ -31,8 +31,9 @@ struct Foreign {
 };
 
 constexpr std::array kForeign = {
-    Foreign{kHdf5, "this is an HDF5 file without MATLAB's header; export the recording as CSV, or save it from MATLAB "
-                   "with save('run.mat', 't', 'angle_deg')"},
+    Foreign{kHdf5,
+            "this is an HDF5 file without MATLAB's header; export the recording as CSV, or save it from MATLAB "
+            "with save('run.mat', 't', 'angle_deg')"},
     Foreign{"\x1F\x8B"sv, "this is a gzip file; unpack it and name the file in it"},
     Foreign{"\xFD"
             "7zXZ"sv,
@@ -44,8 +45,9 @@ constexpr std::array kForeign = {
     Foreign{"#ROSBAG"sv, "this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that"},
     Foreign{"\x89MCAP"sv, "this is an MCAP log; export the topic as CSV and name that"},
     Foreign{"SQLite format 3"sv, "this is an SQLite file and no recording; name a file of rows, a zip or a MAT-file"},
-    Foreign{"<?xml"sv, "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name "
-                       "that"},
+    Foreign{"<?xml"sv,
+            "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name "
+            "that"},
     Foreign{"%PDF"sv, "this is a PDF; name the file of the recording"},
     Foreign{"PK\5\6"sv, "this zip file is empty; name one that holds a recording"},
     Foreign{"PK\7\x8"sv, "this is a part of a zip file that was split; put the parts together"},

@@ -60,7 +60,8 @@ struct Head {
 inline std::size_t HeadLines(const HeadLine& first) {
   if (IsVernier(first.text)) return kVernierUnits + 2;
   const std::vector<Name> names = SplitHeader(first.text, Separator(first.text));
-  const bool is_name = std::ranges::all_of(names, [](const Name& name) { return name.text.empty() || IsName(name.text); });
+  const bool is_name =
+      std::ranges::all_of(names, [](const Name& name) { return name.text.empty() || IsName(name.text); });
   const bool has_time = std::ranges::any_of(names, [](const Name& name) { return IsTime(SplitRun(name.text).rest); });
   return is_name && !has_time ? 3 : 2;
 }

@@ -10,7 +10,8 @@ namespace pendulum {
 
 /// What `work` gives, done in a process of its own that may crash, hang or eat memory: libraries that read binary files
 /// of strangers do so (see MatTable). It gets at most ten seconds of a processor and 4 GiB beyond what is in use, and
-/// its output goes nowhere. kDataLoss: it did not come to its end; the message is empty. kTryAgain: no process to be had.
+/// its output goes nowhere. kDataLoss: it did not come to its end; the message is empty. kTryAgain: no process to be
+/// had.
 Result<std::string> InChild(const std::function<std::string()>& work);
 
 }  // namespace pendulum

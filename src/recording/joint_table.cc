@@ -58,6 +58,7 @@ Result<JointRows*> JointTable::Choose(const Line& line, const std::string& joint
     all.push_back(&rows);
     if (Moves(rows)) moving.push_back(&rows);
   }
+  if (all.empty()) return nullptr;
   if (!joint.empty()) {
     return line.Fault(line.text.data(),
                       "--value_column is " + Quoted(joint) + ", which is neither a column nor one of " +

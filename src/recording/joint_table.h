@@ -33,7 +33,8 @@ class JointTable {
   /// False beyond kMostJoints.
   bool Add(std::string_view joint, double time, double value, std::size_t line);
 
-  /// The joint that is asked for, the only one or the only one that moves. `line` is that of the names, `column` the
+  /// The joint that is asked for, the only one or the only one that moves; nullptr without rows. `line` is that of the
+  /// names, `column` the
   /// name of the column of values. kDataLoss: there are several. kInvalidArgument: there is no such joint.
   Result<JointRows*> Choose(const Line& line, const std::string& joint, const std::string& column);
 

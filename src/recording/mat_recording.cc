@@ -98,7 +98,8 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
   if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
   const TemporaryFile file(bytes);
   if (!file.is_whole()) {
-    return Error(StatusCode::kTryAgain, name + ": there is no room for a copy in the folder of temporary files; make some");
+    return Error(StatusCode::kTryAgain,
+                 name + ": there is no room for a copy in the folder of temporary files; make some");
   }
   const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); });
   if (!packed && packed.error().message.empty()) {
@@ -129,7 +130,8 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
   }
   if (!columns.empty()) return {};
   std::string rest;
-  for (const SkippedVariable& variable : std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
+  for (const SkippedVariable& variable :
+       std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
     rest += (rest.empty() ? " (" : ", ") + Quoted(variable.name) + " is " + variable.kind;
   }
   return Fault(name, "no variable of this MAT-file is a vector or a matrix of real numbers" +
@@ -162,9 +164,9 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
   const std::size_t left_out = value.size() - static_cast<std::size_t>(rows);
   if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
   if (rows >= kMinimumSamples) return samples;
-  return Error(StatusCode::kFailedPrecondition,
-               name + ": column " + layout.value.name + " has " + std::to_string(rows) + " numbers; at least " +
-                   std::to_string(kMinimumSamples) + " are needed: record for longer");
+  return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
+                                                    std::to_string(rows) + " numbers; at least " +
+                                                    std::to_string(kMinimumSamples) + " are needed: record for longer");
 }
 
 }  // namespace

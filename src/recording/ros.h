@@ -10,8 +10,8 @@
 
 #include "table.h"
 
-/// Tables that come from ROS: rostopic echo -p, bags made CSV, PlotJuggler. Names are paths, times are stamps since 1970,
-/// angles are rad and rates rad/s (REP 103), and a row may be of one joint among several.
+/// Tables that come from ROS: rostopic echo -p, bags made CSV, PlotJuggler. Names are paths, times are stamps since
+/// 1970, angles are rad and rates rad/s (REP 103), and a row may be of one joint among several.
 namespace pendulum::csv {
 
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -22,8 +22,8 @@ struct RosTable {
   std::size_t joint = kNone;        // Column of names, where each row is one joint's.
 };
 
-/// Looks for such a table, whose columns get a meaning: of a joint's angle and rate the angle is its quantity, unless the
-/// user asks for another. `row` is the first row.
+/// Looks for such a table, whose columns get a meaning: of a joint's angle and rate the angle is its quantity, unless
+/// the user asks for another. `row` is the first row.
 std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_view row, char separator,
                                 const ReadOptions& options);
 

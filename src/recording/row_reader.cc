@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "cell.h"
 #include "column.h"
 #include "csv.h"
 #include "head.h"
 #include "host_stamp.h"
-#include "joint_table.h"
 #include "layout.h"
 #include "metadata.h"
 #include "pendulum/base/format.h"
 #include "pendulum/recording/clock.h"
-#include "ros.h"
+#include "ros_rows.h"
 #include "to_angle.h"
 #include "to_recording.h"
 
@@ -47,11 +47,8 @@ class Reader {
   Check ChooseColumns();
   Check TakeRow();
   Check ReadRow();
-  Check ReadField(std::string_view field, const csv::Column& column, double& number);
   Check ReadRosRow();
-  Check ReadStamp(double& time);
-  Check TakeJoint(double time, double value);
-  Check TakeSeries();
+  Check TakeJoint();
   Check TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
   Check MakeRoom();
   Check Append(double time, double value);
@@ -76,15 +73,10 @@ class Reader {
   Layout layout_;
   std::size_t time_index_ = kNoColumn;
   Line line_;  // The row being read; before there are rows, the header.
-  csv::Numbers numbers_;
-  std::optional<csv::RosTable> ros_;
-  csv::StampClock stamps_;
-  csv::JointChoice choice_;
-  csv::JointTable joints_;
-  std::vector<std::string_view> fields_;  // Of a row of ROS.
-  bool is_gap_ = false;                   // A cell of the row just read is empty.
+  csv::Cells cells_;
+  std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Since the last row without a gap, and before it.
-  std::optional<Status> cut_;  // The fault of a row that may be cut off, should another row follow.
+  std::optional<Status> cut_;                      // The fault of a row that may be cut off, should another row follow.
   Line cut_line_;
   std::string cut_text_;
   bool is_short_ = false;      // The row just read has too few fields.
@@ -145,8 +137,8 @@ Check Reader::LookAtHead() {
   head_ = csv::LookAtHead(lines, has_host_, separator_, layout_);
   line_ = {lines_.name(), lines[head_.names_line].text, lines[head_.names_line].number};
   if (head_.columns.empty() || head_.first_row >= lines.size()) return {};
-  ros_ = csv::FindRos(head_.columns, lines[head_.first_row].text, layout_.separator, options_);
-  head_.may_have_gaps |= ros_.has_value();
+  const auto table = csv::FindRos(head_.columns, lines[head_.first_row].text, layout_.separator, options_);
+  if (table) ros_.emplace(*table, head_.columns, layout_);
   return {};
 }
 
@@ -162,11 +154,7 @@ Check Reader::BeginRows() {
 }
 
 Check Reader::ChooseColumns() {
-  ReadOptions options = options_;
-  if (ros_ && ros_->joint != kNoColumn) {
-    choice_ = csv::ChoiceOf(head_.columns, options_.value_column);
-    options.value_column = choice_.column;
-  }
+  const ReadOptions options = ros_ ? ros_->TakeJoint(options_) : options_;
   const auto names = csv::NamesOf(line_, head_.columns, options);
   if (!names) return tl::unexpected(names.error());
   csv::ColumnChooser chooser(line_, *names, options, metadata_.sample_rate_hz > 0, has_host_);
@@ -174,7 +162,7 @@ Check Reader::ChooseColumns() {
   if (Check checked = CheckCalibration(line_, layout_.value, options_, metadata_, samples_.warnings); !checked) {
     return checked;
   }
-  numbers_ = csv::Numbers(layout_.separator != ',');
+  cells_ = {csv::Numbers(layout_.separator != ','), head_.may_have_gaps || ros_};
   if (layout_.time) {
     time_index_ = layout_.time->index;
     samples_.time_unit = layout_.time->unit->name;
@@ -222,8 +210,9 @@ Check Reader::ReadRow() {
     const bool is_time = index == time_index_;
     if (is_time || index == layout_.value.index) {
       double& number = is_time ? time : value;
-      if (fields.NextNumber(numbers_, number)) continue;
-      if (Check read = ReadField(fields.Next(), is_time ? *layout_.time : layout_.value, number); !read) return read;
+      if (fields.NextNumber(cells_.numbers, number)) continue;
+      const csv::Column& column = is_time ? *layout_.time : layout_.value;
+      if (Check read = cells_.Read(line_, fields.Next(), column, number); !read) return read;
     } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
       return line_.Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
                                           " beyond the header's " + std::to_string(layout_.width) +
@@ -232,9 +221,7 @@ Check Reader::ReadRow() {
   }
   const bool is_time_last = layout_.time && layout_.time->index > layout_.value.index;
   const csv::Column& last = is_time_last ? *layout_.time : layout_.value;
-  is_gap_ |= head_.may_have_gaps && index <= last.index;
-  if (is_gap_) {
-    is_gap_ = false;
+  if (cells_.TakeGap() || (cells_.may_have_gaps && index <= last.index)) {
     ++gap_rows_;
     return {};
   }
@@ -245,21 +232,6 @@ Check Reader::ReadRow() {
                            " fields, before column " + last.name + "; complete the row or delete it");
   }
   return Append(time, value);
-}
-
-/// A field that is quoted, or at fault.
-Check Reader::ReadField(std::string_view field, const csv::Column& column, double& number) {
-  const std::string_view text = Unquote(field);
-  if (numbers_.Parse(text, number)) return {};
-  if (head_.may_have_gaps && (text.empty() || text == "NaN" || text == "nan")) {
-    is_gap_ = true;
-    return {};
-  }
-  if (csv::IsVernier(text)) {
-    return line_.Fault(Trim(field).data(),
-                       "a second data set begins here; export the data sets one by one, each to a file of its own");
-  }
-  return line_.Fault(Trim(field).data(), "column " + column.name + " " + numbers_.WhyNot(text));
 }
 
 /// The host's stamp in seconds since the midnight before the first row, where it is the time.
@@ -308,55 +280,26 @@ Check Reader::Append(double time, double value) {
 // ---- Rows of ROS -------------------------------------------------------------------------------------------------
 
 Check Reader::ReadRosRow() {
-  fields_.clear();
-  for (FieldCutter fields(line_.text, layout_.separator); !fields.done();) fields_.push_back(Unquote(fields.Next()));
-  fields_.resize(std::max(fields_.size(), layout_.width));
-  double time = 0, value = 0;
-  if (layout_.time) {
-    if (Check read = ReadStamp(time); !read) return read;
-  }
-  if (Check read = ReadField(fields_[layout_.value.index], layout_.value, value); !read) return read;
-  if (is_gap_) {
-    is_gap_ = false;
-    ++gap_rows_;
-    return {};
-  }
-  return ros_->joint == kNoColumn ? Append(time, value) : TakeJoint(time, value);
-}
-
-/// The time of a row, in seconds since that of the first where it is a stamp.
-Check Reader::ReadStamp(double& time) {
-  const std::string_view field = fields_[time_index_];
-  if (time_index_ != ros_->seconds) return ReadField(field, *layout_.time, time);
-  const std::string_view beyond = ros_->nanoseconds == kNoColumn ? std::string_view() : fields_[ros_->nanoseconds];
-  if (field.empty()) return ReadField(field, *layout_.time, time);
-  if (stamps_.Read(field, beyond, time)) return {};
-  return line_.Fault(field.data(), "column " + layout_.time->name + " holds " + Quoted(field) +
-                                       (beyond.empty() ? "" : " s and " + Quoted(beyond) + " ns") +
-                                       ", which is no stamp of ROS; correct the field or delete the row");
-}
-
-Check Reader::TakeJoint(double time, double value) {
-  if (joints_.Add(fields_[ros_->joint], time, value, line_.number)) return {};
-  return line_.Fault(line_.text.data(), "column " + Quoted(head_.columns[ros_->joint].written) + " holds more than " +
-                                            std::to_string(csv::JointTable::kMostJoints) +
-                                            " names up to here; name one joint a row");
+  const auto sample = ros_->Read(line_, cells_);
+  if (!sample) return tl::unexpected(sample.error());
+  if (*sample) return Append((*sample)->time, (*sample)->value);
+  gap_rows_ += cells_.TakeGap() ? 1 : 0;
+  return {};
 }
 
 /// The rows of one joint, where each row is of one.
-Check Reader::TakeSeries() {
-  if (!ros_ || ros_->joint == kNoColumn || !has_layout_) return {};
+Check Reader::TakeJoint() {
+  if (!ros_ || !ros_->has_joints()) return {};
   const csv::HeadLine& header = lines_of_head_[head_.names_line];
-  csv::Column& column = layout_.value;
-  const std::string name = head_.columns[column.index].written;
-  auto chosen = joints_.Choose({lines_.name(), header.text, header.number}, choice_.joint, name);
+  auto chosen = ros_->ChooseJoint({lines_.name(), header.text, header.number});
   if (!chosen) return tl::unexpected(std::move(chosen).error());
+  if (*chosen == nullptr) return {};
   csv::JointRows& rows = **chosen;
   rows_ = static_cast<Eigen::Index>(rows.time.size());
   samples_.time = Eigen::VectorXd::Map(rows.time.data(), rows_);
   samples_.value = Eigen::VectorXd::Map(rows.value.data(), rows_);
   samples_.lines = std::move(rows.lines);
-  column.name = Quoted(rows.joint + "/" + name);
+  layout_.value.name = ros_->NameOf(rows);
   return {};
 }
 
@@ -414,7 +357,7 @@ void Reader::WarnOfEmptyCells() {
 }
 
 Result<Recording> Reader::Finish() {
-  if (Check taken = TakeSeries(); !taken) return tl::unexpected(std::move(taken).error());
+  if (Check taken = TakeJoint(); !taken) return tl::unexpected(std::move(taken).error());
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
   LeaveOutCutValue();
   LeaveOutCutStamp();
@@ -423,8 +366,8 @@ Result<Recording> Reader::Finish() {
   samples_.value.conservativeResize(rows_);
   Result<std::string> sha256 = lines_.Sha256();
   if (!sha256) return tl::unexpected(std::move(sha256).error());
-  return csv::ToRecording({std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)}, line_,
-                          options_);
+  return csv::ToRecording({std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)},
+                          line_, options_);
 }
 
 }  // namespace

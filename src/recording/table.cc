@@ -44,9 +44,9 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
   for (const std::size_t i : candidates) runs.insert(columns[i].run);
   if (runs.size() == 1) return columns[candidates.front()].run;
   if (candidates.empty()) return std::nullopt;
-  return line.Fault(columns[candidates[1]].at,
-                    "columns " + ListOf(columns, candidates) + " could " + (candidates.size() == 2 ? "both" : "all") +
-                        " be the quantity; choose one with --value_column");
+  return line.Fault(columns[candidates[1]].at, "columns " + ListOf(columns, candidates) + " could " +
+                                                   (candidates.size() == 2 ? "both" : "all") +
+                                                   " be the quantity; choose one with --value_column");
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 /// above its first column; Capstone and SPARKvue write runs.
 namespace pendulum::csv {
 
-/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; angles and rates are
-/// in the unit that was chosen there, which it does not write.
+/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; angles and rates
+/// are in the unit that was chosen there, which it does not write.
 inline std::string TrackerMeaning(const std::string& name) {
   const std::string canonical = CanonicalName(name);
   if (canonical == "t") return "time_s";

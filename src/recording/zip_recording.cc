@@ -92,13 +92,15 @@ const Member* TakeNamed(const ZipMembers& zip, ReadOptions& options) {
 }
 
 tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) {
-  if (zip.Has("xl/workbook.xml")) return pendulum::Fault(name, "this is an Excel workbook; save its sheet as CSV and name that");
+  if (zip.Has("xl/workbook.xml"))
+    return pendulum::Fault(name, "this is an Excel workbook; save its sheet as CSV and name that");
   std::vector<std::string> members;
   for (const Member& member : zip.members()) members.push_back(Quoted(member.path));
-  if (members.empty()) return pendulum::Fault(name, "there is no file in this zip file; name one that holds a recording");
+  if (members.empty())
+    return pendulum::Fault(name, "there is no file in this zip file; name one that holds a recording");
   return pendulum::Fault(name, "none of its files " + ListOf(members) +
-                         " has a column of times and one of an angle or a rate; choose with --value_column "
-                         "\"FILE/COLUMN\", or name another recording");
+                                   " has a column of times and one of an angle or a rate; choose with --value_column "
+                                   "\"FILE/COLUMN\", or name another recording");
 }
 
 /// The member that is to be read.
@@ -117,7 +119,7 @@ Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& nam
   if (looks.size() == 1) return looks.front().member;
   if (looks.empty()) return NoMember(zip, name);
   return pendulum::Fault(name, "columns " + ListOf(candidates) + " could " + (candidates.size() == 2 ? "both" : "all") +
-                         " be the quantity; choose one with --value_column");
+                                   " be the quantity; choose one with --value_column");
 }
 
 Result<Recording> ReadMember(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -142,7 +144,7 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   if (!text) return tl::unexpected(text.error());
   if (text->size() > kMostUnpackedBytes) {
     return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(kMostUnpackedBytes) +
-                                            " bytes, too many for a recording; name another, or split it");
+                                                      " bytes, too many for a recording; name another, or split it");
   }
   Result<Recording> recording = ReadMember(*text, zip->NameOf(**member), rest);
   if (!recording) return recording;

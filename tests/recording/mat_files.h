@@ -47,7 +47,8 @@ inline matvar_t* Structure(const char* name, const std::vector<std::pair<const c
 
 /// The bytes of a file of these variables, which are freed.
 inline std::string MatOf(const MatVariables& variables, mat_ft version = MAT_FT_MAT5, bool is_packed = true) {
-  const std::string path = (std::filesystem::temp_directory_path() / ("mat_files_" + std::to_string(::getpid()))).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("mat_files_" + std::to_string(::getpid()))).string();
   mat_t* file = Mat_CreateVer(path.c_str(), nullptr, version);
   for (matvar_t* variable : variables) {
     Mat_VarWrite(file, variable, is_packed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE);

@@ -45,13 +45,14 @@ class OfEveryVersion : public testing::TestWithParam<mat_ft> {};
 TEST_P(OfEveryVersion, TwoVectorsAreReadByTheirNames) {
   for (const char* const time : {"t", "time", "tout", "Time", "t_s"}) {
     for (const bool is_packed : {false, true}) {
-      const std::string bytes =
-          MatOf({Matrix(time, 8, Times()), Matrix("angle_deg", 8, Values()), Matrix("gain", 1, {2})}, GetParam(), is_packed);
+      const std::string bytes = MatOf(
+          {Matrix(time, 8, Times()), Matrix("angle_deg", 8, Values()), Matrix("gain", 1, {2})}, GetParam(), is_packed);
       ExpectTheRows(RecordingOf(bytes), kDegree);
       EXPECT_EQ(RecordingOf(bytes).sha256, Sha256(bytes).value());
     }
   }
-  ExpectTheRows(RecordingOf(MatOf({Matrix("t_ms", 1, Times(1000)), Matrix("y", 1, Values())}, GetParam()), Unit("rad")));
+  ExpectTheRows(
+      RecordingOf(MatOf({Matrix("t_ms", 1, Times(1000)), Matrix("y", 1, Values())}, GetParam()), Unit("rad")));
 }
 
 TEST_P(OfEveryVersion, AMatrixWhoseFirstColumnIncreasesHasItsTimeThere) {
@@ -65,7 +66,8 @@ TEST_P(OfEveryVersion, AMatrixWhoseFirstColumnIncreasesHasItsTimeThere) {
 
 TEST_P(OfEveryVersion, AStructureWithTimeIsOneRun) {
   const auto simulink = [](const char* name, const char* label, double slower) {
-    matvar_t* signals = Structure("signals", {{"values", Matrix("values", 8, Values())}, {"label", Text("label", label)}});
+    matvar_t* signals =
+        Structure("signals", {{"values", Matrix("values", 8, Values())}, {"label", Text("label", label)}});
     return Structure(name, {{"time", Matrix("time", 8, Times(slower))}, {"signals", signals}});
   };
   ExpectTheRows(RecordingOf(MatOf({simulink("angle_rad", "", 1)}, GetParam())));
@@ -76,9 +78,10 @@ TEST_P(OfEveryVersion, AStructureWithTimeIsOneRun) {
 }
 
 TEST_P(OfEveryVersion, WhatIsNoColumnIsSaidByItsKind) {
-  EXPECT_EQ(FaultOf(MatOf({Text("note", "hello")}, GetParam())),
-            "run.csv: no variable of this MAT-file is a vector or a matrix of real numbers (\"note\" is text); save the "
-            "times as t and the angles as angle_deg");
+  EXPECT_EQ(
+      FaultOf(MatOf({Text("note", "hello")}, GetParam())),
+      "run.csv: no variable of this MAT-file is a vector or a matrix of real numbers (\"note\" is text); save the "
+      "times as t and the angles as angle_deg");
   const std::string more = MatOf({Text("note", "hello"), Matrix("t", 8, Times())}, GetParam());
   EXPECT_EQ(FaultOf(more, Value("note", "deg")),
             "run.csv: variable \"note\" is text; a column is a vector of real numbers, or a matrix's or a structure's");
@@ -100,12 +103,14 @@ TEST_P(OfEveryVersion, WhatIsCutOffIsNeverARecording) {
 INSTANTIATE_TEST_SUITE_P(ReadMat, OfEveryVersion, testing::Values(MAT_FT_MAT5, MAT_FT_MAT73));
 
 TEST(ReadMat, NumbersMayBeOfAnyType) {
-  ExpectTheRows(RecordingOf(MatOf({Matrix("t", 8, Times()), Vector<std::int16_t>("adc_counts", MAT_C_INT16, MAT_T_INT16,
-                                                                         {100, 101, 102, 103, 104, 105, 106, 107})})));
+  ExpectTheRows(
+      RecordingOf(MatOf({Matrix("t", 8, Times()), Vector<std::int16_t>("adc_counts", MAT_C_INT16, MAT_T_INT16,
+                                                                       {100, 101, 102, 103, 104, 105, 106, 107})})));
   ExpectTheRows(RecordingOf(MatOf({Matrix("t", 8, Times()), Vector<float>("angle_rad", MAT_C_SINGLE, MAT_T_SINGLE,
-                                                                  {100, 101, 102, 103, 104, 105, 106, 107})})));
-  ExpectTheRows(RecordingOf(MatOf({Vector<std::uint32_t>("t_ms", MAT_C_UINT32, MAT_T_UINT32, {0, 10, 20, 30, 40, 50, 60, 70}),
-                                   Matrix("angle_rad", 8, Values())})));
+                                                                          {100, 101, 102, 103, 104, 105, 106, 107})})));
+  ExpectTheRows(
+      RecordingOf(MatOf({Vector<std::uint32_t>("t_ms", MAT_C_UINT32, MAT_T_UINT32, {0, 10, 20, 30, 40, 50, 60, 70}),
+                         Matrix("angle_rad", 8, Values())})));
 }
 
 TEST(ReadMat, LeavesOutRowsThatAreNoNumbers) {
@@ -123,8 +128,9 @@ TEST(ReadMat, RefusesColumnsOfDifferentLengths) {
   EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), Matrix("angle_rad", 2, {1, 2})})),
             "run.csv: column \"t\" has 8 numbers and column \"angle_rad\" 2; choose the time of this quantity with "
             "--time_column");
-  EXPECT_EQ(FaultOf(MatOf({Matrix("t", 2, {1, 2}), Matrix("angle_rad", 2, {1, 2})}), {}, StatusCode::kFailedPrecondition),
-            "run.csv: column \"angle_rad\" has 2 numbers; at least 8 are needed: record for longer");
+  EXPECT_EQ(
+      FaultOf(MatOf({Matrix("t", 2, {1, 2}), Matrix("angle_rad", 2, {1, 2})}), {}, StatusCode::kFailedPrecondition),
+      "run.csv: column \"angle_rad\" has 2 numbers; at least 8 are needed: record for longer");
 }
 
 TEST(ReadMat, RefusesTwoCandidatesAndTwoTimes) {
@@ -162,8 +168,9 @@ TEST(ReadMat, RefusesFlagsThatContradictTheFile) {
 
 TEST(ReadMat, SaysWhereItIsCutOff) {
   const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, MAT_FT_MAT5, false);
-  EXPECT_THAT(FaultOf(whole.substr(0, whole.size() - 5)),
-              AllOf(StartsWith("run.csv: the file is cut off: the variable at byte "), HasSubstr("save or copy it again")));
+  EXPECT_THAT(
+      FaultOf(whole.substr(0, whole.size() - 5)),
+      AllOf(StartsWith("run.csv: the file is cut off: the variable at byte "), HasSubstr("save or copy it again")));
 }
 
 TEST(ReadMat, SurvivesBytesThatAreChanged) {

@@ -53,8 +53,10 @@ std::string Stamped(const std::string& header, const std::string& pattern) {
     const std::string sec = std::to_string(1'700'000'000 + ns / 1'000'000'000);
     const std::string rest = std::to_string(ns % 1'000'000'000);
     const std::string nine = std::string(9 - rest.size(), '0') + rest;
-    for (const auto& [mark, number] :
-         {std::pair<std::string, std::string>{"{s}", sec}, {"{n}", rest}, {"{9}", nine}, {"{v}", std::to_string(100 + i)}}) {
+    for (const auto& [mark, number] : {std::pair<std::string, std::string>{"{s}", sec},
+                                       {"{n}", rest},
+                                       {"{9}", nine},
+                                       {"{v}", std::to_string(100 + i)}}) {
       for (std::size_t at = 0; (at = row.find(mark)) != std::string::npos;) row.replace(at, mark.size(), number);
     }
     text += row + "\n";
@@ -97,8 +99,9 @@ TEST(Ros, LeavesOutRowsOfOtherTopics) {
 }
 
 TEST(Ros, SaysWhereAStampIsNone) {
-  EXPECT_EQ(FaultOf("%time,field.position\nnow,1\n" + Rows("170000000{t},{v}")),
-            "run.csv:2:1: column \"%time\" holds \"now\", which is no stamp of ROS; correct the field or delete the row");
+  EXPECT_EQ(
+      FaultOf("%time,field.position\nnow,1\n" + Rows("170000000{t},{v}")),
+      "run.csv:2:1: column \"%time\" holds \"now\", which is no stamp of ROS; correct the field or delete the row");
 }
 
 // ---- A row a joint -----------------------------------------------------------------------------------------------

@@ -42,9 +42,10 @@ TEST(Runs, OneRunIsReadAsItsColumns) {
 const std::string kTwoRuns = "Time (s) Run #1,Angle (rad) Run #1,Time (s) Run #2,Angle (rad) Run #2\n";
 
 TEST(Runs, SeveralAreRefusedAndNamed) {
-  EXPECT_EQ(FaultOf(kTwoRuns + Rows("0.0{t},1,0.0{t},{v}")),
-            "run.csv:1:52: columns \"Angle (rad) Run #1\" and \"Angle (rad) Run #2\" could both be the quantity; choose "
-            "one with --value_column");
+  EXPECT_EQ(
+      FaultOf(kTwoRuns + Rows("0.0{t},1,0.0{t},{v}")),
+      "run.csv:1:52: columns \"Angle (rad) Run #1\" and \"Angle (rad) Run #2\" could both be the quantity; choose "
+      "one with --value_column");
   EXPECT_THAT(FaultOf("A:Time(s),A:Angle(rad),B:Time(s),B:Angle(rad),C:Time(s),C:Angle(rad)\n" + Rows("1,2,3,4,5,6")),
               HasSubstr("columns \"A:Angle(rad)\", \"B:Angle(rad)\" and \"C:Angle(rad)\" could all be the quantity"));
 }
@@ -89,8 +90,8 @@ TEST(Runs, ALineOfRunsMayStandAboveTheNames) {
 // ---- Vernier Format ----------------------------------------------------------------------------------------------
 
 std::string Vernier(const std::string& units, const std::string& rows) {
-  return "Vernier Format 2\nswing.cmbl 3/2/2024 10:00:00 .\nLatest\nTime\tAngle\tPotential\nt\ta\tU\n" + units + "\n\n" +
-         rows;
+  return "Vernier Format 2\nswing.cmbl 3/2/2024 10:00:00 .\nLatest\nTime\tAngle\tPotential\nt\ta\tU\n" + units +
+         "\n\n" + rows;
 }
 
 TEST(Vernier, NamesUnitsAndRowsAreFound) {
@@ -102,8 +103,9 @@ TEST(Vernier, NamesUnitsAndRowsAreFound) {
 }
 
 TEST(Vernier, SaysWhereARowIsAtFault) {
-  EXPECT_EQ(FaultOf(Vernier("s\trad\t", Rows("0.0{t}\tx\t1"))),
-            "run.csv:8:6: column \"Angle (rad)\" holds \"x\", which is not a number; correct the field or delete the row");
+  EXPECT_EQ(
+      FaultOf(Vernier("s\trad\t", Rows("0.0{t}\tx\t1"))),
+      "run.csv:8:6: column \"Angle (rad)\" holds \"x\", which is not a number; correct the field or delete the row");
   EXPECT_THAT(FaultOf(Vernier("s\trad\t", ""), {}, StatusCode::kFailedPrecondition),
               HasSubstr("rows of data found: 0"));
 }

@@ -31,14 +31,14 @@ TEST(Tracker, ReadsOneTrackUnderItsName) {
 }
 
 TEST(Tracker, DoesNotGuessTheUnitOfAnAngle) {
-  EXPECT_THAT(FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
-              HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts or _volts, or give "
-                        "--unit"));
+  EXPECT_THAT(
+      FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
+      HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts or _volts, or give "
+                "--unit"));
 }
 
 TEST(Tracker, ChoosesAmongSeveralTracks) {
-  const std::string text =
-      "#multi:\n\tbob\t\tpivot\t\t\nt\tx\t\u03B8\tx\t\u03B8\t\n" + Rows("0.0{t}\t1\t2\t3\t{v}");
+  const std::string text = "#multi:\n\tbob\t\tpivot\t\t\nt\tx\t\u03B8\tx\t\u03B8\t\n" + Rows("0.0{t}\t1\t2\t3\t{v}");
   ExpectTheRows(RecordingOf(text, Value("pivot: \u03B8", "deg")), kDegree);
   EXPECT_EQ(RecordingOf(text, Value("bob: \u03B8", "rad")).value[3], 2);
 }

@@ -20,7 +20,8 @@ inline std::string ZipOf(const std::vector<std::pair<std::string, std::string>>&
   zip_source_keep(bytes);
   zip_t* zip = zip_open_from_source(bytes, ZIP_TRUNCATE, &error);
   for (const auto& [path, content] : members) {
-    const zip_int64_t index = zip_file_add(zip, path.c_str(), zip_source_buffer(zip, content.data(), content.size(), 0), 0);
+    const zip_int64_t index =
+        zip_file_add(zip, path.c_str(), zip_source_buffer(zip, content.data(), content.size(), 0), 0);
     if (password != nullptr) zip_file_set_encryption(zip, index, ZIP_EM_AES_128, password);
   }
   EXPECT_EQ(zip_close(zip), 0);

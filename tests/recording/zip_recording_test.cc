@@ -29,10 +29,8 @@ std::string Gyroscope(const std::string& row = "0.0{t},1,{v}E0,2,3") {
 const std::string kLight = "\"Time (s)\",\"Illuminance (lx)\"\n" + Rows("0.0{t},{v}");
 
 std::string Phyphox() {
-  return ZipOf({{"Light.csv", kLight},
-                {"Gyroscope.csv", Gyroscope()},
-                {"meta/device.csv", kMeta},
-                {"meta/time.csv", kTime}});
+  return ZipOf(
+      {{"Light.csv", kLight}, {"Gyroscope.csv", Gyroscope()}, {"meta/device.csv", kMeta}, {"meta/time.csv", kTime}});
 }
 
 ReadOptions Value(const std::string& column) { return TimeAndValue("", column); }
@@ -56,9 +54,10 @@ TEST(ReadZip, RefusesTwoComponentsAndNeverTakesTheLengthOfTheVector) {
   EXPECT_EQ(FaultOf(Phyphox()),
             "run.csv:Gyroscope.csv:1:34: columns \"Gyroscope x (rad/s)\" and \"Gyroscope y (rad/s)\" could both be the "
             "quantity; choose one with --value_column");
-  EXPECT_EQ(WrongFlag(Phyphox(), Value("Absolute (rad/s)")),
-            "run.csv:Gyroscope.csv:1:78: column \"Absolute (rad/s)\" is the length of a vector, which has lost the sign "
-            "of the swing; choose one of the vector's components with --value_column");
+  EXPECT_EQ(
+      WrongFlag(Phyphox(), Value("Absolute (rad/s)")),
+      "run.csv:Gyroscope.csv:1:78: column \"Absolute (rad/s)\" is the length of a vector, which has lost the sign "
+      "of the swing; choose one of the vector's components with --value_column");
   const std::string one = "\"Time (s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"\n" + Rows("0.0{t},{v},{v}");
   ExpectTheRows(RecordingOf(ZipOf({{"Raw Data.csv", one}})));
 }
@@ -104,9 +103,10 @@ TEST(ReadZip, SaysThatNoMemberIsARecording) {
 }
 
 TEST(ReadZip, SaysWhereAMemberIsAtFault) {
-  EXPECT_EQ(FaultOf(ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 7) + "0.07,x\n0.08,1\n"}})),
-            "run.csv:a.csv:9:6: column \"angle_deg\" holds \"x\", which is not a number; correct the field or delete the "
-            "row");
+  EXPECT_EQ(
+      FaultOf(ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 7) + "0.07,x\n0.08,1\n"}})),
+      "run.csv:a.csv:9:6: column \"angle_deg\" holds \"x\", which is not a number; correct the field or delete the "
+      "row");
 }
 
 TEST(ReadZip, RefusesWhatIsCutOff) {
