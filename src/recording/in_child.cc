@@ -41,13 +41,13 @@ bool WriteAll(int descriptor, std::string_view bytes) {
 }
 
 /// The child: other threads of the process are not there, and nothing of theirs may be waited for.
-[[noreturn]] void BeChild(int descriptor, const std::function<std::string()>& work) {
-  constexpr rlim_t kSeconds = 10, kMemory = rlim_t{1} << 32;
+[[noreturn]] void BeChild(int descriptor, const std::function<std::string()>& work, int seconds) {
+  constexpr rlim_t kMemory = rlim_t{1} << 32;
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);
   Limit(RLIMIT_CORE, 0);
-  Limit(RLIMIT_CPU, kSeconds);
+  Limit(RLIMIT_CPU, seconds);
   if (!kHasShadowMemory) Limit(RLIMIT_DATA, kMemory);
   try {
     if (WriteAll(descriptor, work())) WriteAll(descriptor, {&kComplete, 1});
@@ -75,12 +75,12 @@ tl::unexpected<Status> NoProcess() {
 
 }  // namespace
 
-Result<std::string> InChild(const std::function<std::string()>& work) {
+Result<std::string> InChild(const std::function<std::string()>& work, int seconds) {
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return NoProcess();
   const auto [from, to] = pipe;
   const pid_t child = ::fork();
-  if (child == 0) BeChild(to, work);
+  if (child == 0) BeChild(to, work, seconds);
   ::close(to);
   std::string bytes = child < 0 ? "" : ReadAll(from);
   ::close(from);

@@ -101,7 +101,9 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
     return Error(StatusCode::kTryAgain,
                  name + ": there is no room for a copy in the folder of temporary files; make some");
   }
-  const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); });
+  // A second is enough for a hundred megabytes, and for ever is what some damaged files take.
+  const int seconds = 2 + static_cast<int>(bytes.size() >> 25);
+  const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, seconds);
   if (!packed && packed.error().message.empty()) {
     return Fault(name, "this MAT-file is damaged: matio, which reads it, did not come to its end; save it again");
   }
