@@ -9,7 +9,7 @@
 namespace pendulum {
 namespace {
 
-using std::string_view_literals::operator""sv;
+using namespace std::string_view_literals;
 
 constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1A\n"sv;
 constexpr std::string_view kMat = "MATLAB "sv;

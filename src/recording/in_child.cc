@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <string_view>
 
 #include <fcntl.h>
@@ -40,15 +41,23 @@ bool WriteAll(int descriptor, std::string_view bytes) {
   return true;
 }
 
+/// Bytes that this process has for data, which a child begins with.
+rlim_t DataInUse() {
+  rlim_t pages = 0;
+  std::ifstream counts("/proc/self/statm");
+  for (int field = 0; field < 6; ++field) counts >> pages;  // total, resident, shared, code, nothing, data
+  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
 /// The child: other threads of the process are not there, and nothing of theirs may be waited for.
-[[noreturn]] void BeChild(int descriptor, const std::function<std::string()>& work, int seconds) {
+[[noreturn]] void BeChild(int descriptor, const std::function<std::string()>& work, int seconds, rlim_t in_use) {
   constexpr rlim_t kMemory = rlim_t{1} << 32;
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_CPU, seconds);
-  if (!kHasShadowMemory) Limit(RLIMIT_DATA, kMemory);
+  if (!kHasShadowMemory) Limit(RLIMIT_DATA, in_use + kMemory);
   try {
     if (WriteAll(descriptor, work())) WriteAll(descriptor, {&kComplete, 1});
   } catch (...) {
@@ -79,8 +88,9 @@ Result<std::string> InChild(const std::function<std::string()>& work, int second
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return NoProcess();
   const auto [from, to] = pipe;
+  const rlim_t in_use = DataInUse();
   const pid_t child = ::fork();
-  if (child == 0) BeChild(to, work, seconds);
+  if (child == 0) BeChild(to, work, seconds, in_use);
   ::close(to);
   std::string bytes = child < 0 ? "" : ReadAll(from);
   ::close(from);

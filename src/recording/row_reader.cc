@@ -27,7 +27,7 @@
 namespace pendulum {
 namespace {
 
-using csv::FieldCutter, csv::Layout, csv::Line, csv::Trim, csv::Unquote;
+using csv::FieldCutter, csv::Layout, csv::Line, csv::Trim;
 using Check = Result<void>;
 
 constexpr std::size_t kNoColumn = csv::kNone;

@@ -53,8 +53,11 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
     if (i < labels.size() && is_label(labels[i])) run = labels[i].text;
     const std::string name(names[i].text);
     const bool is_shared = is_one || run.empty() || name.empty();
-    columns.push_back({is_shared ? name : run + ": " + name, is_tracker ? TrackerMeaning(name) : PlainUnits(name),
-                       is_shared ? "" : run, names[i].at});
+    std::string written = is_shared ? "" : run;
+    written += is_shared ? "" : ": ";
+    written += name;
+    columns.push_back(
+        {written, is_tracker ? TrackerMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
   }
   return columns;
 }
