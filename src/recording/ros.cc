@@ -13,8 +13,9 @@ namespace pendulum::csv {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+constexpr std::size_t kLongestSeconds = 15;      // Digits: more are nanoseconds.
 
-/// The parts of a name between slashes, dots and blanks, in small letters.
+/// The parts of a name between slashes and dots, in small letters.
 struct Path {
   std::string before;  // All but the last part.
   std::string last;    // Without an index: `position` of `position[0]`, `position_0` and `position0`.
@@ -23,7 +24,7 @@ struct Path {
 
 Path PathOf(std::string_view name) {
   const std::string plain = PlainName(Trim(name));
-  const std::size_t cut = plain.find_last_of("/. ");
+  const std::size_t cut = plain.find_last_of("/.");
   Path path{cut == std::string::npos ? "" : plain.substr(0, cut), plain.substr(cut + 1), ""};
   const std::size_t end = path.last.find_last_not_of("0123456789[]_");
   if (end != std::string::npos && path.last.find_first_of("0123456789", end) != std::string::npos) {
@@ -58,6 +59,7 @@ void FindStamps(const std::vector<TableColumn>& columns, RosTable& table) {
   }
   for (const std::string_view word : {"stamp", "%time", "__time"}) {
     table.seconds = FindLast(columns, {word});
+    table.is_nanoseconds = word != "__time";
     if (table.seconds != kNone) return;
   }
 }
@@ -105,14 +107,15 @@ void HideRates(std::vector<TableColumn>& columns) {
 }
 
 /// Nanoseconds of a decimal number of seconds; none where it is no such number.
-std::optional<std::int64_t> Nanoseconds(std::string_view text) {
-  constexpr std::size_t kLongestSeconds = 15, kDigits = 9;
+std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nanoseconds) {
+  constexpr std::size_t kDigits = 9;
   const std::size_t point = text.find('.');
   std::int64_t seconds = 0, fraction = 0;
   const char* const whole_end = text.data() + std::min(point, text.size());
   const auto [stop, error] = std::from_chars(text.data(), whole_end, seconds);
   if (error != std::errc() || stop != whole_end) return std::nullopt;
-  if (point == std::string_view::npos && text.size() > kLongestSeconds) return seconds;
+  const bool is_long = is_whole_nanoseconds || text.size() > kLongestSeconds;
+  if (point == std::string_view::npos && is_long) return seconds;
   if (std::abs(seconds) > std::numeric_limits<std::int64_t>::max() / kSecond - 1) return std::nullopt;
   if (point != std::string_view::npos) {
     std::string digits(text.substr(point + 1));
@@ -128,7 +131,12 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text) {
 std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_view row, char separator,
                                 const ReadOptions& options) {
   RosTable table;
-  FindStamps(columns, table);
+  const auto is_time = [](const TableColumn& column) {
+    const Unit* unit = FindUnit(column.meaning);
+    return unit != nullptr && unit->kind == Kind::kTime;
+  };
+  const bool has_time = std::ranges::any_of(columns, is_time);
+  if (!has_time) FindStamps(columns, table);
   table.joint = FindJoint(columns, row, separator);
   const bool has_paths = std::ranges::any_of(columns, [](const TableColumn& column) {
     return column.written.starts_with('/') && MeaningOf(column.written) != column.written;
@@ -137,14 +145,18 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
   for (TableColumn& column : columns) {
     if (FindUnit(column.meaning) == nullptr) column.meaning = MeaningOf(column.written);
   }
-  const bool has_time =
-      std::ranges::any_of(columns, [](const TableColumn& column) { return FindTimeUnit(column.meaning) != nullptr; });
-  if (table.seconds == kNone && !has_time) table.seconds = FindLast(columns, {"time", "timestamp", "t"});
+  if (table.seconds == kNone && !has_time) {
+    // Whole numbers may be of any unit, which is then for the user to say.
+    const std::size_t plain = FindLast(columns, {"time", "timestamp", "t"});
+    const std::string_view first = plain == kNone ? "" : FieldOf(row, separator, plain);
+    if (first.find('.') != std::string_view::npos || first.size() > kLongestSeconds) table.seconds = plain;
+  }
   const std::size_t named = options.time_column.empty() ? columns.size() : IndexOf(columns, options.time_column);
   if (named < columns.size() && named != table.seconds) {
     const bool is_stamp = IsOneOf(PathOf(columns[named].written).last, {"stamp", "%time", "__time", "time"});
     table.seconds = is_stamp ? named : kNone;
     table.nanoseconds = kNone;
+    table.is_nanoseconds = is_stamp && IsOneOf(PathOf(columns[named].written).last, {"stamp", "%time"});
   }
   if (table.seconds != kNone) columns[table.seconds].meaning = "time_s";
   const bool is_joint = table.joint != kNone;  // Then the user may name one, and none of its columns.
@@ -154,7 +166,7 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
 }
 
 bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, double& time) {
-  std::optional<std::int64_t> stamp = Nanoseconds(seconds);
+  std::optional<std::int64_t> stamp = Nanoseconds(seconds, is_whole_nanoseconds_);
   std::int64_t beyond = 0;
   if (!nanoseconds.empty()) {
     const char* const end = nanoseconds.data() + nanoseconds.size();

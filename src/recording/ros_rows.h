@@ -17,7 +17,7 @@ class RosRows {
  public:
   /// `columns` and `layout` must outlive this object; the columns may still be chosen.
   RosRows(const RosTable& table, const std::vector<TableColumn>& columns, const Layout& layout)
-      : table_(table), columns_(columns), layout_(layout) {}
+      : table_(table), columns_(columns), layout_(layout), stamps_(table.is_nanoseconds) {}
 
   bool has_joints() const { return table_.joint != kNone; }
 

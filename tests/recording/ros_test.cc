@@ -73,6 +73,22 @@ TEST(Ros, ReadsStampsOfEveryForm) {
   ExpectTheRows(RecordingOf(Stamped("%time,field.header.stamp,field.position", "{s}{n}99,{s}{9},{v}")));
 }
 
+TEST(Ros, StampsOfASimulationAreSmallAndInNanosecondsAllTheSame) {
+  ExpectTheRows(RecordingOf("%time,field.position\n" + Rows("{t}000000,{v}")));
+}
+
+TEST(Ros, AStampBesideATimeIsNotLookedAt) {
+  ExpectTheRows(RecordingOf("time_ms,stamp,angle_rad\n" + Rows("{t},7,{v}")));
+  ExpectTheRows(RecordingOf("time_ms,sec,nsec,angle_rad\n" + Rows("{t},7,8,{v}")));
+}
+
+TEST(Ros, WholeNumbersOfAPlainTimeNeedAUnit) {
+  const std::string text = "time,/js/a/position\n" + Rows("{t},{v}");
+  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; name the column of times time_s"));
+  ExpectTheRows(RecordingOf(text, TimeAndValue("time:ms", "")));
+  EXPECT_THAT(FaultOf("time stamp,angle_rad\n" + Rows("{t},{v}")), HasSubstr("is a time; name the column"));
+}
+
 TEST(Ros, OfAJointTakesTheAngleUnlessTheRateIsAskedFor) {
   const std::string text = Stamped("__time,/js/a/position,/js/a/velocity,/js/a/effort", "{s}.{9},1,{v},2");
   EXPECT_EQ(RecordingOf(text).quantity, Quantity::kAngle);
