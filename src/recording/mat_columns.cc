@@ -195,7 +195,7 @@ class Collector {
     for (const matvar_t* field : fields) {
       const bool is_label = field != nullptr && field->name != nullptr && std::string_view(field->name) == "label";
       if (!is_label || field->class_type != MAT_C_CHAR || field->data == nullptr) continue;
-      const std::string label = AsciiOf(*field);
+      std::string label = AsciiOf(*field);
       if (csv::FindUnit(label) != nullptr) return label;
     }
     return otherwise;
