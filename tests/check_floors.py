@@ -39,10 +39,12 @@ LIBRARY_FLOORS = {
     "gflags": {"tools"},
     "glog": {"tools"},
     "pendulum_logger": {"acquisition", "tools"},
+    "matio.h": {"recording"},
     "nlohmann": {"base", "recording", "model", "report", "batch", "request", "service", "tools"},
     "openssl": {"base", "recording", "service"},
     "prometheus": {"service"},
     "sqlite3.h": {"batch"},
+    "zip.h": {"recording"},
     "SQLiteCpp": {"batch"},
 }
 # Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.

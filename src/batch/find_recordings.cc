@@ -82,8 +82,10 @@ Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
   Result<void> done;
   std::string what = "there is no such file or folder";
   if (fs::is_directory(pattern, error)) {
-    done = Find(pattern, std::vector<std::string>{kAnyFolders, "*.[cC][sS][vV]"}, found);
-    what = "there is no *.csv file in this folder or below it";
+    for (const char* const kind : {"*.[cC][sS][vV]", "*.[mM][aA][tT]", "*.[zZ][iI][pP]"}) {
+      if (done) done = Find(pattern, std::vector<std::string>{kAnyFolders, kind}, found);
+    }
+    what = "there is no *.csv, *.mat or *.zip file in this folder or below it";
   } else if (fs::exists(pattern, error)) {
     found.push_back(pattern);
   } else if (IsPattern(pattern)) {

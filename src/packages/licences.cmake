@@ -11,9 +11,11 @@ set(pendulum_third_parties
   libexpected-dev
   libgflags-dev
   libgoogle-glog-dev
+  libmatio-dev
   libsqlite3-dev
   libsqlitecpp-dev
   libssl-dev
+  libzip4
   nlohmann-json3-dev
   prometheus-cpp-dev)
 

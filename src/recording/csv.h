@@ -37,9 +37,12 @@ struct Line {
   std::string_view text;
   std::size_t number = 0;
 
+  static constexpr std::size_t kNoNumber = static_cast<std::size_t>(-1);  // Of a file that has no lines.
+
   /// An error at the byte `at` of the text.
   tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
                                StatusCode code = StatusCode::kDataLoss) const {
+    if (number == kNoNumber) return Error(code, std::string(file) + ": " + sentence);
     return Error(code, std::string(file) + ":" + std::to_string(std::max<std::size_t>(number, 1)) + ":" +
                            std::to_string(at - text.data() + 1) + ": " + sentence);
   }

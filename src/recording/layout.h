@@ -36,8 +36,9 @@ struct Layout {
 
 /// A name in the header and where it stands.
 struct Name {
-  std::string_view text;
+  std::string_view text;  // What tells quantity and unit; empty for a column that is out of the question.
   const char* at;
+  std::string_view written = text;  // As the file has it, for messages and flags.
 };
 
 /// True for what only a header holds: letters that are no part of a number.
@@ -146,7 +147,7 @@ inline std::string ColumnChooser::ColumnNames() const {
 }
 
 inline std::string ColumnChooser::NameOf(std::size_t index) const {
-  return index < names_.size() ? Quoted(names_[index].text) : std::to_string(index + 1);
+  return index < names_.size() ? Quoted(names_[index].written) : std::to_string(index + 1);
 }
 
 inline const char* ColumnChooser::PlaceOf(std::size_t index) const {
@@ -166,7 +167,7 @@ inline tl::unexpected<Status> ColumnChooser::Ambiguous(std::size_t one, std::siz
 /// A column by its name or by its number.
 inline Result<std::size_t> ColumnChooser::FindColumn(const std::string& flag, std::string_view name,
                                                      Layout& layout) const {
-  const auto found = std::ranges::find(names_, name, &Name::text);
+  const auto found = std::ranges::find(names_, name, &Name::written);
   if (found != names_.end()) return found - names_.begin();
   double number = 0;
   if (!ParseNumber(name, number) || number < 1 || number > static_cast<double>(layout.width) ||
@@ -223,7 +224,7 @@ inline Result<void> ColumnChooser::ChooseNamedTime(Layout& layout) {
   std::string_view name = options_.time_column;
   const Unit* told = nullptr;
   const std::size_t colon = name.rfind(':');
-  if (colon != std::string_view::npos && std::ranges::find(names_, name, &Name::text) == names_.end()) {
+  if (colon != std::string_view::npos && std::ranges::find(names_, name, &Name::written) == names_.end()) {
     told = UnitOfSuffix(name.substr(colon + 1));
     if (told != nullptr && told->kind != Kind::kTime) told = nullptr;
     if (told != nullptr) name = name.substr(0, colon);
@@ -293,9 +294,9 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
     if (!asked.empty()) columns = asked;
     if (columns.empty()) return OnlyColumnWithoutUnit(layout);
   }
-  for (const std::size_t horizontal : columns) {
-    if (columns.size() == 2 && FindVertical(horizontal)) return horizontal;
-  }
+  std::vector<std::size_t> points = columns;
+  std::erase_if(points, [&](std::size_t i) { return !FindVertical(i); });
+  if (points.size() == 1) return points.front();
   if (columns.size() > 1) return Ambiguous(columns[0], columns[1], "quantity", "--value_column");
   if (columns.size() == 1) return columns[0];
   if (layout.width == 1) return 0;

@@ -20,12 +20,12 @@ const char* Find(const char* from, const char* end, char wanted) {
 LineReader::LineReader(std::string_view text, std::string name)
     : name_(std::move(name)), at_(text.data()), end_(text.data() + text.size()) {}
 
-LineReader::LineReader(InputFile file)
+LineReader::LineReader(InputFile file, std::string_view begin)
     : name_(file.name()),
       file_(std::make_unique<InputFile>(std::move(file))),
       block_(std::make_unique_for_overwrite<Block>()),
       at_(block_->data()),
-      end_(block_->data()) {}
+      end_(std::copy_n(begin.data(), std::min(begin.size(), kLongestLine), block_->data())) {}
 
 LineReader::LineReader(LineReader&& other) noexcept = default;
 LineReader::~LineReader() = default;
@@ -33,7 +33,10 @@ LineReader::~LineReader() = default;
 Result<void> LineReader::Begin() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   has_begun_ = true;
-  if (Result<void> taken = file_ == nullptr ? Take({at_, end_}) : Refill(); !taken) return taken;
+  if (Result<void> taken = Take({at_, end_}); !taken) return taken;
+  if (file_ != nullptr) {
+    if (Result<void> filled = Refill(); !filled) return filled;
+  }
   is_empty_ = at_ == end_;
   if (std::string_view(at_, end_).starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
   return {};

@@ -195,10 +195,18 @@ tl::unexpected<Problem> WrongKind(std::string_view type, std::string_view wanted
   return Refused(ProblemKind::kUnsupportedMediaType, detail + "; it must be " + std::string(wanted));
 }
 
-bool IsText(std::string_view type) {
-  constexpr std::array<std::string_view, 5> kTypes = {"text/csv", "text/plain", "text/tab-separated-values",
-                                                      "application/octet-stream", "application/vnd.ms-excel"};
-  return std::ranges::find(kTypes, type) != kTypes.end();  // the last is what Windows calls CSV
+bool IsRecording(std::string_view type) {
+  constexpr std::array<std::string_view, 8> kTypes = {
+      "text/csv",
+      "text/plain",
+      "text/tab-separated-values",
+      "application/octet-stream",
+      "application/vnd.ms-excel",  // what Windows calls CSV
+      "application/zip",
+      "application/x-zip-compressed",  // what Windows calls it
+      "application/x-matlab-data",
+  };
+  return std::ranges::find(kTypes, type) != kTypes.end();
 }
 
 /// The type of a body, in lower case, or as it stands where it is none; empty where it is not there.
@@ -325,7 +333,7 @@ OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarg
     read = ReadForm(*http.Field("Content-Type"), http.body, *request);
   } else if (type == "application/json") {
     read = ReadJson(http.body, *request, name);
-  } else if (IsText(type)) {
+  } else if (IsRecording(type)) {
     request->data.push_back({kUnnamed, http.body});
   } else {
     return WrongKind(type, "text/csv, multipart/form-data or application/json");

@@ -26,9 +26,9 @@
 #include "tools/terminal.h"
 
 DEFINE_string(data, "",
-              "Recording (CSV), or several of one rig between commas, fitted together (--shared); the header names the "
-              "columns and their units, such as "
-              "time_s,angle_deg; - is standard input.");
+              "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "
+              "columns and their units, such as time_s,angle_deg; what phyphox (CSV, zip), Tracker, Logger Pro, "
+              "Graphical Analysis, Capstone and ROS export; MAT-files; - is standard input.");
 DEFINE_string(data_list, "", "File that lists recordings, one path a line, instead of --data; default none.");
 DEFINE_string(shared, "",
               "What several recordings have in common: all of inertia and friction, some of their names, or none (each "

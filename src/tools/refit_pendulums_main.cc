@@ -16,8 +16,8 @@ DEFINE_string(
     "Runs to refit: CSV with the column path, and id, rig, calibration, from_s, to_s, models or others, paths "
     "relative to it; or a file made by pack; - is standard input.");
 DEFINE_string(data, "",
-              "Instead of a manifest: folders (all *.csv files below), patterns such as 'runs/**/*.csv' and files, "
-              "between commas.");
+              "Instead of a manifest: folders (all *.csv, *.mat and *.zip files below), patterns such as "
+              "'runs/**/*.txt' and files, between commas.");
 DEFINE_string(store, "", "SQLite file of the results; it is made, or brought up to date.");
 DEFINE_bool(force, false, "Refits also runs whose data, rig, calibration, options and version are as stored.");
 DEFINE_bool(retry_failed, false, "Refits also runs that could not be fitted; default off: the same files fail alike.");

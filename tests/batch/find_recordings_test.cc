@@ -61,6 +61,11 @@ TEST_F(FindRecordingsTest, FindsTheCsvFilesOfAFolderAndBelowInOrder) {
   EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv", "d.CSV"));
 }
 
+TEST_F(FindRecordingsTest, OfAFolderArePackedRecordingsAndMatFilesToo) {
+  Make({"b.mat", "a/phone.zip", "a/R.MAT", "c.ZIP", "c.txt", "zip", "x.mat.bak"});
+  EXPECT_THAT(Find(""), ElementsAre("a/R.MAT", "a/phone.zip", "b.mat", "c.ZIP"));
+}
+
 TEST_F(FindRecordingsTest, FindsTheSameInAFolderWithoutASlash) {
   Make({"a.csv", "b/c.csv"});
   EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
@@ -156,7 +161,8 @@ TEST_F(FindRecordingsTest, SaysWhatIsNotFound) {
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("none.csv").message, folder + "/none.csv: there is no such file or folder; check the path");
   EXPECT_EQ(FaultOf("a").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("a").message, folder + "/a: there is no *.csv file in this folder or below it; check the path");
+  EXPECT_EQ(FaultOf("a").message,
+            folder + "/a: there is no *.csv, *.mat or *.zip file in this folder or below it; check the path");
   EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file is like this pattern; check the path");
   EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file is like this pattern; check the path");

@@ -61,8 +61,8 @@ std::string Answer(const OrProblem<FitRequest>& request) {
 // ---- Three kinds of body -------------------------------------------------------------------------------------------
 
 TEST(ParseFitRequest, TakesARecordingAsItIs) {
-  for (const char* type :
-       {"text/csv", "text/csv; charset=utf-8", "TEXT/CSV", "text/plain", "application/octet-stream"}) {
+  for (const char* type : {"text/csv", "text/csv; charset=utf-8", "TEXT/CSV", "text/plain", "application/octet-stream",
+                           "application/zip", "application/x-matlab-data"}) {
     const auto request = Fit(Post("/v1/fits?model=drag&from=0.5&name=run%201.csv", type, kCsv));
     ASSERT_TRUE(request) << type << ": " << request.error().detail;
     ASSERT_EQ(request->data.size(), 1U);

@@ -23,8 +23,9 @@ class LineReader {
   /// The lines of a text in memory, which must outlive this object; `name` stands for the path in messages.
   LineReader(std::string_view text, std::string name);
 
-  /// The lines of a file from where it stands.
-  explicit LineReader(InputFile file);
+  /// The lines of a file from where it stands, behind those bytes of it that were read already: `begin`, less than
+  /// kLongestLine of them.
+  explicit LineReader(InputFile file, std::string_view begin = {});
 
   LineReader(LineReader&& other) noexcept;
   LineReader(const LineReader&) = delete;

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/mat_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <matio.h>
+
+#include "runs.h"
+
+namespace pendulum {
+namespace {
+
+struct CloseFile {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+
+/// The run of variables that belong to no structure or matrix with a time of its own.
+constexpr const char* kTopLevel = "top level";
+
+std::string* complaint = nullptr;  // Where matio complains to; it has no other place to remember whom it speaks to.
+
+void TakeComplaint(int level, char* message) {
+  constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
+  if (complaint != nullptr && (level & kSerious) != 0 && complaint->empty()) *complaint = message;
+}
+
+/// `t`, `time` and `tout`, which Simulink writes, are times in seconds.
+std::string MeaningOf(const std::string& name) {
+  const std::string canonical = csv::CanonicalName(name);
+  if (canonical == "t" || canonical == "time" || canonical == "tout") return "time_s";
+  if (canonical == "t_s" || canonical == "t_ms" || canonical == "t_us") return "time" + canonical.substr(1);
+  return name;
+}
+
+std::size_t CountOf(const matvar_t& variable) {
+  std::size_t count = variable.rank > 0 ? 1 : 0;
+  for (const std::size_t size : std::span(variable.dims, static_cast<std::size_t>(std::max(variable.rank, 0)))) {
+    if (__builtin_mul_overflow(count, size, &count)) return 0;
+  }
+  return count;
+}
+
+template <typename T>
+std::vector<double> Doubles(const matvar_t& variable, std::size_t count) {
+  const auto* const data = static_cast<const T*>(variable.data);
+  std::vector<double> values(count);
+  std::transform(data, data + count, values.begin(), [](T value) { return static_cast<double>(value); });
+  return values;
+}
+
+/// All numbers of a real, full array in MATLAB's order; none of anything else.
+std::vector<double> NumbersOf(const matvar_t& variable) {
+  const std::size_t count = CountOf(variable);
+  if (variable.data == nullptr || variable.isComplex != 0 || variable.data_size <= 0) return {};
+  if (count > variable.nbytes / static_cast<std::size_t>(variable.data_size)) return {};
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE: return Doubles<double>(variable, count);
+    case MAT_C_SINGLE: return Doubles<float>(variable, count);
+    case MAT_C_INT8: return Doubles<std::int8_t>(variable, count);
+    case MAT_C_UINT8: return Doubles<std::uint8_t>(variable, count);
+    case MAT_C_INT16: return Doubles<std::int16_t>(variable, count);
+    case MAT_C_UINT16: return Doubles<std::uint16_t>(variable, count);
+    case MAT_C_INT32: return Doubles<std::int32_t>(variable, count);
+    case MAT_C_UINT32: return Doubles<std::uint32_t>(variable, count);
+    case MAT_C_INT64: return Doubles<std::int64_t>(variable, count);
+    case MAT_C_UINT64: return Doubles<std::uint64_t>(variable, count);
+    default: return {};
+  }
+}
+
+std::string KindOf(const matvar_t& variable) {
+  if (variable.isComplex != 0) return "complex";
+  switch (variable.class_type) {
+    case MAT_C_CELL: return "a cell array";
+    case MAT_C_STRUCT: return "a structure without columns";
+    case MAT_C_CHAR: return "text";
+    case MAT_C_SPARSE: return "sparse";
+    case MAT_C_OBJECT:
+    case MAT_C_FUNCTION:
+    case MAT_C_OPAQUE: return "an object";
+    default: return "no vector";
+  }
+}
+
+/// Puts the variables of a file into a table.
+class Collector {
+ public:
+  explicit Collector(MatTable& table) : table_(table) {}
+
+  void Add(const matvar_t& variable) {
+    if (variable.name == nullptr) return;  // What objects are made of.
+    const std::string name = variable.name;
+    const std::size_t before = table_.columns.size();
+    if (variable.class_type == MAT_C_STRUCT) {
+      AddStructure(variable, name, name);
+    } else {
+      AddArray(variable, name, name, kTopLevel);
+    }
+    const bool is_scalar = CountOf(variable) == 1 && variable.class_type >= MAT_C_DOUBLE;
+    const bool is_plain = is_scalar && variable.class_type < MAT_C_FUNCTION;
+    if (table_.columns.size() == before && !is_plain) table_.skipped.push_back({name, KindOf(variable)});
+  }
+
+ private:
+  /// A vector, or the columns (rows, where there are more columns) of a matrix. A first column that increases is time.
+  void AddArray(const matvar_t& variable, const std::string& written, const std::string& meaning,
+                const std::string& run) {
+    constexpr std::size_t kMostColumns = 100;
+    std::vector<double> numbers = NumbersOf(variable);
+    const std::size_t rows = numbers.empty() ? 0 : LongestOf(variable);
+    if (rows < 2) return;
+    const std::size_t columns = numbers.size() / rows;
+    if (columns == 1) {
+      table_.columns.push_back({{written, MeaningOf(meaning), run}, std::move(numbers)});
+      return;
+    }
+    if (variable.rank != 2 || columns > kMostColumns) return;
+    const bool is_upright = variable.dims[0] == rows;
+    const auto column = [&](std::size_t j) {
+      std::vector<double> values(rows);
+      for (std::size_t i = 0; i < rows; ++i) values[i] = numbers[is_upright ? j * rows + i : i * columns + j];
+      return values;
+    };
+    const std::vector<double> first = column(0);
+    const bool has_time = std::ranges::adjacent_find(first, std::greater_equal<>()) == first.end();
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::string number = std::to_string(j + 1);
+      const std::string place = is_upright ? "(:," + number + ")" : "(" + number + ",:)";
+      table_.columns.push_back({{written + place, j == 0 && has_time ? "time_s" : meaning, has_time ? written : run},
+                                j == 0 ? first : column(j)});
+    }
+  }
+
+  static std::size_t LongestOf(const matvar_t& variable) {
+    return *std::max_element(variable.dims, variable.dims + variable.rank);
+  }
+
+  /// The fields of a structure, and of those in it: what Simulink calls `signals` has the quantity in `values` and its
+  /// name in `label`.
+  void AddStructure(const matvar_t& structure, const std::string& written, const std::string& meaning) {
+    constexpr std::size_t kMostElements = 100, kDeepest = 6;
+    const std::size_t elements = CountOf(structure);
+    const std::size_t fields = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&structure));  // NOLINT: only reads
+    if (elements == 0 || elements > kMostElements || structure.data == nullptr || depth_ == kDeepest) return;
+    ++depth_;
+    const std::size_t first = table_.columns.size();
+    auto* const* const members = static_cast<matvar_t**>(structure.data);
+    for (std::size_t i = 0; i < elements; ++i) {
+      const std::string element = elements == 1 ? written : written + "(" + std::to_string(i + 1) + ")";
+      const std::span<matvar_t* const> of_element(members + i * fields, fields);
+      for (const matvar_t* field : of_element) {
+        if (field != nullptr && field->name != nullptr) AddField(*field, element, LabelOf(of_element, meaning));
+      }
+    }
+    --depth_;
+    GroupByTime(first, written);
+  }
+
+  void AddField(const matvar_t& field, const std::string& structure, const std::string& meaning) {
+    const std::string name = field.name;
+    const std::string written = structure + "." + name;
+    if (field.class_type == MAT_C_STRUCT) {
+      AddStructure(field, written, name == "signals" ? meaning : name);
+    } else {
+      AddArray(field, written, name == "values" ? meaning : name, kTopLevel);
+    }
+  }
+
+  /// MATLAB writes letters in one byte or two; in a unit those beyond ASCII are not needed.
+  static std::string AsciiOf(const matvar_t& text) {
+    const std::size_t count = CountOf(text);
+    std::string ascii;
+    if (text.data_size <= 0 || count > text.nbytes / static_cast<std::size_t>(text.data_size)) return ascii;
+    const auto take = [&]<typename T>(const T* letters) {
+      for (std::size_t i = 0; i < count; ++i) ascii += letters[i] < 0x80 ? static_cast<char>(letters[i]) : '?';
+    };
+    if (text.data_size == 1) take(static_cast<const std::uint8_t*>(text.data));
+    if (text.data_size == 2) take(static_cast<const std::uint16_t*>(text.data));
+    return ascii;
+  }
+
+  /// The text in the field `label` where it tells a unit, else `otherwise`.
+  static std::string LabelOf(std::span<matvar_t* const> fields, const std::string& otherwise) {
+    for (const matvar_t* field : fields) {
+      const bool is_label = field != nullptr && field->name != nullptr && std::string_view(field->name) == "label";
+      if (!is_label || field->class_type != MAT_C_CHAR || field->data == nullptr) continue;
+      std::string label = AsciiOf(*field);
+      if (csv::FindUnit(label) != nullptr) return label;
+    }
+    return otherwise;
+  }
+
+  /// Columns of a structure that has a time of its own are a run of theirs.
+  void GroupByTime(std::size_t first, const std::string& run) {
+    const std::span<MatColumn> own = std::span(table_.columns).subspan(first);
+    const auto is_time = [](const MatColumn& column) {
+      return column.name.run == kTopLevel && csv::IsTime(column.name.meaning);
+    };
+    if (std::ranges::none_of(own, is_time)) return;
+    for (MatColumn& column : own) {
+      if (column.name.run == kTopLevel) column.name.run = run;
+    }
+  }
+
+  MatTable& table_;
+  std::size_t depth_ = 0;
+};
+
+}  // namespace
+
+MatTable ReadMatTable(const std::string& path) {
+  MatTable table;
+  complaint = &table.complaint;
+  Mat_LogInitFunc("matio", TakeComplaint);
+  const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (file == nullptr && table.complaint.empty()) table.complaint = "no MAT-file";
+  Collector collector(table);
+  while (file != nullptr) {
+    const std::unique_ptr<matvar_t, FreeVariable> variable(Mat_VarReadNext(file.get()));
+    if (variable == nullptr) break;
+    collector.Add(*variable);
+  }
+  complaint = nullptr;
+  return table;
+}
+
+// ---- Between processes -------------------------------------------------------------------------------------------
+
+namespace {
+
+void PutSize(std::size_t size, std::string& bytes) {
+  const std::uint64_t number = size;
+  std::array<char, sizeof number> raw{};
+  std::memcpy(raw.data(), &number, sizeof number);
+  bytes.append(raw.data(), raw.size());
+}
+
+void PutText(const std::string& text, std::string& bytes) {
+  PutSize(text.size(), bytes);
+  bytes += text;
+}
+
+/// Takes things off the front of bytes; zeros where there are no more.
+class Taker {
+ public:
+  explicit Taker(std::string_view bytes) : bytes_(bytes) {}
+
+  std::string_view Raw(std::size_t size) {
+    const std::string_view raw = bytes_.substr(0, size);
+    bytes_.remove_prefix(raw.size());
+    return raw;
+  }
+
+  std::size_t Size() {
+    std::uint64_t number = 0;
+    const std::string_view raw = Raw(sizeof number);
+    std::memcpy(&number, raw.data(), raw.size());
+    return number;
+  }
+
+  std::string Text() { return std::string(Raw(Size())); }
+
+  std::vector<double> Numbers() {
+    const std::string_view raw = Raw(Size());
+    std::vector<double> values(raw.size() / sizeof(double));
+    std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
+    return values;
+  }
+
+  bool IsEmpty() const { return bytes_.empty(); }
+
+ private:
+  std::string_view bytes_;
+};
+
+}  // namespace
+
+std::string Pack(const MatTable& table) {
+  std::string bytes;
+  PutText(table.complaint, bytes);
+  PutSize(table.skipped.size(), bytes);
+  for (const SkippedVariable& variable : table.skipped) {
+    PutText(variable.name, bytes);
+    PutText(variable.kind, bytes);
+  }
+  for (const MatColumn& column : table.columns) {
+    for (const std::string* text : {&column.name.written, &column.name.meaning, &column.name.run}) {
+      PutText(*text, bytes);
+    }
+    const std::size_t size = column.values.size() * sizeof(double);
+    PutSize(size, bytes);
+    const std::size_t used = bytes.size();
+    bytes.resize(used + size);
+    std::memcpy(bytes.data() + used, column.values.data(), size);
+  }
+  return bytes;
+}
+
+MatTable UnpackMatTable(std::string_view bytes) {
+  MatTable table;
+  Taker taker(bytes);
+  table.complaint = taker.Text();
+  for (std::size_t count = taker.Size(); count > 0 && !taker.IsEmpty(); --count) {
+    std::string name = taker.Text();
+    table.skipped.push_back({std::move(name), taker.Text()});
+  }
+  while (!taker.IsEmpty()) {
+    MatColumn column;
+    column.name.written = taker.Text();
+    column.name.meaning = taker.Text();
+    column.name.run = taker.Text();
+    column.values = taker.Numbers();
+    table.columns.push_back(std::move(column));
+  }
+  return table;
+}
+
+}  // namespace pendulum

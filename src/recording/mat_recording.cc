@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/mat_recording.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "in_child.h"
+#include "mat_columns.h"
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/sha256.h"
+#include "to_angle.h"
+#include "to_recording.h"
+
+namespace pendulum {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 128, kTagBytes = 8;
+
+std::uint32_t NumberAt(std::string_view bytes, std::size_t at, bool is_swapped) {
+  std::uint32_t number = 0;
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return is_swapped ? __builtin_bswap32(number) : number;
+}
+
+/// The variables of version 5 follow each other, each with its size before it: matio itself does not say when the last
+/// one is cut off.
+Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kOrderAt = 126;
+  constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
+  if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
+  const bool is_little = bytes.substr(kOrderAt, 2) == "IM";
+  const bool is_swapped = is_little != (std::endian::native == std::endian::little);
+  for (std::size_t at = kHeaderBytes; at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    const std::uint32_t type = left < kTagBytes ? 0 : NumberAt(bytes, at, is_swapped);
+    const std::size_t size = left < kTagBytes ? 0 : NumberAt(bytes, at + 4, is_swapped);
+    const std::string place = "at byte " + std::to_string(at);
+    if (left < kTagBytes || size > left - kTagBytes) {
+      return Fault(name, "the file is cut off: the variable " + place + " has " + std::to_string(size) +
+                             " bytes, and " + std::to_string(left) + " are left; save or copy it again");
+    }
+    if (type != kMatrix && type != kCompressed) {
+      return Fault(name, "the file is damaged: " + place + " no variable begins; save or copy it again");
+    }
+    at += kTagBytes + size;
+  }
+  return {};
+}
+
+/// A file that matio can open: it reads no memory, and HDF5 follows the links of /proc, so it must be a real one.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string_view bytes) {
+    std::error_code unknown;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(unknown);
+    path_ = ((unknown ? "/tmp" : folder) / "pendulum_XXXXXX").string();
+    const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
+    if (descriptor < 0) return;
+    exists_ = true;
+    ssize_t written = 1;
+    for (; !bytes.empty() && written > 0; bytes.remove_prefix(std::max<ssize_t>(written, 0))) {
+      written = ::write(descriptor, bytes.data(), bytes.size());
+    }
+    is_whole_ = ::close(descriptor) == 0 && bytes.empty();
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile(TemporaryFile&&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    if (exists_) ::unlink(path_.c_str());
+  }
+
+  bool is_whole() const { return is_whole_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  bool exists_ = false;
+  bool is_whole_ = false;
+};
+
+Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
+  if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
+  const TemporaryFile file(bytes);
+  if (!file.is_whole()) {
+    return Error(StatusCode::kTryAgain,
+                 name + ": there is no room for a copy in the folder of temporary files; make some");
+  }
+  // A second is enough for a hundred megabytes, and for ever is what some damaged files take.
+  const int seconds = 2 + static_cast<int>(bytes.size() >> 25);
+  const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, seconds);
+  if (!packed && packed.error().message.empty()) {
+    return Fault(name, "this MAT-file is damaged: matio, which reads it, did not come to its end; save it again");
+  }
+  if (!packed) return Error(packed.error().code, name + ": " + packed.error().message);
+  MatTable table = UnpackMatTable(*packed);
+  if (table.complaint.empty()) return table;
+  return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
+}
+
+/// What there is instead of a column of angles.
+Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
+                            const std::string& name, const ReadOptions& options) {
+  const auto named = std::ranges::find(table.skipped, options.value_column, &SkippedVariable::name);
+  const auto object = std::ranges::find(table.skipped, "an object", &SkippedVariable::kind);
+  const SkippedVariable* skipped = named != table.skipped.end() ? &*named : nullptr;
+  const bool has_candidate = !options.value_column.empty() || !csv::CandidatesOf(columns, options.unit).empty();
+  if (skipped == nullptr && !has_candidate && object != table.skipped.end()) skipped = &*object;
+  if (skipped != nullptr && skipped->kind == "an object") {
+    return Fault(name, "variable " + Quoted(skipped->name) +
+                           " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: "
+                           "t = ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')");
+  }
+  if (skipped != nullptr) {
+    return Fault(name, "variable " + Quoted(skipped->name) + " is " + skipped->kind +
+                           "; a column is a vector of real numbers, or a matrix's or a structure's");
+  }
+  if (!columns.empty()) return {};
+  std::string rest;
+  for (const SkippedVariable& variable :
+       std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
+    rest += (rest.empty() ? " (" : ", ") + Quoted(variable.name) + " is " + variable.kind;
+  }
+  return Fault(name, "no variable of this MAT-file is a vector or a matrix of real numbers" +
+                         (rest.empty() ? rest : rest + ")") + "; save the times as t and the angles as angle_deg");
+}
+
+/// The numbers of the columns that were chosen, without rows in which one of them is none.
+Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, const std::string& name) {
+  const std::vector<double>& value = table.columns[layout.value.index].values;
+  const std::vector<double>& time = layout.time ? table.columns[layout.time->index].values : value;
+  const std::vector<double>& second = layout.second ? table.columns[layout.second->index].values : value;
+  if (time.size() != value.size()) {
+    return Fault(name, "column " + layout.time->name + " has " + std::to_string(time.size()) + " numbers and column " +
+                           layout.value.name + " " + std::to_string(value.size()) +
+                           "; choose the time of this quantity with --time_column");
+  }
+  if (second.size() != value.size()) {
+    return Fault(name, "column " + layout.second->name + " has " + std::to_string(second.size()) +
+                           " numbers and column " + layout.value.name + " " + std::to_string(value.size()) +
+                           "; choose one coordinate with --value_column");
+  }
+  RawSamples samples;
+  samples.name = name;
+  samples.time.resize(static_cast<Eigen::Index>(value.size()));
+  samples.value.resize(samples.time.size());
+  samples.second.resize(layout.second ? samples.time.size() : 0);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isfinite(time[i]) || !std::isfinite(value[i]) || !std::isfinite(second[i])) continue;
+    samples.time[rows] = time[i];
+    samples.value[rows] = value[i];
+    if (layout.second) samples.second[rows] = second[i];
+    samples.lines.Add(i + 1);
+    ++rows;
+  }
+  samples.time.conservativeResize(rows);
+  samples.value.conservativeResize(rows);
+  if (layout.second) samples.second.conservativeResize(rows);
+  const std::size_t left_out = value.size() - static_cast<std::size_t>(rows);
+  if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
+  if (rows >= kMinimumSamples) return samples;
+  return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
+                                                    std::to_string(rows) + " numbers; at least " +
+                                                    std::to_string(kMinimumSamples) + " are needed: record for longer");
+}
+
+}  // namespace
+
+Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  const Result<MatTable> table = ReadTable(bytes, name);
+  if (!table) return tl::unexpected(table.error());
+  csv::Line line{name, "", csv::Line::kNoNumber};
+  std::vector<csv::TableColumn> columns;
+  for (const MatColumn& column : table->columns) columns.push_back(column.name);
+  if (auto checked = CheckVariables(*table, columns, name, options); !checked) return tl::unexpected(checked.error());
+  const auto names = csv::NamesOf(line, columns, options);
+  if (!names) return tl::unexpected(names.error());
+  csv::ReadColumns read;
+  read.layout.width = columns.size();
+  read.layout.has_header = true;
+  csv::ColumnChooser chooser(line, *names, options, false, false);
+  if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
+  std::vector<Warning> warnings;
+  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, warnings); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  Result<RawSamples> samples = SamplesOf(*table, read.layout, name);
+  Result<std::string> sha256 = Sha256(bytes);
+  if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
+  read.samples = *std::move(samples);
+  read.sha256 = *std::move(sha256);
+  if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
+  return csv::ToRecording(std::move(read), line, options);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// MAT-files, each read in a process of its own.
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/recording.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  pendulum::CheckRecording(pendulum::TextOf(data, size));
+  return 0;
+}

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/mat_recording.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/sha256.h"
+#include "tests/recording/mat_files.h"
+#include "tests/recording/rows.h"
+
+namespace pendulum::mat_recording_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// The values of ExpectTheRows.
+std::vector<double> Times(double unit = 1) {
+  std::vector<double> times;
+  for (int i = 0; i < 8; ++i) times.push_back(i / 100.0 * unit);
+  return times;
+}
+
+std::vector<double> Values() { return {100, 101, 102, 103, 104, 105, 106, 107}; }
+
+std::vector<double> Both() {
+  std::vector<double> both = Times();
+  for (const double value : Values()) both.push_back(value);
+  return both;
+}
+
+ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
+
+// ---- Vectors and matrices ----------------------------------------------------------------------------------------
+
+class OfEveryVersion : public testing::TestWithParam<mat_ft> {};
+
+TEST_P(OfEveryVersion, TwoVectorsAreReadByTheirNames) {
+  for (const char* const time : {"t", "time", "tout", "Time", "t_s"}) {
+    for (const bool is_packed : {false, true}) {
+      const std::string bytes = MatOf(
+          {Matrix(time, 8, Times()), Matrix("angle_deg", 8, Values()), Matrix("gain", 1, {2})}, GetParam(), is_packed);
+      ExpectTheRows(RecordingOf(bytes), kDegree);
+      EXPECT_EQ(RecordingOf(bytes).sha256, Sha256(bytes).value());
+    }
+  }
+  ExpectTheRows(
+      RecordingOf(MatOf({Matrix("t_ms", 1, Times(1000)), Matrix("y", 1, Values())}, GetParam()), Unit("rad")));
+}
+
+TEST_P(OfEveryVersion, AMatrixWhoseFirstColumnIncreasesHasItsTimeThere) {
+  ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 8, Both())}, GetParam())));
+  ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Unit("deg")), kDegree);
+  ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Value("run(:,2)", "deg")), kDegree);
+  std::vector<double> rows;  // As the block "To File" writes them.
+  for (int i = 0; i < 8; ++i) rows.insert(rows.end(), {i / 100.0, 100.0 + i});
+  ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 2, rows)}, GetParam())));
+}
+
+TEST_P(OfEveryVersion, AStructureWithTimeIsOneRun) {
+  const auto simulink = [](const char* name, const char* label, double slower) {
+    matvar_t* signals =
+        Structure("signals", {{"values", Matrix("values", 8, Values())}, {"label", Text("label", label)}});
+    return Structure(name, {{"time", Matrix("time", 8, Times(slower))}, {"signals", signals}});
+  };
+  ExpectTheRows(RecordingOf(MatOf({simulink("angle_rad", "", 1)}, GetParam())));
+  ExpectTheRows(RecordingOf(MatOf({simulink("out", "pot_deg", 1)}, GetParam())), kDegree);
+  const std::string two = MatOf({simulink("a", "a_rad", 2), simulink("b", "b_rad", 1)}, GetParam());
+  EXPECT_THAT(FaultOf(two), HasSubstr("\"a.signals.values\" and \"b.signals.values\" could both be the quantity"));
+  ExpectTheRows(RecordingOf(two, Value("b.signals.values")));
+}
+
+TEST_P(OfEveryVersion, WhatIsNoColumnIsSaidByItsKind) {
+  EXPECT_EQ(
+      FaultOf(MatOf({Text("note", "hello")}, GetParam())),
+      "run.csv: no variable of this MAT-file is a vector or a matrix of real numbers (\"note\" is text); save the "
+      "times as t and the angles as angle_deg");
+  const std::string more = MatOf({Text("note", "hello"), Matrix("t", 8, Times())}, GetParam());
+  EXPECT_EQ(FaultOf(more, Value("note", "deg")),
+            "run.csv: variable \"note\" is text; a column is a vector of real numbers, or a matrix's or a structure's");
+  EXPECT_THAT(WrongFlag(more, {}), StartsWith("run.csv: column \"t\" cannot be both the time and the quantity"));
+  EXPECT_THAT(FaultOf(MatOf({}, GetParam())), StartsWith("run.csv: "));
+  EXPECT_THAT(FaultOf(MatOf({Matrix("x", 0, {})}, GetParam())), HasSubstr("no variable of this MAT-file"));
+}
+
+TEST_P(OfEveryVersion, WhatIsCutOffIsNeverARecording) {
+  const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, GetParam());
+  for (std::size_t size = 128; size < whole.size(); size += 1 + whole.size() / 40) {
+    const Result<Recording> recording = ParseRecording(whole.substr(0, size), "run.csv");
+    ASSERT_FALSE(recording.has_value()) << size;
+    EXPECT_EQ(recording.error().code, StatusCode::kDataLoss);
+    EXPECT_THAT(recording.error().message, StartsWith("run.csv:"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ReadMat, OfEveryVersion, testing::Values(MAT_FT_MAT5, MAT_FT_MAT73));
+
+TEST(ReadMat, NumbersMayBeOfAnyType) {
+  ExpectTheRows(
+      RecordingOf(MatOf({Matrix("t", 8, Times()), Vector<std::int16_t>("adc_counts", MAT_C_INT16, MAT_T_INT16,
+                                                                       {100, 101, 102, 103, 104, 105, 106, 107})})));
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t", 8, Times()), Vector<float>("angle_rad", MAT_C_SINGLE, MAT_T_SINGLE,
+                                                                          {100, 101, 102, 103, 104, 105, 106, 107})})));
+  ExpectTheRows(
+      RecordingOf(MatOf({Vector<std::uint32_t>("t_ms", MAT_C_UINT32, MAT_T_UINT32, {0, 10, 20, 30, 40, 50, 60, 70}),
+                         Matrix("angle_rad", 8, Values())})));
+}
+
+TEST(ReadMat, LeavesOutRowsThatAreNoNumbers) {
+  std::vector<double> times = Times(), values = Values();
+  times.insert(times.begin(), -1);
+  values.insert(values.begin(), std::numeric_limits<double>::quiet_NaN());
+  const Recording recording = RecordingOf(MatOf({Matrix("t", 9, times), Matrix("angle_rad", 9, values)}));
+  ExpectTheRows(recording);
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].message,
+            "run.csv: 1 row was left out, with no number in column \"angle_rad\" or in its time");
+}
+
+TEST(ReadMat, RefusesColumnsOfDifferentLengths) {
+  EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), Matrix("angle_rad", 2, {1, 2})})),
+            "run.csv: column \"t\" has 8 numbers and column \"angle_rad\" 2; choose the time of this quantity with "
+            "--time_column");
+  EXPECT_EQ(
+      FaultOf(MatOf({Matrix("t", 2, {1, 2}), Matrix("angle_rad", 2, {1, 2})}), {}, StatusCode::kFailedPrecondition),
+      "run.csv: column \"angle_rad\" has 2 numbers; at least 8 are needed: record for longer");
+}
+
+TEST(ReadMat, RefusesTwoCandidatesAndTwoTimes) {
+  const std::string two = MatOf({Matrix("t", 8, Times()), Matrix("a_rad", 8, Values()), Matrix("b_deg", 8, Values())});
+  EXPECT_EQ(FaultOf(two),
+            "run.csv: columns \"a_rad\" and \"b_deg\" could both be the quantity; choose one with --value_column");
+  ExpectTheRows(RecordingOf(two, Value("a_rad")));
+  EXPECT_THAT(FaultOf(MatOf({Matrix("t", 8, Times()), Matrix("tout", 8, Times()), Matrix("a_rad", 8, Values())})),
+              HasSubstr("could both be the time"));
+}
+
+TEST(ReadMat, ComplexAndSparseAreNoColumns) {
+  std::vector<double> zeros(8);
+  mat_complex_split_t complex{Values().data(), zeros.data()};
+  std::vector<double> values = Values();
+  complex.Re = values.data();
+  std::size_t sizes[] = {8, 1};
+  EXPECT_THAT(FaultOf(MatOf({Matrix("t", 8, Times()),
+                             Mat_VarCreate("z_rad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX)}),
+                      Value("z_rad")),
+              HasSubstr("variable \"z_rad\" is complex"));
+}
+
+TEST(ReadMat, ASampleRateReplacesTheTime) {
+  ExpectTheRows(RecordingOf(MatOf({Matrix("angle_deg", 8, Values())}), Unit("", 100)), kDegree);
+}
+
+TEST(ReadMat, RefusesFlagsThatContradictTheFile) {
+  const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
+  EXPECT_THAT(WrongFlag(bytes, Unit("rad")), HasSubstr("run.csv: column \"angle_deg\" is in deg"));
+  EXPECT_THAT(WrongFlag(bytes, Value("phi")), HasSubstr("none of the 2 columns \"t\", \"angle_deg\""));
+}
+
+// ---- Damage ------------------------------------------------------------------------------------------------------
+
+TEST(ReadMat, SaysWhereItIsCutOff) {
+  const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, MAT_FT_MAT5, false);
+  EXPECT_THAT(
+      FaultOf(whole.substr(0, whole.size() - 5)),
+      AllOf(StartsWith("run.csv: the file is cut off: the variable at byte "), HasSubstr("save or copy it again")));
+}
+
+TEST(ReadMat, SurvivesBytesThatAreChanged) {
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, version, false);
+    for (std::size_t at = 128; at < whole.size(); at += 1 + whole.size() / 60) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(bytes[at] ^ 0xFF);
+      const Result<Recording> recording = ParseRecording(bytes, "run.csv");
+      if (recording) continue;
+      EXPECT_THAT(recording.error().message, StartsWith("run.csv:"));
+      EXPECT_NE(recording.error().code, StatusCode::kInternal);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::mat_recording_test
