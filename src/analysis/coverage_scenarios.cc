@@ -83,6 +83,41 @@ CoverageScenario Saturated() {
   return scenario;
 }
 
+/// An encoder of 2400 counts a turn, in motion when the recording begins, with a row for each change of its count. Its
+/// edges err by a twentieth of a count, its stamps by as much at half the largest rate.
+CoverageScenario OnTicks(std::string name, std::string description) {
+  CoverageScenario scenario = Moving();
+  scenario.name = std::move(name);
+  scenario.description = std::move(description);
+  SyntheticOptions& run = scenario.run;
+  run.sampling = Sampling::kEvents;
+  run.resolution = 2 * kPi / 2400;
+  run.noise = 0.05 * run.resolution;
+  run.time_noise = 1.3e-4;
+  run.sample_rate = 1000;
+  return scenario;
+}
+
+/// So few counts that turning points and rest are slow against a count.
+CoverageScenario OnFewTicks(std::string name, std::string description) {
+  CoverageScenario scenario = OnTicks(std::move(name), std::move(description));
+  scenario.run.initial_angle = 0.08;
+  scenario.run.initial_rate = 0;
+  scenario.run.resolution = 2 * kPi / 600;
+  scenario.run.noise = 0.05 * scenario.run.resolution;
+  scenario.run.duration = 8;
+  return scenario;
+}
+
+/// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
+CoverageScenario Sampled(CoverageScenario scenario) {
+  scenario.run.sampling = Sampling::kEvenOfEvents;
+  scenario.run.time_noise = 0;
+  scenario.rule.lowest = 0;
+  scenario.rule.highest = 1;
+  return scenario;
+}
+
 CoverageScenario Correlated(CoverageScenario scenario, double correlation, double lowest) {
   scenario.run.noise_correlation = correlation;
   scenario.rule.lowest = lowest;
@@ -127,6 +162,10 @@ std::vector<CoverageScenario> CoverageScenarios() {
       HeavyTails(),
       Without(1, "no_viscous", "b = 0, at its bound; white noise of 0.5 count on counts"),
       Without(2, "no_coulomb", "tau_c = 0, at its bound; white noise of 0.5 count on counts"),
+      OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
+      OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
+      Sampled(OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
+      Sampled(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
   };
 }
 

@@ -88,7 +88,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         return;
       }
       part = 0;
-      for (int i = 0; i < count; ++i) part += At(data_.value[first + i], row[i]).deviance;
+      for (int i = 0; i < count; ++i) part += At(first + i, row[i]).deviance;
     };
     if (!VisitSamples(values_, p, work, [&](double part) { deviance += part; })) return false;
     if (noise_.IsPlain()) deviance /= noise_.sigma * noise_.sigma;
@@ -169,7 +169,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
   /// As noise_.At, without an exponential and an error function for every sample of a level.
-  SampleLikelihood At(double value, double reading) const {
+  SampleLikelihood At(std::size_t sample, double reading) const {
+    const double value = data_.value[sample];
+    if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).At(value, reading);
     if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.At(value, reading);
     const double per_level = 1 / noise_.resolution;
     const double position = (value - reading) * per_level;
@@ -208,7 +210,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     }
     double deviance = 0;
     for (int i = 0; i < count; ++i) {
-      const SampleLikelihood sample = At(data_.value[first + i], readings[i]);
+      const SampleLikelihood sample = At(first + i, readings[i]);
       deviance += sample.deviance;
       const double root_weight = std::sqrt(sample.weight);
       residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;
