@@ -90,7 +90,7 @@ CoverageScenario OnTicks(std::string name, std::string description) {
   scenario.name = std::move(name);
   scenario.description = std::move(description);
   SyntheticOptions& run = scenario.run;
-  run.sampling = Sampling::kEvents;
+  run.rows = RowTiming::kEvents;
   run.resolution = 2 * kPi / 2400;
   run.noise = 0.05 * run.resolution;
   run.time_noise = 1.3e-4;
@@ -111,7 +111,7 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
 
 /// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
 CoverageScenario Sampled(CoverageScenario scenario) {
-  scenario.run.sampling = Sampling::kEvenOfEvents;
+  scenario.run.rows = RowTiming::kEvenOfEvents;
   scenario.run.time_noise = 0;
   scenario.rule.lowest = 0;
   scenario.rule.highest = 1;

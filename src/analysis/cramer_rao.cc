@@ -92,8 +92,8 @@ Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitiviti
 /// The information of the parameters, then possibly of the noise's size; none where it is not known in closed form.
 std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
                                            const Eigen::VectorXd& time) {
-  if (truth.sampling == Sampling::kEvenOfEvents) return std::nullopt;
-  if (truth.sampling == Sampling::kEvents) return EdgeInformation(truth, at, time);
+  if (truth.rows == RowTiming::kEvenOfEvents) return std::nullopt;
+  if (truth.rows == RowTiming::kEvents) return EdgeInformation(truth, at, time);
   const bool has_levels = truth.resolution > 0;
   const bool correlated = truth.noise_correlation != 0;
   const bool student = truth.noise_freedom > 0;

@@ -188,9 +188,7 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
   return result;
 }
 
-NoiseModel Parts::NoiseOf(const FitReport& fit) const {
-  return NoiseBetween(fit, low_, high_);
-}
+NoiseModel Parts::NoiseOf(const FitReport& fit) const { return NoiseBetween(fit, low_, high_); }
 
 double Parts::Amplitude(double time) const {
   if (!motion_) return 0;

@@ -139,7 +139,8 @@ class Replicas {
   double Shown(double value, double other) const {
     const double q = problem_.resolution;
     const bool edges = solution_.noise.family == NoiseFamily::kEdges;
-    if (q > 0 && (edges ? solution_.noise.IsSilence(other) : parametric_)) value = other + q * std::round((value - other) / q);
+    if (q > 0 && (edges ? solution_.noise.IsSilence(other) : parametric_))
+      value = other + q * std::round((value - other) / q);
     const double half = problem_.resolution > 0 ? 0.5 * q : 0.0;
     return std::clamp(value, problem_.noise.low - half, problem_.noise.high + half);
   }

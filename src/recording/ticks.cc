@@ -46,10 +46,11 @@ bool BeginsHeld(const Recording& recording) {
 }
 
 Warning NoteOf(Index silences) {
-  return {"event_driven", "a row stands only where the count changes: each is taken as the edge of its count, crossed "
-                          "at its stamp, and the angle as within its count in " +
-                              std::to_string(silences) +
-                              " silences at turning points and rest; --noise gaussian takes the rows for samples"};
+  return {"event_driven",
+          "a row stands only where the count changes: each is taken as the edge of its count, crossed "
+          "at its stamp, and the angle as within its count in " +
+              std::to_string(silences) +
+              " silences at turning points and rest; --noise gaussian takes the rows for samples"};
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ constexpr std::array<SimulationFlag<double>, 9> kSimulationNumbers = {
      {"noise_freedom", &SimulationFlags::noise_freedom},
      {"time_noise", &SimulationFlags::time_noise},
      {"resolution", &SimulationFlags::resolution}}};
-constexpr std::array<SimulationFlag<bool>, 1> kSimulationSwitches = {{{"event_driven", &SimulationFlags::event_driven}}};
+constexpr std::array<SimulationFlag<bool>, 1> kSimulationSwitches = {
+    {{"event_driven", &SimulationFlags::event_driven}}};
 constexpr std::array<SimulationFlag<std::uint64_t>, 1> kSimulationWholes = {{{"seed", &SimulationFlags::seed}}};
 
 constexpr std::array<CalibrationFlag<std::string>, 1> kCalibrationTexts = {

@@ -217,7 +217,7 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
   synthetic.duration = flags.duration;
   synthetic.sample_rate = flags.rate;
   synthetic.jitter = flags.jitter;
-  synthetic.sampling = flags.event_driven ? Sampling::kEvents : Sampling::kEven;
+  synthetic.rows = flags.event_driven ? RowTiming::kEvents : RowTiming::kEven;
   synthetic.time_noise = flags.time_noise;
   synthetic.seed = flags.seed;
   return {};

@@ -127,7 +127,7 @@ void ReadEncoder(const Trajectory& trajectory, const SyntheticOptions& options, 
                  Recording& recording) {
   const std::vector<CountChange> changes = CountChanges(trajectory, options, instants[instants.size() - 1]);
   const double first = std::round((trajectory.Angle(options.start_time) + options.zero) / options.resolution);
-  if (options.sampling == Sampling::kEvents) {
+  if (options.rows == RowTiming::kEvents) {
     ReadEvents(changes, options, first, recording);
   } else {
     ReadEvenly(changes, options, first, instants, recording);

@@ -119,15 +119,16 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
 /// Only an encoder of an angle has events; errors of an edge that is as far as the next one would be nonsense.
 Result<void> CheckEvents(const SyntheticOptions& options) {
   constexpr double kLargestNoise = 0.2;  // of a count
-  const bool even = options.sampling == Sampling::kEven;
-  if (options.time_noise != 0 && options.sampling != Sampling::kEvents)
+  const bool even = options.rows == RowTiming::kEven;
+  if (options.time_noise != 0 && options.rows != RowTiming::kEvents)
     return BadOption("time_noise", options.time_noise, "0 unless rows are events");
   if (even) return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
   const bool plain = options.quantity == Quantity::kAngle && !options.range && options.jitter == 0 &&
                      options.noise_correlation == 0 && options.noise_freedom == 0;
   if (!plain) {
-    return Error(StatusCode::kInvalidArgument,
-                 "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
+    return Error(
+        StatusCode::kInvalidArgument,
+        "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
   }
   if (!(options.resolution > 0)) return BadOption("resolution", options.resolution, "positive where rows are events");
   if (options.noise > kLargestNoise * options.resolution)
@@ -252,7 +253,7 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   recording.unit = is_angle ? "rad" : "rad/s";
   recording.resolution = options.resolution;
   recording.range = options.range;
-  if (options.sampling != Sampling::kEven) {
+  if (options.rows != RowTiming::kEven) {
     const Eigen::VectorXd instants = recording.time;
     ReadEncoder(*trajectory, options, instants, recording);
     return MakeRecording(std::move(recording));

@@ -101,7 +101,7 @@ SyntheticOptions Encoder(std::uint64_t seed) {
   run.zero = 0.0123;
   run.duration = 12;
   run.sample_rate = 1000;
-  run.sampling = Sampling::kEvents;
+  run.rows = RowTiming::kEvents;
   run.resolution = kResolution;
   run.noise = 0.05 * kResolution;
   run.time_noise = 1e-4;
@@ -145,7 +145,7 @@ TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
     const Recording ticks = Must(SimulateRecording(run));
     events += squares(ticks, NoiseChoice::kAuto);
     counts += squares(ticks, NoiseChoice::kGaussian);
-    run.sampling = Sampling::kEvenOfEvents;
+    run.rows = RowTiming::kEvenOfEvents;
     sampled += squares(Must(SimulateRecording(run)), NoiseChoice::kAuto);
   }
   for (int i = 0; i < 3; ++i) {
@@ -156,7 +156,7 @@ TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
 
 TEST(EdgeNoise, IsRefusedForRowsThatAreNoEvents) {
   SyntheticOptions run = Encoder(1);
-  run.sampling = Sampling::kEvenOfEvents;
+  run.rows = RowTiming::kEvenOfEvents;
   run.time_noise = 0;
   FitOptions options;
   options.noise = NoiseChoice::kEdges;

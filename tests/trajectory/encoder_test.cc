@@ -24,7 +24,7 @@ SyntheticOptions Undamped() {
   options.initial_angle = 0.3;
   options.duration = 4;
   options.resolution = 0.01;
-  options.sampling = Sampling::kEvents;
+  options.rows = RowTiming::kEvents;
   return options;
 }
 
@@ -77,7 +77,7 @@ TEST(SimulateRecording, ReadsTheSameEncoderAtEvenTimes) {
   SyntheticOptions options = Undamped();
   options.noise = 5e-4;
   const Recording events = Simulated(options);
-  options.sampling = Sampling::kEvenOfEvents;
+  options.rows = RowTiming::kEvenOfEvents;
   options.sample_rate = 1000;
   const Recording even = Simulated(options);
   ASSERT_EQ(even.size(), 4000);
@@ -100,9 +100,10 @@ TEST(SimulateRecording, RefusesEventsOfWhatIsNoEncoder) {
             "resolution is 0; it must be positive where rows are events");
   EXPECT_EQ(refused([](SyntheticOptions& o) { o.noise = 0.005; }),
             "noise is 0.005; it must be at most a fifth of the resolution where rows are events");
-  EXPECT_THAT(refused([](SyntheticOptions& o) { o.jitter = 0.001; }), HasSubstr("rows of events are those of an encoder"));
+  EXPECT_THAT(refused([](SyntheticOptions& o) { o.jitter = 0.001; }),
+              HasSubstr("rows of events are those of an encoder"));
   EXPECT_EQ(refused([](SyntheticOptions& o) {
-              o.sampling = Sampling::kEven;
+              o.rows = RowTiming::kEven;
               o.time_noise = 0.001;
             }),
             "time_noise is 0.001; it must be 0 unless rows are events");

@@ -16,7 +16,8 @@ namespace pendulum {
 Recording WithEdges(Recording recording, const FitOptions& options);
 
 /// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each; rad/s.
-Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& readings);
+Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
+                        const Eigen::Ref<const Eigen::VectorXd>& readings);
 
 /// Standard deviation of the stamps over that of the edges [s/rad]: of what both add to the variance of a residual,
 /// σ² (1 + (ratio · rate)²), the likeliest for the differences of successive residuals of edges, which a slow misfit

@@ -53,8 +53,8 @@ struct NoiseLikelihood {
   double mixed = 0;                               ///< -∂²l/∂m∂λ
 };
 
-/// The noise of the samples of one recording (MODEL.md eq. (26) to (28), (82)). A reading at an end of the sensor's range is
-/// censored: it says that the value is there or beyond.
+/// The noise of the samples of one recording (MODEL.md eq. (26) to (28), (82)). A reading at an end of the sensor's
+/// range is censored: it says that the value is there or beyond.
 struct NoiseModel {
   static constexpr double kHuberWidth = 1.345;  ///< In σ.
   static constexpr double kStudentFreedom = 4;

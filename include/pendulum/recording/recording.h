@@ -26,7 +26,7 @@ struct Recording {
   Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
   Eigen::VectorXd value;     ///< N x 1, rad or rad/s whatever the unit; counts or volts unless is_calibrated().
   double resolution = 0;  ///< Spacing of the values the sensor can give, in the unit of value; 0 when unknown or none.
-  std::string resolution_source;     ///< Who says so: "given" by the user, the "file", or "found" in the values.
+  std::string resolution_source;  ///< Who says so: "given" by the user, the "file", or "found" in the values.
   /// Of events (TakeEdges): one of the edges between counts, in the unit of value. A reading whole resolutions from it
   /// is the edge that was crossed at its time; one halfway between two says only that the value lies between them.
   std::optional<double> edge;

@@ -20,7 +20,7 @@ struct CountChange {
 /// same ones however the encoder is read. Requires a resolution and a noise that is small against it.
 std::vector<CountChange> CountChanges(const Trajectory& trajectory, const SyntheticOptions& options, double end);
 
-/// Rows of an encoder as options.sampling says; `instants` are those of even sampling, of which events take first and
+/// Rows of an encoder as options.rows says; `instants` are those of even sampling, of which events take first and
 /// last. The stamps of events have normal errors of options.time_noise and increase all the same. Nothing else of the
 /// recording is set.
 void ReadEncoder(const Trajectory& trajectory, const SyntheticOptions& options, const Eigen::VectorXd& instants,

@@ -13,7 +13,7 @@
 namespace pendulum {
 
 /// When a recording has a row.
-enum class Sampling {
+enum class RowTiming {
   kEven,          ///< At even times.
   kEvents,        ///< When the count of an encoder changes, and at the start.
   kEvenOfEvents,  ///< At even times, of the same encoder with the same errors of its edges.
@@ -40,9 +40,9 @@ struct SyntheticOptions {
   double noise_correlation = 0;  ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
-  std::optional<SensorRange> range;  ///< rad or rad/s; none is unlimited.
-  Sampling sampling = Sampling::kEven;  ///< Of events `noise` is the error of each crossing of an edge.
-  double time_noise = 0;                ///< Standard deviation of the error of an event's stamp [s].
+  std::optional<SensorRange> range;   ///< rad or rad/s; none is unlimited.
+  RowTiming rows = RowTiming::kEven;  ///< Of events `noise` is the error of each crossing of an edge.
+  double time_noise = 0;              ///< Standard deviation of the error of an event's stamp [s].
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
@@ -56,8 +56,8 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 
 /// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
 /// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. A seed gives the
-/// same everywhere, and the same noise whatever the jitter, and whether events are sampled evenly; the noise is stationary, of standard deviation `noise` or,
-/// for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
+/// same everywhere, and the same noise whatever the jitter, and whether events are sampled evenly; the noise is
+/// stationary, of standard deviation `noise` or, for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
 /// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);
