@@ -76,9 +76,9 @@ TEST(SimulateRecording, ScattersEdgesAndStampsAsAsked) {
 TEST(SimulateRecording, ReadsTheSameEncoderAtEvenTimes) {
   SyntheticOptions options = Undamped();
   options.noise = 5e-4;
+  options.sample_rate = 1000;
   const Recording events = Simulated(options);
   options.rows = RowTiming::kEvenOfEvents;
-  options.sample_rate = 1000;
   const Recording even = Simulated(options);
   ASSERT_EQ(even.size(), 4000);
   Eigen::Index event = 0;
