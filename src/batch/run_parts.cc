@@ -26,6 +26,7 @@ Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::op
   one.samples = read.size();
   // Readings far apart in time do not resemble their neighbours, which repairs rest on.
   one.recording = IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), fit);
+  one.samples = std::max(one.samples, one.recording.size());  // silences between events
   auto swings = ChooseSwings(one.recording, choice, rig);
   if (!swings) return tl::unexpected(swings.error());
   one.swings = *std::move(swings);
@@ -83,7 +84,7 @@ void AddSampling(const FreeSwing& swing, const Recording& used, RunReport& repor
       swing.undersampled && !report.fits.empty() && ExitCode(report.fits[report.MainFit()].termination) == 0;
   if (expected && told) expected = 0.5 / swing.half_period;
   report.sampling = DescribeSampling(used, seen, expected);
-  if (swing.undersampled) return;
+  if (swing.undersampled || used.edge) return;  // events have no sampling rate
   std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
 }
 
