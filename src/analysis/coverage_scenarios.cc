@@ -113,6 +113,7 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
 CoverageScenario Sampled(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenOfEvents;
   scenario.run.time_noise = 0;
+  scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior of so many samples takes seconds
   scenario.rule.lowest = 0;
   scenario.rule.highest = 1;
   return scenario;

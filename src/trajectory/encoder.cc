@@ -33,8 +33,10 @@ double Root(const Function& f, double a, double b) {
 class Counter {
  public:
   Counter(const Trajectory& trajectory, const SyntheticOptions& options)
-      : trajectory_(trajectory), options_(options), generator_(options.seed) {
-    count_ = std::round(Position(options.start_time));
+      : trajectory_(trajectory),
+        options_(options),
+        generator_(options.seed),
+        count_(std::round(Position(options.start_time))) {
     DrawEdges();
   }
 
@@ -67,9 +69,11 @@ class Counter {
   void Move(double from, double to) {
     if (!(from < to)) return;
     const double last = Position(to);
-    const double direction = last > Position(from) ? 1 : -1;
-    while (direction * (last - edges_[direction > 0]) > 0) {
-      const double edge = edges_[direction > 0];
+    const bool up = last > Position(from);
+    const double direction = up ? 1 : -1;
+    const double& ahead = up ? edges_[1] : edges_[0];
+    while (direction * (last - ahead) > 0) {
+      const double edge = ahead;
       const bool beyond = direction * (Position(from) - edge) >= 0;
       if (!beyond) from = Root([&](double t) { return Position(t) - edge; }, from, to);
       count_ += direction;
@@ -81,7 +85,7 @@ class Counter {
   const Trajectory& trajectory_;
   const SyntheticOptions& options_;
   std::mt19937_64 generator_;
-  double count_ = 0;
+  double count_;
   std::array<double, 2> edges_{};  // below and above, in counts
   std::vector<CountChange> changes_;
 };

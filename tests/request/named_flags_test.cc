@@ -33,9 +33,9 @@ TEST(FlagNames, AreThoseOfTheTools) {
               UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
                                    "prior", "time_column", "value_column", "unit", "sample_rate_hz", "resolution",
                                    "range", "noise", "loss", "interval", "seed", "closed_form_only"));
-  EXPECT_THAT(SimulationFlagNames(),
-              IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
-                            "noise_correlation", "noise_freedom", "resolution", "range", "seed"}));
+  EXPECT_THAT(SimulationFlagNames(), IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter",
+                                                   "start_time", "noise", "noise_correlation", "noise_freedom",
+                                                   "resolution", "event_driven", "time_noise", "range", "seed"}));
   EXPECT_THAT(SimulationFlagNames(), Not(Contains("out")));
   EXPECT_THAT(CalibrationFlagNames(), UnorderedElementsAre("order", "input_range", "bits"));
 }
@@ -136,6 +136,8 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
                                         {"noise_correlation", "0.5"},
                                         {"noise_freedom", "4"},
                                         {"resolution", "0.0625"},
+                                        {"event_driven", "true"},
+                                        {"time_noise", "0.03125"},
                                         {"seed", "18446744073709551615"}});
   ASSERT_TRUE(flags) << flags.error().message;
   EXPECT_EQ(flags->model, "drag");
@@ -152,6 +154,8 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
   EXPECT_EQ(flags->noise_correlation, 0.5);
   EXPECT_EQ(flags->noise_freedom, 4);
   EXPECT_EQ(flags->resolution, 0.0625);
+  EXPECT_TRUE(flags->event_driven);
+  EXPECT_EQ(flags->time_noise, 0.03125);
   EXPECT_EQ(flags->seed, 18446744073709551615U);
 }
 
