@@ -74,8 +74,8 @@ Autocorrelation PooledMemory(const Recording& used, const Windows& windows, cons
         linear.jacobian(Eigen::all, linear.free);
     columns += linear.influence.cols();
   }
-  return MemoryOf(used.clock_scale * used.time.segment(first, count), used.value.segment(first, count), windows.noise,
-                  readings.segment(first, count), jacobian, stop);
+  return MemoryOf(used.clock_scale * used.time.segment(first, count), used.value.segment(first, count),
+                  windows.noise.From(first), readings.segment(first, count), jacobian, stop);
 }
 
 /// How a window's estimate of parameter k answers to what it holds at the whole fit's estimates.

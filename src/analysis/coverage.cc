@@ -11,6 +11,7 @@
 #include "pendulum/analysis/cramer_rao.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/parallel.h"
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/fit.h"
 #include "pendulum/fitting/fit_jointly.h"
 
@@ -88,7 +89,7 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
     Result<Recording> recording = SimulateRecording(run);
     if (!recording) return tl::unexpected(recording.error());
     simulated.push_back({std::move(run), recording->time});
-    recordings.push_back(*std::move(recording));
+    recordings.push_back(WithEdges(*std::move(recording), scenario.fit));
     if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
   }
   const std::vector<double> truth = TrueParameters(simulated.front().truth);
@@ -105,7 +106,7 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   const SyntheticOptions run = ScenarioRun(scenario, seed);
   const Result<Recording> recording = SimulateRecording(run);
   if (!recording) return tl::unexpected(recording.error());
-  const Result<FitReport> report = FitRecording(*recording, scenario.fit);
+  const Result<FitReport> report = FitRecording(WithEdges(*recording, scenario.fit), scenario.fit);
   return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
 }
 

@@ -85,6 +85,42 @@ CoverageScenario Saturated() {
   return scenario;
 }
 
+/// An encoder of 2400 counts a turn, in motion when the recording begins, with a row for each change of its count. Its
+/// edges err by a twentieth of a count, its stamps by as much at half the largest rate.
+CoverageScenario OnTicks(std::string name, std::string description) {
+  CoverageScenario scenario = Moving();
+  scenario.name = std::move(name);
+  scenario.description = std::move(description);
+  SyntheticOptions& run = scenario.run;
+  run.rows = RowTiming::kEvents;
+  run.resolution = 2 * kPi / 2400;
+  run.noise = 0.05 * run.resolution;
+  run.time_noise = 1.3e-4;
+  run.sample_rate = 1000;
+  return scenario;
+}
+
+/// So few counts that turning points and rest are slow against a count.
+CoverageScenario OnFewTicks(std::string name, std::string description) {
+  CoverageScenario scenario = OnTicks(std::move(name), std::move(description));
+  scenario.run.initial_angle = 0.08;
+  scenario.run.initial_rate = 0;
+  scenario.run.resolution = 2 * kPi / 600;
+  scenario.run.noise = 0.05 * scenario.run.resolution;
+  scenario.run.duration = 8;
+  return scenario;
+}
+
+/// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
+CoverageScenario Sampled(CoverageScenario scenario) {
+  scenario.run.rows = RowTiming::kEvenOfEvents;
+  scenario.run.time_noise = 0;
+  scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior of so many samples takes seconds
+  scenario.rule.lowest = 0;
+  scenario.rule.highest = 1;
+  return scenario;
+}
+
 /// In motion when the recording begins, seen by another sensor whose readings have that noise. What of the sensor is
 /// drawn for each recording, as it is known beforehand, ScenarioRun has.
 CoverageScenario Seen(std::string name, std::string description, Quantity quantity, SensorKind kind,
@@ -93,7 +129,8 @@ CoverageScenario Seen(std::string name, std::string description, Quantity quanti
   scenario.name = std::move(name);
   scenario.description = std::move(description);
   SyntheticOptions& run = scenario.run;
-  run.initial_angle = -0.5;
+  run.initial_angle = 0.5;  // on the side that the fit takes for positive where the sensor tells none
+  run.initial_rate = -1.5;
   run.quantity = quantity;
   run.sensor.kind = kind;
   if (kind == SensorKind::kAcceleration) run.sensor.gravity = kStandardGravity;
@@ -171,6 +208,10 @@ std::vector<CoverageScenario> CoverageScenarios() {
            Quantity::kPosition, SensorKind::kCoordinate, {0, 640, 400}, 0.5),
       Seen("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc, {0, 640, 120, 400},
            0.5),
+      OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
+      OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
+      Sampled(OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
+      Sampled(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
   };
 }
 

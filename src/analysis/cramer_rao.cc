@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/reading_information.h"
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/trajectory_cost.h"
 
 namespace pendulum {
@@ -80,8 +81,19 @@ Eigen::MatrixXd StudentInformation(const SyntheticOptions& truth, const Sensitiv
   return weight * (at.jacobian.transpose() * at.jacobian);
 }
 
+/// Of events: edges and their stamps have normal errors. The first row is none.
+Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitivities& at, const Eigen::VectorXd& time) {
+  const Eigen::ArrayXd late = truth.time_noise * RatesOf(time, at.readings).array();
+  Eigen::VectorXd weight = (truth.noise * truth.noise + late.square()).inverse();
+  weight[0] = 0;
+  return at.jacobian.transpose() * weight.asDiagonal() * at.jacobian;
+}
+
 /// The information of the parameters, then possibly of the noise's size; none where it is not known in closed form.
-std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at) {
+std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
+                                           const Eigen::VectorXd& time) {
+  if (truth.rows == RowTiming::kEvenOfEvents) return std::nullopt;
+  if (truth.rows == RowTiming::kEvents) return EdgeInformation(truth, at, time);
   const bool has_levels = truth.resolution > 0;
   const bool correlated = truth.noise_correlation != 0;
   const bool student = truth.noise_freedom > 0;
@@ -119,7 +131,7 @@ std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth
   std::vector<std::optional<double>> bounds(count);
   if (truth.sensor.kind != SensorKind::kDirect) return bounds;  // they would have to know what is known beforehand
   const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
-  const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
+  const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at, time) : std::nullopt;
   if (!information) return bounds;
   const std::vector<std::optional<double>> all = BoundsOf(*information);
   std::copy_n(all.begin(), count, bounds.begin());
@@ -131,7 +143,7 @@ std::vector<std::optional<double>> SharedCramerRaoBounds(const std::vector<Simul
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(shared, shared);
   for (const auto& [truth, time] : runs) {
     const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
-    const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at) : std::nullopt;
+    const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at, time) : std::nullopt;
     if (!information) return std::vector<std::optional<double>>(static_cast<std::size_t>(shared));
     const Index own = information->rows() - shared;
     const Eigen::MatrixXd mixed = information->bottomLeftCorner(own, shared);

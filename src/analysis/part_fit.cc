@@ -46,6 +46,12 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   return options;
 }
 
+/// The noise of a fit whose sensor has this range.
+NoiseModel NoiseBetween(const FitReport& fit, double low, double high) {
+  const NoiseEstimate& noise = fit.noise;
+  return {noise.family, noise.sigma, noise.resolution, low, high, noise.edge, noise.stamp_ratio, noise.spread};
+}
+
 /// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its
 /// bound: near enough for a last step on the linear motion.
 bool IsNear(const PartFit& part, const NoiseModel& noise, const FitOptions& options) {
@@ -82,7 +88,7 @@ bool IsDrift(std::string_view name) { return name == kZeroDrift.name || name == 
 ReadingTerms TermsOf(const NoiseModel& noise, const VectorXd& value, const VectorXd& readings) {
   ReadingTerms terms{VectorXd(value.size()), VectorXd(value.size())};
   for (Index i = 0; i < value.size(); ++i) {
-    const NoiseLikelihood l = noise.LikelihoodAt(value[i], readings[i]);
+    const NoiseLikelihood l = noise.ForSample(i).LikelihoodAt(value[i], readings[i]);
     terms.score[i] = l.score;
     terms.information[i] = l.information;
   }
@@ -92,6 +98,8 @@ ReadingTerms TermsOf(const NoiseModel& noise, const VectorXd& value, const Vecto
 
 MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
                          const VectorXd& time, const MatrixXd& weights) {
+  if (noise.family == NoiseFamily::kEdges)
+    return CorrelatedSum(memory, time, terms.information.cwiseSqrt().asDiagonal() * weights);
   const MatrixXd correlated = CorrelatedSum(memory, time, weights);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(time.size()) * correlated;
   const double variance = noise.sigma * noise.sigma;
@@ -138,7 +146,7 @@ Parts::Parts(const Recording& used, const FitReport& fit, const FitOptions& opti
 }
 
 NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options) {
-  NoiseModel noise{fit.noise.family, fit.noise.sigma, fit.noise.resolution, -kInfinity, kInfinity};
+  NoiseModel noise = NoiseBetween(fit, -kInfinity, kInfinity);
   if (fit.noise.censored == 0) return noise;
   if (const Result<FitProblem> problem = MakeFitProblem(used, options)) {
     noise.low = problem->noise.low;
@@ -182,9 +190,7 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
   return result;
 }
 
-NoiseModel Parts::NoiseOf(const FitReport& fit) const {
-  return {fit.noise.family, fit.noise.sigma, fit.noise.resolution, low_, high_};
-}
+NoiseModel Parts::NoiseOf(const FitReport& fit) const { return NoiseBetween(fit, low_, high_); }
 
 double Parts::Amplitude(double time) const {
   if (!motion_) return 0;
@@ -225,7 +231,8 @@ Autocorrelation MemoryOf(const VectorXd& time, const VectorXd& value, const Nois
   constexpr double kDoubtful = 0.05;
   const VectorXd z = QuantileResiduals(noise, value, readings);
   if (LjungBoxP(z) > kDoubtful) return {};
-  return EstimateAutocorrelation(time, z, jacobian / noise.sigma, stop);
+  const VectorXd weight = noise.Deviations(jacobian.rows()).cwiseInverse();
+  return EstimateAutocorrelation(time, z, weight.asDiagonal() * jacobian, stop);
 }
 
 double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {

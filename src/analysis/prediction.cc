@@ -104,6 +104,11 @@ double ReadingVariance(const FitReport& fit) {
   const NoiseEstimate& noise = fit.noise;
   const double square = noise.sigma * noise.sigma;
   if (noise.family == NoiseFamily::kGaussian) return square;
+  if (noise.family == NoiseFamily::kEdges) {
+    if (!noise.spread) return square;
+    const auto edges = static_cast<Index>(noise.spread->size());
+    return square * Eigen::Map<const Eigen::ArrayXd>(noise.spread->data(), edges).square().mean();
+  }
   if (noise.family == NoiseFamily::kQuantized) return square + noise.resolution * noise.resolution / 12;
   const auto samples = static_cast<double>(fit.residual.size() - noise.censored);
   const auto free = static_cast<double>(fit.covariance_names.size());
@@ -129,7 +134,7 @@ void AddPart(const Task& task, const Part& part, const Eigen::VectorXd& predicte
              Sums& sums) {
   for (Index i = part.first; i < part.last; ++i) {
     const double measured = task.used.value[i];
-    if (task.noise.IsCensored(measured)) continue;
+    if (task.noise.IsCensored(measured) || task.noise.IsSilence(measured)) continue;
     const double square = (measured - predicted[i]) * (measured - predicted[i]);
     sums.squares += square;
     sums.standardized += square / variance[i];

@@ -25,7 +25,7 @@ Result<FitRun> FitBytes(RunOptions options, RunFiles files) {
   auto recording = ParseRecording(files.data.bytes, files.data.name, options.read);
   if (!recording) return tl::unexpected(recording.error());
   files.data.bytes = {};  // a long one fills the memory
-  auto swings = FindSwings(*std::move(recording), options.swing, std::move(rig));
+  auto swings = FindSwings(*std::move(recording), options.swing, std::move(rig), options.fit);
   if (!swings) return tl::unexpected(swings.error());
   return std::move(FitRuns(options, *std::move(swings)).front());
 }

@@ -8,13 +8,15 @@
 #include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/undersampled.h"
 #include "pendulum/recording/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 
 namespace pendulum {
 
-Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig) {
+Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig,
+                              const FitOptions& fit) {
   if (!rig && !read.rig_json.empty()) {
     auto own = ParseRig(read.rig_json, read.path + ": # rig");
     if (!own) return tl::unexpected(own.error());
@@ -23,7 +25,8 @@ Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::op
   ReadSwings one;
   one.samples = read.size();
   // Readings far apart in time do not resemble their neighbours, which repairs rest on.
-  one.recording = IsUndersampled(read, rig) ? std::move(read) : RepairValues(std::move(read));
+  one.recording = IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), fit);
+  one.samples = std::max(one.samples, one.recording.size());  // silences between events
   auto swings = ChooseSwings(one.recording, choice, rig);
   if (!swings) return tl::unexpected(swings.error());
   one.swings = *std::move(swings);
@@ -36,7 +39,7 @@ Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::op
 Result<ReadSwings> ReadOne(const RunOptions& options, const std::string& path, std::optional<Rig> rig) {
   auto read = ReadRecording(path, options.read);
   if (!read) return tl::unexpected(read.error());
-  return FindSwings(*std::move(read), options.swing, std::move(rig));
+  return FindSwings(*std::move(read), options.swing, std::move(rig), options.fit);
 }
 
 tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
@@ -81,7 +84,7 @@ void AddSampling(const FreeSwing& swing, const Recording& used, RunReport& repor
       swing.undersampled && !report.fits.empty() && ExitCode(report.fits[report.MainFit()].termination) == 0;
   if (expected && told) expected = 0.5 / swing.half_period;
   report.sampling = DescribeSampling(used, seen, expected);
-  if (swing.undersampled) return;
+  if (swing.undersampled || used.edge) return;  // events have no sampling rate
   std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
 }
 

@@ -43,8 +43,8 @@ class Replicas {
         tolerance_(TraceTolerance(MaxTraceError(problem, options), problem.start.amplitude)) {
     for (Index i = 0; i < residuals_.size(); ++i) {
       const double value = problem.data.value[static_cast<std::size_t>(i)];
-      residuals_[i] =
-          problem.noise.IsCensored(value) ? solution.noise.sigma * quantile_residuals[i] : value - solution.readings[i];
+      const bool by_quantile = problem.noise.IsCensored(value) || solution.noise.family == NoiseFamily::kEdges;
+      residuals_[i] = by_quantile ? solution.noise.sigma * quantile_residuals[i] : value - solution.readings[i];
     }
     Differentiate();
   }
@@ -64,7 +64,8 @@ class Replicas {
     FitProblem replica = problem_;
     std::seed_seq seeds{options_.seed & 0xffffffffU, options_.seed >> 32U, index};
     std::mt19937_64 generator(seeds);
-    const Eigen::VectorXd noise = Draw(generator);
+    const Eigen::VectorXd spread = solution_.noise.Deviations(residuals_.size()) / solution_.noise.sigma;
+    const Eigen::VectorXd noise = Draw(generator).cwiseProduct(spread);
     for (Index i = 0; i < noise.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       replica.data.value[at] = Shown(solution_.readings[i] + noise[i], problem_.data.value[at]);
@@ -137,7 +138,9 @@ class Replicas {
   /// What the sensor shows of a value: one of its levels, on which `other` stands, within its range.
   double Shown(double value, double other) const {
     const double q = problem_.resolution;
-    if (q > 0 && parametric_) value = other + q * std::round((value - other) / q);
+    const bool edges = solution_.noise.family == NoiseFamily::kEdges;
+    if (q > 0 && (edges ? solution_.noise.IsSilence(other) : parametric_))
+      value = other + q * std::round((value - other) / q);
     const double half = problem_.resolution > 0 ? 0.5 * q : 0.0;
     return std::clamp(value, problem_.noise.low - half, problem_.noise.high + half);
   }

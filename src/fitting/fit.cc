@@ -166,6 +166,7 @@ FitOptions AskAlike(const FitReport& fit, FitOptions options) {
   options.start = fit.start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
   if (fit.noise.family == NoiseFamily::kGaussian) options.noise = NoiseChoice::kGaussian;
   if (fit.noise.family == NoiseFamily::kQuantized) options.noise = NoiseChoice::kQuantized;
+  if (fit.noise.family == NoiseFamily::kEdges) options.noise = NoiseChoice::kEdges;
   return options;
 }
 

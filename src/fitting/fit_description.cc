@@ -75,6 +75,10 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
   noise.censored = problem.censored;
   noise.why = solution.noise_reason;
   noise.lag1_correlation = Lag1Correlation(z);
+  if (noise.family != NoiseFamily::kEdges) return noise;
+  noise.stamp_ratio = solution.noise.stamp_ratio;
+  noise.edge = solution.noise.edge;
+  noise.spread = solution.noise.spread;
   return noise;
 }
 
@@ -186,7 +190,8 @@ Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, 
   if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
   const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
   if (jacobian.rows() == 0) return {};
-  return EstimateAutocorrelation(problem.data.times(), z, jacobian / solution.noise.sigma, problem.data.stop);
+  const Eigen::VectorXd weight = solution.noise.Deviations(jacobian.rows()).cwiseInverse();
+  return EstimateAutocorrelation(problem.data.times(), z, weight.asDiagonal() * jacobian, problem.data.stop);
 }
 
 }  // namespace pendulum

@@ -140,6 +140,8 @@ TrajectoryData MakeData(const Recording& recording, const SensorModel& sensor, c
 void SetCensoring(const Recording& recording, FitProblem& problem) {
   problem.noise.sigma = problem.data.scale;
   problem.resolution = recording.resolution;
+  problem.noise.edge = recording.edge;
+  if (recording.edge) problem.noise.resolution = recording.resolution;
   if (!recording.range) return;
   constexpr double kRounding = 1e-6;
   const auto [low, high] = *recording.range;
@@ -183,11 +185,14 @@ bool NamesDrift(const FitOptions& options) {
 
 double FitProblem::RmsResidual(const Eigen::VectorXd& readings) const {
   double sum = 0;
+  double count = 0;
   for (Eigen::Index i = 0; i < readings.size(); ++i) {
     const double value = data.values()[i];
-    if (!noise.IsCensored(value)) sum += (value - readings[i]) * (value - readings[i]);
+    if (noise.IsCensored(value) || noise.IsSilence(value)) continue;
+    sum += (value - readings[i]) * (value - readings[i]);
+    ++count;
   }
-  return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(readings.size() - censored, 1)));
+  return std::sqrt(sum / std::max(count, 1.0));
 }
 
 double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
@@ -222,9 +227,17 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
 namespace {
 
 Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
-  if (options.noise != NoiseChoice::kQuantized) return {};
+  const bool edges = options.noise == NoiseChoice::kEdges;
+  if (!edges && options.noise != NoiseChoice::kQuantized) return {};
   if (options.loss != Loss::kNone) {
-    return Error(StatusCode::kInvalidArgument, "--noise quantized and --loss exclude each other; give one of them");
+    return Error(StatusCode::kInvalidArgument, "--noise " + std::string(edges ? "edges" : "quantized") +
+                                                   " and --loss exclude each other; give one of them");
+  }
+  if (edges && recording.edge) return {};
+  if (edges) {
+    return Error(StatusCode::kInvalidArgument,
+                 "--noise edges needs rows that come only when the count changes, by one count mostly and at uneven "
+                 "times; those of this recording do not");
   }
   if (recording.resolution > 0) return {};
   return Error(

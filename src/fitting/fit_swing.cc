@@ -165,6 +165,7 @@ std::string TakeTurnsOut(Recording& used) {
   const double turns = std::abs(mean) > 1.5 * kPi ? std::round(mean / (2 * kPi)) : 0;
   if (turns == 0) return "";
   used.value.array() -= 2 * kPi * turns;
+  if (used.edge) *used.edge -= 2 * kPi * turns;
   if (used.range) used.range = SensorRange{used.range->low - 2 * kPi * turns, used.range->high - 2 * kPi * turns};
   if (used.calibration) used.calibration->coefficients[0] -= 2 * kPi * turns / used.calibration->RadFromUnit();
   return NumberText(turns) + " whole turns were taken out of the readings: the zero is that of the swing's own turn";

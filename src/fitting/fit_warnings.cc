@@ -98,7 +98,8 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // outliers apart
-  if (report.noise.family == NoiseFamily::kQuantized || !(rms < kQuiet * recording.resolution)) return;
+  const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
+  if (of_levels || !(rms < kQuiet * recording.resolution)) return;
   warnings.push_back(
       {"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
                            " resolutions: the noise is too small for rounding to average out, and the "

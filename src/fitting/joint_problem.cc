@@ -36,7 +36,10 @@ NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
   NoiseModel noise = problem.noise;
   noise.family = alone.noise.family;
   noise.sigma = std::max(alone.noise.sigma, problem.negligible_sigma());
-  noise.resolution = noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
+  const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kEdges;
+  noise.resolution = has_levels ? problem.resolution : 0;
+  noise.stamp_ratio = alone.noise.stamp_ratio;
+  noise.spread = alone.noise.spread;
   return noise;
 }
 

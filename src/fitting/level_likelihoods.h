@@ -32,9 +32,9 @@ class LevelLikelihoods {
     for (int i = -1; i <= static_cast<int>(cells_) + 1; ++i) table_.push_back(endless.LikelihoodAt(0, i / per_length_));
   }
 
-  NoiseLikelihood At(double y, double m) const {
+  NoiseLikelihood At(double y, double m, Eigen::Index sample = 0) const {
     const double position = std::abs(m - y) * per_length_;
-    if (!(position < cells_) || noise_.IsCensored(y)) return noise_.LikelihoodAt(y, m);
+    if (!(position < cells_) || noise_.IsCensored(y)) return noise_.ForSample(sample).LikelihoodAt(y, m);
     const auto cell = static_cast<std::size_t>(position);
     const double s = position - static_cast<double>(cell);
     // Lagrange's, for values at -1, 0, 1 and 2.

@@ -8,6 +8,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/edge_noise.h"
 
 namespace pendulum {
 namespace {
@@ -51,11 +52,14 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
 /// One σ after the other, each with the parameters that belong to it.
 void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 15;
-  constexpr double kSame = 3e-3;  // of σ: some tenths of its standard error at most
+  constexpr int kSpreadRounds = 3;  // in which edges learn what their stamps' errors are
+  constexpr double kSame = 3e-3;    // of σ: some tenths of its standard error at most
   const auto value = problem.data.values();
-  const double smallest = std::max(kSmallestSigma * problem.resolution, problem.negligible_sigma());
+  const bool edges = solution.noise.family == NoiseFamily::kEdges;
+  const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
   for (int round = 0; round < kMostRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
+    if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
     const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
     const double change = std::abs(std::log(sigma / solution.noise.sigma));
     solution.noise.sigma = sigma;
@@ -121,8 +125,8 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
     return GaussianLogLikelihood((value - solution.readings).squaredNorm(), samples) +
            samples * std::log(DensityUnit(problem.resolution));
   }
-  const double densities =
-      solution.noise.family == NoiseFamily::kQuantized ? 0.0 : samples - static_cast<double>(problem.censored);
+  const auto intervals = std::ranges::count_if(value, [&](double y) { return solution.noise.IsInterval(y); });
+  const double densities = samples - static_cast<double>(intervals);
   return LogLikelihood(solution.noise, value, solution.readings) +
          densities * std::log(DensityUnit(problem.resolution));
 }
@@ -145,6 +149,18 @@ ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double res
           "the residuals are " + NumberText(ratio, 2) + " resolutions: rounding drowns in the noise"};
 }
 
+namespace {
+
+ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, double residual_std_dev) {
+  if (options.noise == NoiseChoice::kEdges) return {NoiseFamily::kEdges, "asked for by --noise"};
+  if (options.noise == NoiseChoice::kAuto && options.loss == Loss::kNone && problem.noise.edge) {
+    return {NoiseFamily::kEdges, "rows come only when the count changes: the readings are the edges between counts"};
+  }
+  return ChooseNoise(options, problem.resolution, residual_std_dev);
+}
+
+}  // namespace
+
 /// Parameters (Solve) and σ in turn, until σ stays the same. The other minima that came near are solved as well, and
 /// the likeliest wins. Of Gaussian noise nothing is solved again unless priors weigh in. Below kSmallestSigma the
 /// likelihood has no maximum inside, and SamplePosterior has the say.
@@ -155,15 +171,16 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   const auto samples = static_cast<double>(problem.data.time.size());
   const bool traced = cost.Readings(solution.parameters, &solution.readings, nullptr);
   const double rms = traced ? problem.RmsResidual(solution.readings) : problem.data.scale;
-  ChosenNoise chosen = ChooseNoise(options, problem.resolution, rms);
+  ChosenNoise chosen = ChooseNoiseOf(problem, options, rms);
   solution.noise.family = chosen.family;
   solution.noise_reason = std::move(chosen.why);
-  solution.noise.resolution = solution.noise.family == NoiseFamily::kQuantized ? problem.resolution : 0;
+  const bool quantized = solution.noise.family == NoiseFamily::kQuantized;
+  solution.noise.resolution = quantized || solution.noise.family == NoiseFamily::kEdges ? problem.resolution : 0;
   if (solution.noise.IsPlain()) {
     SettleGaussian(cost, problem, solution);
   } else {
     const std::vector<Minimum> near = NearMinima(solution, samples);
-    const double rounding = solution.noise.resolution / std::sqrt(12.0);
+    const double rounding = quantized ? solution.noise.resolution / std::sqrt(12.0) : 0;
     solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
     solution.noise.sigma = std::max(solution.noise.sigma, problem.negligible_sigma());
     cost.set_noise(solution.noise);

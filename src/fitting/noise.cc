@@ -96,6 +96,7 @@ std::string_view NoiseFamilyName(NoiseFamily family) {
     case NoiseFamily::kQuantized: return "quantized";
     case NoiseFamily::kHuber: return "huber";
     case NoiseFamily::kStudent: return "student";
+    case NoiseFamily::kEdges: return "edges";
   }
   return "gaussian";
 }
@@ -236,12 +237,12 @@ NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
     if (IsCensored(y)) return OfRobustEnd(*this, y, m);
     return family == NoiseFamily::kHuber ? OfHuber(y - m, sigma) : OfStudent(y - m, sigma);
   }
-  if (family == NoiseFamily::kQuantized || IsCensored(y)) return OfInterval(IntervalOf(*this, y), m, sigma);
+  if (IsInterval(y)) return OfInterval(IntervalOf(*this, y), m, sigma);
   return OfGaussian(y - m, sigma);
 }
 
 SampleLikelihood NoiseModel::At(double y, double m) const {
-  if (family == NoiseFamily::kGaussian && !IsCensored(y)) {
+  if (!IsRobust() && !IsInterval(y)) {
     const double z = (y - m) / sigma;
     return {z * z, z / sigma, 1 / (sigma * sigma)};
   }
@@ -273,7 +274,7 @@ NoiseModel::Distribution NoiseModel::DistributionAt(double y, double m) const {
     return IsRobust() ? RobustBelow(family, u).probability : 0.5 * std::erfc(-kRootHalf * u);
   };
   if (IsCensored(y)) return y >= high ? Distribution{below(high), 1} : Distribution{0, below(low)};
-  if (family != NoiseFamily::kQuantized) return {below(y), below(y)};
+  if (!IsInterval(y)) return {below(y), below(y)};
   const Interval interval = IntervalOf(*this, y);
   return {below(interval.from), below(interval.to)};
 }
@@ -282,7 +283,7 @@ double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vect
                      const Eigen::Ref<const Eigen::VectorXd>& readings) {
   const LevelLikelihoods likelihoods(noise, value.size());
   double sum = 0;
-  for (Eigen::Index i = 0; i < value.size(); ++i) sum += likelihoods.At(value[i], readings[i]).log;
+  for (Eigen::Index i = 0; i < value.size(); ++i) sum += likelihoods.At(value[i], readings[i], i).log;
   return sum;
 }
 
@@ -304,7 +305,7 @@ SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vector
       std::erf(kRootHalf * kWidth) - 2 * kWidth * Density(kWidth) + kWidth * kWidth * std::erfc(kRootHalf * kWidth);
   const LevelLikelihoods likelihoods(noise, value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
-    const NoiseLikelihood l = likelihoods.At(value[i], readings[i]);
+    const NoiseLikelihood l = likelihoods.At(value[i], readings[i], i);
     const bool huber = noise.family == NoiseFamily::kHuber;
     if (huber && noise.IsCensored(value[i])) continue;
     const double psi = noise.sigma * l.score;

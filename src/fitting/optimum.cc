@@ -40,7 +40,7 @@ SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
   const LevelLikelihoods likelihoods(solution.noise, values.size());
   for (Eigen::VectorXd* column : {&terms.score, &terms.information, &terms.mixed}) column->resize(values.size());
   for (Index i = 0; i < values.size(); ++i) {
-    const NoiseLikelihood l = likelihoods.At(values[i], solution.readings[i]);
+    const NoiseLikelihood l = likelihoods.At(values[i], solution.readings[i], i);
     terms.score[i] = l.score;
     terms.information[i] = l.information;
     terms.mixed[i] = l.mixed;
@@ -62,6 +62,10 @@ Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const
                        const Eigen::MatrixXd& jacobian, const Autocorrelation& correlation) {
   if (noise.IsRobust() && problem.censored > 0) {
     return CorrelatedSum(correlation, problem.data.times(), terms.score.cwiseAbs().asDiagonal() * jacobian);
+  }
+  if (noise.family == NoiseFamily::kEdges) {
+    const Eigen::VectorXd deviation = terms.information.cwiseSqrt();  // of the scores: each edge its own
+    return CorrelatedSum(correlation, problem.data.times(), deviation.asDiagonal() * jacobian);
   }
   const Eigen::MatrixXd correlated = CorrelatedSum(correlation, problem.data.times(), jacobian);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(jacobian.rows()) * correlated;

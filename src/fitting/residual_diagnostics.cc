@@ -110,7 +110,7 @@ Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<cons
   const boost::math::normal normal;
   Eigen::VectorXd residuals(value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
-    const NoiseModel::Distribution u = noise.DistributionAt(value[i], readings[i]);
+    const NoiseModel::Distribution u = noise.ForSample(i).DistributionAt(value[i], readings[i]);
     const double place = u.below + uniform(generator) * (u.at - u.below);
     const double within = std::isfinite(place) ? std::clamp(place, kFarthest, 1 - kFarthest) : 0.5;
     residuals[i] = boost::math::quantile(normal, within);

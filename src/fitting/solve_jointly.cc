@@ -35,8 +35,8 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   const NoiseModel& noise = member.solution.noise;
   const double smallest = problem.negligible_sigma();
   if (!noise.IsPlain()) {
-    return LikeliestSigma(noise, problem.data.values(), member.solution.readings,
-                          std::max(kSmallestSigma * problem.resolution, smallest));
+    const double of_levels = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
+    return LikeliestSigma(noise, problem.data.values(), member.solution.readings, std::max(of_levels, smallest));
   }
   const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
   return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);

@@ -38,7 +38,7 @@ Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem
   for (Index i = 0; i < readings.size(); ++i) {
     const double value = problem.data.value[static_cast<std::size_t>(i)];
     input = calibration.Reading(value, input);
-    double power = solution.noise.At(value, readings[i]).weight * calibration.RadFromUnit();
+    double power = solution.noise.ForSample(i).At(value, readings[i]).weight * calibration.RadFromUnit();
     for (Index k = 0; k < size; ++k, power *= input) pull.col(k) += power * jacobian.row(i).transpose();
   }
   return pull;

@@ -59,6 +59,7 @@ Recording WithoutSamples(const Recording& recording) {
   copy.quantity = recording.quantity;
   copy.unit = recording.unit;
   copy.resolution = recording.resolution;
+  copy.edge = recording.edge;
   copy.range = recording.range;
   copy.clock_scale = recording.clock_scale;
   copy.clock_scale_std_dev = recording.clock_scale_std_dev;

@@ -84,16 +84,17 @@ Json SystematicJson(const FitReport& fit) {
 
 Json NoiseJson(const FitReport& fit, const DataSummary& data) {
   const NoiseEstimate& noise = fit.noise;
-  return NumberObject()
-      .Set("model", Json(NoiseFamilyName(noise.family)))
+  NumberObject object;
+  object.Set("model", Json(NoiseFamilyName(noise.family)))
       .Set("why", Json(noise.why))
       .Set(KeyWithUnit("sigma", fit.reading_unit), noise.sigma)
       .Set("sigma_std_error", NumberOrNull(noise.sigma_std_error))
       .Set(KeyWithUnit("resolution", fit.reading_unit), ResolutionJson(data))
       .Set("saturated_samples", Json(noise.censored))
       .Set("lag1_correlation", noise.lag1_correlation)
-      .Set("correlation", Json(noise.memory.Name()))
-      .Done();
+      .Set("correlation", Json(noise.memory.Name()));
+  if (noise.family == NoiseFamily::kEdges) object.Set("time_sigma_s", noise.stamp_ratio * noise.sigma);
+  return object.Done();
 }
 
 Json StatisticsJson(const FitReport& fit) {

@@ -234,7 +234,11 @@ std::string NoiseText(const FitReport& fit) {
   const ValueAndError sigma = PdgText(noise.sigma, noise.sigma_std_error.value_or(0));
   text +=
       noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
-  return text + " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
+  text += " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
+  if (noise.family != NoiseFamily::kEdges) return text;
+  text += " of an edge";
+  if (noise.stamp_ratio == 0) return text;
+  return text + ", " + NumberText(1e6 * noise.stamp_ratio * noise.sigma, 2) + " us of its stamp";
 }
 
 Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {

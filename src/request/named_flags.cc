@@ -56,7 +56,7 @@ constexpr std::array<SimulationFlag<std::string>, 7> kSimulationTexts = {{{"mode
                                                                           {"unit", &SimulationFlags::unit},
                                                                           {"range", &SimulationFlags::range},
                                                                           {"lose", &SimulationFlags::lose}}};
-constexpr std::array<SimulationFlag<double>, 8> kSimulationNumbers = {
+constexpr std::array<SimulationFlag<double>, 9> kSimulationNumbers = {
     {{"duration", &SimulationFlags::duration},
      {"rate", &SimulationFlags::rate},
      {"jitter", &SimulationFlags::jitter},
@@ -64,7 +64,10 @@ constexpr std::array<SimulationFlag<double>, 8> kSimulationNumbers = {
      {"noise", &SimulationFlags::noise},
      {"noise_correlation", &SimulationFlags::noise_correlation},
      {"noise_freedom", &SimulationFlags::noise_freedom},
+     {"time_noise", &SimulationFlags::time_noise},
      {"resolution", &SimulationFlags::resolution}}};
+constexpr std::array<SimulationFlag<bool>, 1> kSimulationSwitches = {
+    {{"event_driven", &SimulationFlags::event_driven}}};
 constexpr std::array<SimulationFlag<std::uint64_t>, 1> kSimulationWholes = {{{"seed", &SimulationFlags::seed}}};
 
 constexpr std::array<CalibrationFlag<std::string>, 1> kCalibrationTexts = {
@@ -148,7 +151,7 @@ Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
 
 std::vector<std::string_view> RunFlagNames() { return NamesOf(kRunTexts, kRunSwitches); }
 std::vector<std::string_view> SimulationFlagNames() {
-  return NamesOf(kSimulationTexts, kSimulationNumbers, kSimulationWholes);
+  return NamesOf(kSimulationTexts, kSimulationNumbers, kSimulationSwitches, kSimulationWholes);
 }
 std::vector<std::string_view> CalibrationFlagNames() { return NamesOf(kCalibrationTexts, kCalibrationWholes); }
 
@@ -167,7 +170,7 @@ Result<RunFlags> RunFlagsOf(const FlagTexts& texts) {
 }
 
 Result<SimulationFlags> SimulationFlagsOf(const FlagTexts& texts) {
-  return FlagsOf<SimulationFlags>(texts, kSimulationTexts, kSimulationNumbers, kSimulationWholes);
+  return FlagsOf<SimulationFlags>(texts, kSimulationTexts, kSimulationNumbers, kSimulationSwitches, kSimulationWholes);
 }
 
 Result<CalibrationFlags> CalibrationFlagsOf(const FlagTexts& texts) {

@@ -48,8 +48,10 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
   return BadFlag(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
 }
 
-constexpr std::array<Word<NoiseChoice>, 3> kNoises = {
-    {{"auto", NoiseChoice::kAuto}, {"gaussian", NoiseChoice::kGaussian}, {"quantized", NoiseChoice::kQuantized}}};
+constexpr std::array<Word<NoiseChoice>, 4> kNoises = {{{"auto", NoiseChoice::kAuto},
+                                                       {"gaussian", NoiseChoice::kGaussian},
+                                                       {"quantized", NoiseChoice::kQuantized},
+                                                       {"edges", NoiseChoice::kEdges}}};
 constexpr std::array<Word<Loss>, 3> kLosses = {
     {{"none", Loss::kNone}, {"huber", Loss::kHuber}, {"student", Loss::kStudent}}};
 constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMethod::kAuto},

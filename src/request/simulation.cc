@@ -186,7 +186,7 @@ Result<void> CheckNumbers(const SimulationFlags& flags) {
   const std::array numbers = {
       NumberFlag{"--duration", flags.duration, false},    NumberFlag{"--rate", flags.rate, false},
       NumberFlag{"--jitter", flags.jitter, true},         NumberFlag{"--noise", flags.noise, true},
-      NumberFlag{"--resolution", flags.resolution, true},
+      NumberFlag{"--resolution", flags.resolution, true}, NumberFlag{"--time_noise", flags.time_noise, true},
   };
   for (const NumberFlag& number : numbers) {
     if (std::isfinite(number.value) && (number.value > 0 || (number.may_be_0 && number.value == 0))) continue;
@@ -194,6 +194,24 @@ Result<void> CheckNumbers(const SimulationFlags& flags) {
                    (number.may_be_0 ? "0 or more" : "positive"));
   }
   return CheckNoiseLaw(flags);
+}
+
+/// Of events, as SimulateRecording asks for them.
+Result<void> CheckEvents(const SimulationFlags& flags) {
+  if (!flags.event_driven && flags.time_noise != 0) return BadFlag("--time_noise needs --event_driven");
+  if (!flags.event_driven) return {};
+  const bool plain = (flags.unit == "deg" || flags.unit == "rad") && flags.range.empty() && flags.jitter == 0 &&
+                     flags.noise_correlation == 0 && flags.noise_freedom == 0;
+  if (!plain) {
+    return BadFlag(
+        "--event_driven is of an encoder: an angle, without --range, --jitter, --noise_correlation and "
+        "--noise_freedom");
+  }
+  constexpr double kLargestNoise = 0.2;  // of a count
+  if (!(flags.resolution > 0)) return BadFlag("--event_driven needs --resolution");
+  if (flags.noise <= kLargestNoise * flags.resolution) return {};
+  return BadFlag("--noise is " + NumberText(flags.noise) +
+                 "; with --event_driven it must be at most a fifth of --resolution");
 }
 
 /// Sensor and sampling; noise, resolution and range become SI.
@@ -216,6 +234,8 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
   synthetic.duration = flags.duration;
   synthetic.sample_rate = flags.rate;
   synthetic.jitter = flags.jitter;
+  synthetic.rows = flags.event_driven ? RowTiming::kEvents : RowTiming::kEven;
+  synthetic.time_noise = flags.time_noise;
   synthetic.seed = flags.seed;
   return {};
 }
@@ -245,6 +265,7 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
 
 Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optional<Rig>& rig) {
   if (Result<void> checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
+  if (Result<void> checked = CheckEvents(flags); !checked) return tl::unexpected(checked.error());
   const Result<OutputUnit> unit = FindUnit(flags.unit);
   if (!unit) return tl::unexpected(unit.error());
   const Result<MotionModel> model = ChooseModel(flags);

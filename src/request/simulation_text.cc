@@ -131,6 +131,7 @@ std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {
   json["sigma" + unit] = simulation.synthetic.noise;
   if (simulation.synthetic.noise_correlation != 0) json["noise_correlation"] = simulation.synthetic.noise_correlation;
   if (simulation.synthetic.noise_freedom > 0) json["noise_freedom"] = simulation.synthetic.noise_freedom;
+  if (simulation.synthetic.time_noise > 0) json["time_noise_s"] = simulation.synthetic.time_noise;
   json["resolution" + unit] = simulation.synthetic.resolution;
   for (const auto& [time, counts] : simulation.synthetic.lost_counts) {
     json["lost_counts"].push_back({{"time_s", time}, {"counts", counts}});

@@ -37,8 +37,8 @@ DEFINE_string(resolution, "",
               "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.");
 DEFINE_string(range, "", "What the sensor can show, low,high in the file's unit; readings there are censored.");
 DEFINE_string(noise, "auto",
-              "Noise of the readings: gaussian, quantized (rounded to levels) or auto (quantized where rounding "
-              "matters); default auto.");
+              "Noise of the readings: gaussian, quantized (rounded to levels), edges (rows that come when a count "
+              "changes) or auto (edges of such rows, else quantized where rounding matters); default auto.");
 DEFINE_string(loss, "none", "Robust alternative for recordings with outliers: huber, student or none; default none.");
 DEFINE_string(interval, "auto",
               "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.");

@@ -47,6 +47,10 @@ DEFINE_double(noise, 0, "Standard deviation of the noise before quantization, in
 DEFINE_double(noise_correlation, 0, "AR(1): correlation of each sample's noise with the one before; default 0, white.");
 DEFINE_double(noise_freedom, 0,
               "Degrees of freedom, above 2, of Student's t noise, whose scale --noise then is; default 0, Gaussian.");
+DEFINE_bool(event_driven, false,
+            "Rows of an encoder that come only when its count changes, --resolution; --noise is then the error of an "
+            "edge; default off.");
+DEFINE_double(time_noise, 0, "Standard deviation of the error of an event's stamp, s; default 0.");
 DEFINE_double(resolution, 0, "Spacing of the sensor's levels, in --unit; default 0, none.");
 DEFINE_string(range, "", "What the sensor can show, low,high in --unit; its levels start at low; default unlimited.");
 DEFINE_string(lose, "",
@@ -89,6 +93,8 @@ SimulateFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.noise_correlation = FLAGS_noise_correlation;
   flags.noise_freedom = FLAGS_noise_freedom;
   flags.resolution = FLAGS_resolution;
+  flags.event_driven = FLAGS_event_driven;
+  flags.time_noise = FLAGS_time_noise;
   flags.range = FLAGS_range;
   flags.lose = FLAGS_lose;
   flags.seed = FLAGS_seed;

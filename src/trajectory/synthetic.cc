@@ -16,6 +16,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/nesting.h"
+#include "pendulum/trajectory/encoder.h"
 #include "pendulum/trajectory/tolerance.h"
 
 namespace pendulum {
@@ -139,6 +140,26 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
   }
   if (options.resolution > high - low) return BadOption("resolution", options.resolution, "no wider than the range");
   return {};
+}
+
+/// Only an encoder of an angle has events; errors of an edge that is as far as the next one would be nonsense.
+Result<void> CheckEvents(const SyntheticOptions& options) {
+  constexpr double kLargestNoise = 0.2;  // of a count
+  const bool even = options.rows == RowTiming::kEven;
+  if (options.time_noise != 0 && options.rows != RowTiming::kEvents)
+    return BadOption("time_noise", options.time_noise, "0 unless rows are events");
+  if (even) return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
+  const bool plain = options.quantity == Quantity::kAngle && !options.range && options.jitter == 0 &&
+                     options.noise_correlation == 0 && options.noise_freedom == 0;
+  if (!plain) {
+    return Error(
+        StatusCode::kInvalidArgument,
+        "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
+  }
+  if (!(options.resolution > 0)) return BadOption("resolution", options.resolution, "positive where rows are events");
+  if (options.noise > kLargestNoise * options.resolution)
+    return BadOption("noise", options.noise, "at most a fifth of the resolution where rows are events");
+  return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
 }
 
 Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
@@ -267,7 +288,7 @@ std::string UnitOf(const SyntheticOptions& options) {
 }
 
 Result<void> CheckAll(const SyntheticOptions& options) {
-  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts}) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts, CheckEvents}) {
     if (Result<void> checked = check(options); !checked) return checked;
   }
   return {};
@@ -330,6 +351,12 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   recording.shows_gravity = options.quantity != Quantity::kAcceleration || options.sensor.gravity > 0;
   recording.resolution = options.resolution;
   recording.range = options.range;
+  if (options.rows != RowTiming::kEven) {
+    const Eigen::VectorXd instants = recording.time;
+    ReadEncoder(*trajectory, options, instants, recording);
+    for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] += LostBefore(options, recording.time[i]);
+    return MakeRecording(std::move(recording));
+  }
   recording.value.resize(*count);
   for (Eigen::Index i = 0; i < *count; ++i) {
     const double truth = TrueReading(options, *trajectory, recording.time[i]);

@@ -122,7 +122,8 @@ TEST(ToJson, NamesTheNoiseFamily) {
   const std::pair<NoiseFamily, const char*> named[] = {{NoiseFamily::kGaussian, "gaussian"},
                                                        {NoiseFamily::kQuantized, "quantized"},
                                                        {NoiseFamily::kHuber, "huber"},
-                                                       {NoiseFamily::kStudent, "student"}};
+                                                       {NoiseFamily::kStudent, "student"},
+                                                       {NoiseFamily::kEdges, "edges"}};
   for (const auto& [family, name] : named) {
     report.fits[0].noise.family = family;
     EXPECT_EQ(ToJson(report)["fits"][0]["noise"]["model"], name);

@@ -35,7 +35,8 @@ TEST(FlagNames, AreThoseOfTheTools) {
                                    "range", "noise", "loss", "interval", "seed", "closed_form_only"));
   EXPECT_THAT(SimulationFlagNames(),
               IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
-                            "noise_correlation", "noise_freedom", "resolution", "range", "lose", "seed"}));
+                            "noise_correlation", "noise_freedom", "resolution", "range", "lose", "event_driven",
+                            "time_noise", "seed"}));
   EXPECT_THAT(SimulationFlagNames(), Not(Contains("out")));
   EXPECT_THAT(CalibrationFlagNames(), UnorderedElementsAre("order", "input_range", "bits"));
 }
@@ -137,6 +138,8 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
                                         {"noise_correlation", "0.5"},
                                         {"noise_freedom", "4"},
                                         {"resolution", "0.0625"},
+                                        {"event_driven", "true"},
+                                        {"time_noise", "0.03125"},
                                         {"seed", "18446744073709551615"}});
   ASSERT_TRUE(flags) << flags.error().message;
   EXPECT_EQ(flags->model, "drag");
@@ -154,6 +157,8 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
   EXPECT_EQ(flags->noise_correlation, 0.5);
   EXPECT_EQ(flags->noise_freedom, 4);
   EXPECT_EQ(flags->resolution, 0.0625);
+  EXPECT_TRUE(flags->event_driven);
+  EXPECT_EQ(flags->time_noise, 0.03125);
   EXPECT_EQ(flags->seed, 18446744073709551615U);
 }
 

@@ -118,8 +118,8 @@ class Schema(unittest.TestCase):
     def test_knows_four_outcomes(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="ok"))
 
-    def test_knows_four_kinds_of_noise(self):
-        for model in ("gaussian", "quantized", "huber", "student"):
+    def test_knows_five_kinds_of_noise(self):
+        for model in ("gaussian", "quantized", "huber", "student", "edges"):
             result = copy.deepcopy(EXAMPLE)
             result["fits"][0]["noise"]["model"] = model
             VALIDATOR.validate(result)

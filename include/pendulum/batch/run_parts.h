@@ -22,9 +22,10 @@ struct ReadSwings {
   RunReport common;          ///< What the reports of all its swings say.
 };
 
-/// Repairs a recording that was read and finds its swings; `rig` wins over what the recording says of its rig. Errors
-/// as ParseRig and ChooseSwings.
-Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig);
+/// Repairs a recording that was read, takes the edges of one that is event-driven unless `fit` asks for other noise,
+/// and finds its swings; `rig` wins over what the recording says of its rig. Errors as ParseRig and ChooseSwings.
+Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::optional<Rig> rig,
+                              const FitOptions& fit = {});
 
 /// The same from a file. Errors as ReadRecording too.
 Result<ReadSwings> ReadOne(const RunOptions& options, const std::string& path, std::optional<Rig> rig);

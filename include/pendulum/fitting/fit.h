@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -26,8 +27,9 @@
 
 namespace pendulum {
 
-/// What to take the noise for: kAuto takes the resolution into account where the noise does not drown it.
-enum class NoiseChoice { kAuto, kGaussian, kQuantized };
+/// What to take the noise for: kAuto takes the resolution into account where the noise does not drown it, and edges
+/// where the recording has them (Recording::edge).
+enum class NoiseChoice { kAuto, kGaussian, kQuantized, kEdges };
 
 /// Robust alternatives to normal noise, for recordings with outliers.
 enum class Loss { kNone, kHuber, kStudent };
@@ -103,6 +105,10 @@ struct NoiseEstimate {
   std::string why;
   double lag1_correlation = 0;  ///< Of the quantile residuals.
   Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
+  // Of edges, as in NoiseModel.
+  double stamp_ratio = 0;  ///< s/rad: standard deviation of a stamp over sigma.
+  std::optional<double> edge = std::nullopt;
+  std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
 };
 
 /// The likelihood along one parameter, the others at their best, at M values: what its profile interval rests on.
@@ -166,9 +172,10 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
 /// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
 /// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
 /// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
-/// bounds, quantized noise without a resolution or with a robust loss. kDataLoss: counts or volts without a
-/// calibration. kFailedPrecondition: no swing, or too little of one. kTryAgain: options.stop was requested. Cost: about
-/// a millisecond for 2000 samples, three with the quantized likelihood, tens where the pendulum comes to rest.
+/// bounds, quantized noise without a resolution, edges of a recording that has none, either with a robust loss.
+/// kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or too little of one. kTryAgain:
+/// options.stop was requested. Cost: about a millisecond for 2000 samples, three with the quantized likelihood, tens
+/// where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

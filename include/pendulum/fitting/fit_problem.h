@@ -37,7 +37,7 @@ struct FitProblem {
   /// σ below this is rounding: a millionth of the data's scale.
   double negligible_sigma() const { return 1e-6 * data.scale; }
 
-  /// Root mean square of the residuals of readings that are not censored.
+  /// Root mean square of the residuals of readings that are neither censored nor silences.
   double RmsResidual(const Eigen::VectorXd& readings) const;
 
   /// Share of the readings' variance that a trajectory leaves; a censored reading that it exceeds is explained.

@@ -28,7 +28,10 @@ struct Recording {
   Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
   Eigen::VectorXd value;     ///< N x 1, rad or rad/s whatever the unit; in `unit` unless is_calibrated().
   double resolution = 0;  ///< Spacing of the values the sensor can give, in the unit of value; 0 when unknown or none.
-  std::string resolution_source;     ///< Who says so: "given" by the user, the "file", or "found" in the values.
+  std::string resolution_source;  ///< Who says so: "given" by the user, the "file", or "found" in the values.
+  /// Of events (TakeEdges): one of the edges between counts, in the unit of value. A reading whole resolutions from it
+  /// is the edge that was crossed at its time; one halfway between two says only that the value lies between them.
+  std::optional<double> edge;
   std::optional<SensorRange> range;  ///< What the sensor can show, in the unit of value; none when unlimited.
   double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds in one of the file's clock; not applied to `time`.
   std::optional<Calibration> calibration;           ///< What turned counts or volts into `value`.

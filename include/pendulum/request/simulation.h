@@ -32,8 +32,10 @@ struct SimulationFlags {
   double noise_correlation = 0;
   double noise_freedom = 0;
   double resolution = 0;
-  std::string range;  ///< "low,high"; empty is unlimited.
-  std::string lose;   ///< "time:counts,..." [s]; empty loses none.
+  std::string range;          ///< "low,high"; empty is unlimited.
+  std::string lose;           ///< "time:counts,..." [s]; empty loses none.
+  bool event_driven = false;  ///< A row only when the count changes.
+  double time_noise = 0;      ///< s
   std::uint64_t seed = 1;
 };
 

@@ -19,6 +19,13 @@ struct LostCounts {
   int counts = 0;
 };
 
+/// When a recording has a row.
+enum class RowTiming {
+  kEven,          ///< At even times.
+  kEvents,        ///< When the count of an encoder changes, and at the start.
+  kEvenOfEvents,  ///< At even times, of the same encoder with the same errors of its edges.
+};
+
 /// A recording to be made, and with it the truth a fit of that recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
@@ -44,6 +51,8 @@ struct SyntheticOptions {
   double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
   std::optional<SensorRange> range;     ///< rad or rad/s; none is unlimited.
   std::vector<LostCounts> lost_counts;  ///< Of a sensor with levels; range is that of the levels before.
+  RowTiming rows = RowTiming::kEven;    ///< Of events `noise` is the error of each crossing of an edge.
+  double time_noise = 0;                ///< Standard deviation of the error of an event's stamp [s].
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
@@ -58,8 +67,8 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 
 /// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
 /// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. A seed gives the
-/// same everywhere, and the same noise whatever the jitter; the noise is stationary, of standard deviation `noise` or,
-/// for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
+/// same everywhere, and the same noise whatever the jitter, and whether events are sampled evenly; the noise is
+/// stationary, of standard deviation `noise` or, for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
 /// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
 /// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);

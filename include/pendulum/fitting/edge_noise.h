@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/noise.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// The recording as its edges (TakeEdges) where it is event-driven and the options do not ask for other noise.
+Recording WithEdges(Recording recording, const FitOptions& options);
+
+/// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each; rad/s.
+Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
+                        const Eigen::Ref<const Eigen::VectorXd>& readings);
+
+/// Standard deviation of the stamps over that of the edges [s/rad]: of what both add to the variance of a residual,
+/// σ² (1 + (ratio · rate)²), the likeliest for the differences of successive residuals of edges, which a slow misfit
+/// leaves alone (MODEL.md eq. (83)). 0 where the stamps' part is within two of its standard errors.
+double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                           const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);
+
+/// Tells the noise of edges its stamp_ratio and spread at the modelled readings; all N each, times in s.
+void SetSpread(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& value,
+               const Eigen::Ref<const Eigen::VectorXd>& readings, NoiseModel& noise);
+
+}  // namespace pendulum

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Counts from the row before; 0 for the first one.
+double StepTo(const Recording& recording, Index i) {
+  return i == 0 ? 0 : std::round((recording.value[i] - recording.value[i - 1]) / recording.resolution);
+}
+
+bool HasUnevenStamps(const Recording& recording) {
+  constexpr double kUneven = 1.5;
+  const Index last = recording.size() - 1;
+  Eigen::VectorXd intervals = recording.time.tail(last) - recording.time.head(last);
+  std::sort(intervals.begin(), intervals.end());
+  return intervals[last * 9 / 10] > kUneven * intervals[last / 10];
+}
+
+/// The direction changes between two rows one count apart: the angle turned within the count of the first.
+bool TurnsAfter(const Recording& recording, Index i) {
+  if (i == 0 || i + 1 == recording.size()) return false;
+  const double next = StepTo(recording, i + 1);
+  return std::abs(next) == 1 && next * StepTo(recording, i) < 0;
+}
+
+/// A wait after the first row that is much longer than those at the next turning points is that of a hold.
+bool BeginsHeld(const Recording& recording) {
+  constexpr double kLonger = 3;
+  constexpr int kTurns = 3;
+  double longest = 0;
+  int turns = 0;
+  for (Index i = 1; i + 1 < recording.size() && turns < kTurns; ++i) {
+    longest = std::max(longest, recording.time[i + 1] - recording.time[i]);
+    turns += TurnsAfter(recording, i) ? 1 : 0;
+  }
+  return recording.time[1] - recording.time[0] > kLonger * longest;
+}
+
+Warning NoteOf(Index silences) {
+  return {"event_driven",
+          "a row stands only where the count changes: each is taken as the edge of its count, crossed "
+          "at its stamp, and the angle as within its count in " +
+              std::to_string(silences) +
+              " silences at turning points and rest; --noise gaussian takes the rows for samples"};
+}
+
+}  // namespace
+
+bool IsEventDriven(const Recording& recording) {
+  constexpr double kFewestSteps = 20;
+  constexpr double kWhole = 0.1;  // of a count
+  constexpr double kMost = 3;     // counts, where rows were missed
+  constexpr double kNearlyAll = 0.99, kSingle = 0.85, kRepeated = 0.05;
+  const auto steps = static_cast<double>(recording.size() - 1);
+  if (recording.quantity != Quantity::kAngle || !(recording.resolution > 0) || steps < kFewestSteps) return false;
+  double few = 0, single = 0, none = 0;
+  for (Index i = 1; i < recording.size(); ++i) {
+    const double step = std::abs(recording.value[i] - recording.value[i - 1]) / recording.resolution;
+    const double whole = std::round(step);
+    if (std::abs(step - whole) > kWhole || whole > kMost) continue;
+    ++few;
+    single += whole == 1 ? 1 : 0;
+    none += whole == 0 ? 1 : 0;
+  }
+  return few >= kNearlyAll * steps && single >= kSingle * steps && none <= kRepeated * steps &&
+         HasUnevenStamps(recording);
+}
+
+Recording TakeEdges(Recording recording) {
+  const double half = 0.5 * recording.resolution;
+  std::vector<double> time, value;
+  Index silences = 0;
+  for (Index i = BeginsHeld(recording) ? 1 : 0; i < recording.size(); ++i) {
+    const double step = StepTo(recording, i);
+    time.push_back(recording.time[i]);
+    value.push_back(recording.value[i] - (step > 0 ? half : step < 0 ? -half : 0.0));
+    silences += step == 0 ? 1 : 0;
+    if (!TurnsAfter(recording, i)) continue;
+    const double middle = 0.5 * (recording.time[i] + recording.time[i + 1]);
+    if (!(recording.time[i] < middle && middle < recording.time[i + 1])) continue;
+    time.push_back(middle);
+    value.push_back(recording.value[i]);
+    ++silences;
+  }
+  recording.edge = recording.value[0] + half;
+  recording.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Index>(time.size()));
+  recording.value = Eigen::Map<const Eigen::VectorXd>(value.data(), static_cast<Index>(value.size()));
+  std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "event_driven"; });
+  recording.warnings.push_back(NoteOf(silences));
+  return recording;
+}
+
+}  // namespace pendulum
