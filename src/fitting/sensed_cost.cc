@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensed_cost.h"
+#include "fitting/sensed_cost.h"
 
 #include <array>
 #include <cmath>

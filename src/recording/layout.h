@@ -325,9 +325,11 @@ inline Result<void> ColumnChooser::CheckCoordinate(std::size_t index) const {
   if (unit == nullptr || unit->kind != Kind::kLength || (stem != "y_" && !stem.ends_with("_y_"))) return {};
   const bool asked = !options_.value_column.empty();
   const StatusCode code = asked ? StatusCode::kInvalidArgument : StatusCode::kDataLoss;
-  return line_.Fault(PlaceOf(index), "column " + NameOf(index) +
-                              " is the height of the point, which does not tell the side it is on; choose the "
-                              "horizontal coordinate with --value_column, or leave the flag out to have both", code);
+  return line_.Fault(PlaceOf(index),
+                     "column " + NameOf(index) +
+                         " is the height of the point, which does not tell the side it is on; choose the "
+                         "horizontal coordinate with --value_column, or leave the flag out to have both",
+                     code);
 }
 
 inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t index) {

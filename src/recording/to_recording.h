@@ -14,7 +14,8 @@ namespace pendulum::csv {
 
 /// What a reader has of a file.
 struct ReadColumns {
-  RawSamples samples;  // N x 1 each, `second` where the layout has it; the times are not looked at where the sample rate tells them.
+  RawSamples samples;  // N x 1 each, `second` where the layout has it; the times are not looked at where the sample
+                       // rate tells them.
   Layout layout;
   Metadata metadata;
   bool is_host_time = false;

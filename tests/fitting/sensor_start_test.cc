@@ -71,8 +71,8 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAcrossTheRod) {
 
 TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
   for (const double upright : {1.0, -1.0}) {
-    const SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration,
-                                          {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
+    const SyntheticOptions options =
+        Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
     ExpectTruth(options, Fit(options));
   }
 }

@@ -215,7 +215,8 @@ TEST(MakeFitPendulumOptions, RefusesFlagsThatContradictEachOther) {
       "--calibration turns counts or volts into an angle, and --unit says that the values are in deg; leave one of "
       "them out");
   flags.unit = "grad";
-  EXPECT_EQ(Refusal(flags), "--unit is 'grad'; it must be one of rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm, mm");
+  EXPECT_EQ(Refusal(flags),
+            "--unit is 'grad'; it must be one of rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm, mm");
 }
 
 TEST(MakeFitPendulumOptions, WantsAPositiveSampleRate) {
