@@ -10,7 +10,7 @@ export interface DropZone {
 
 /** Files may be dropped anywhere on the page while the view is shown; `take` gets them. */
 export function dropZone(words: string, hint: string, take: (files: File[]) => void, signal: AbortSignal): DropZone {
-  const input = el('input', { type: 'file', multiple: '', hidden: '', accept: '.csv,.txt,.tsv,.dat,.log,text/*' });
+  const input = el('input', { type: 'file', multiple: '', hidden: '', accept: '.csv,.txt,.tsv,.dat,.log,.zip,.mat,text/*' });
   const zone = el(
     'button',
     { type: 'button', class: 'drop' },

@@ -19,6 +19,7 @@ const kNoises: Options = [
   ['', 'found in the recording'],
   ['gaussian', 'even scatter'],
   ['quantized', 'rounding to the steps of the sensor'],
+  ['edges', 'edges of an encoder’s counts, a row for each change'],
 ];
 const kIntervals: Options = [
   ['', 'chosen by the fit'],
