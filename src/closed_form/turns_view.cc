@@ -15,12 +15,16 @@ using Eigen::Index;
 
 /// The passages through the bottom: maxima of the reading.
 std::vector<Extremum> Bottoms(const Recording& upright) {
-  const double noise = SuccessiveDifferenceNoise(upright);
-  const std::vector<Extremum> turns = FindTurns(upright, TurningThreshold(upright, noise));
+  constexpr double kAlike = 0.25;  // of a swing of the reading; it falls with the energy, by less in one swing
+  const std::vector<Extremum> turns = FindTurns(upright, TurningThreshold(upright, SuccessiveDifferenceNoise(upright)));
   std::vector<Extremum> bottoms;
   for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima in turn
     if (turns[i].value > turns[i + 1].value) bottoms.push_back(turns[i]);
   }
+  // The first may be where the recording began, in the middle of a swing.
+  if (bottoms.size() < 2) return bottoms;
+  const double swing = bottoms[1].value - upright.value.minCoeff();
+  if (bottoms[1].value - bottoms[0].value > kAlike * swing) bottoms.erase(bottoms.begin());
   return bottoms;
 }
 

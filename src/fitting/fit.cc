@@ -9,9 +9,11 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/broken_order.h"
+#include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/maximum_likelihood.h"
+#include "pendulum/fitting/optimum.h"
 #include "pendulum/fitting/search.h"
 #include "pendulum/fitting/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
@@ -31,6 +33,22 @@ void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
   solution.parameters[angle] += 2 * kPi * turns;
 }
 
+/// Goes on where a jump of an acceleration's sum of squares has stopped the solver.
+void CrossJumps(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostJumps = 10;
+  if (problem.data.quantity != Quantity::kAcceleration) return;
+  for (int jump = 0; jump < kMostJumps && solution.usable; ++jump) {
+    const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
+    if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) <= kLargestShift) return;
+    const auto lower = LowerAlongShift(*optimum, cost, solution);
+    if (!lower) return;
+    solution.parameters = *lower;
+    solution = Continue(cost, solution, problem.solve);
+    solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);
+    if (solution.usable) solution.log_likelihood = LogLikelihoodOf(problem, solution);
+  }
+}
+
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
@@ -43,6 +61,7 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   Solution solution = Search(cost, problem.data, guess, problem.solve);
   TakeTurnsOut(problem, solution);
   MaximizeLikelihood(cost, problem, options, solution);
+  CrossJumps(cost, problem, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureTraceError(cost, tolerance, solution);
     if (solution.trace_error <= max_error || refinement == kMostTraceRefinements) break;

@@ -69,6 +69,9 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
                  const Optimum& optimum) {
   constexpr double kBeside = 1e-5;  // standard errors
   const double shift = RemainingShift(optimum);
+  if (problem.data.quantity == Quantity::kAcceleration) {
+    return shift <= kLargestShift || LowerAlongShift(optimum, cost, solution) ? shift : 0.0;
+  }
   const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
   if (shift <= kLargestShift || !may_have_a_kink) return shift;
   const auto release = std::ranges::find(optimum.free, static_cast<int>(*ReleaseTimeOf(problem)));

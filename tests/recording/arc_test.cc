@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/LU>
 #include <boost/random/normal_distribution.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
