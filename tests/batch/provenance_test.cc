@@ -115,14 +115,15 @@ TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
 }
 
 // A new member does not compile here: put it into the changes above or among what makes no difference below. `model` is
-// the first of `models`; rig and calibration are hashed apart; `start_values` no user can set.
+// the first of `models`; rig and calibration are hashed apart; `start_values` and `sensor_start` no user can set.
 TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   RunOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;
-  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, bounds, priors, noise, loss,
-                          interval, seed, threads, progress, stop, max_trace_error, max_iterations, max_traces] = fit;
+  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, sensor_start, bounds, priors, noise,
+                          loss, interval, seed, threads, progress, stop, max_trace_error, max_iterations, max_traces] =
+      fit;
 }
 
 TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {

@@ -142,7 +142,8 @@ TEST(Judge, TheIntervalAtABoundEndsWhereTheProfileHasRisenByChiSquare) {
 /// A cost whose data see parameters only through `seen` * p: what an experiment without enough in it looks like.
 class BlindCost final : public TrajectoryCost {
  public:
-  BlindCost(TrajectoryCost& cost, Eigen::MatrixXd seen) : cost_(cost), seen_(std::move(seen)) {}
+  BlindCost(TrajectoryCost& cost, Eigen::MatrixXd seen)
+      : TrajectoryCost(static_cast<int>(seen.cols())), cost_(cost), seen_(std::move(seen)) {}
 
   bool Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) const override {
     if (!cost_.Sums(parameters, sums)) return false;
@@ -157,7 +158,7 @@ class BlindCost final : public TrajectoryCost {
   }
   TraceSummary Trace(std::span<const double> p) const override { return cost_.Trace(p); }
   bool ComesToRest(std::span<const double> p, double change) const override { return cost_.ComesToRest(p, change); }
-  bool Evaluate(double const* const*, double*, double**) const override { return false; }
+  bool Motion(std::span<const double>, bool, MotionStates*) const override { return false; }
   void set_tolerance(double) override {}
   void set_used_samples(std::size_t) override {}
   void set_threads(int) override {}

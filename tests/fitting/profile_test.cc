@@ -32,10 +32,7 @@ struct Disguise {
 class LineCost final : public TrajectoryCost {
  public:
   LineCost(Disguise disguise, Eigen::VectorXd x, Eigen::VectorXd value)
-      : disguise_(std::move(disguise)), x_(std::move(x)), value_(std::move(value)) {
-    set_num_residuals(static_cast<int>(x_.size()));
-    mutable_parameter_block_sizes()->assign(2, 1);
-  }
+      : TrajectoryCost(2), disguise_(std::move(disguise)), x_(std::move(x)), value_(std::move(value)) {}
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
     *readings = p[1] + disguise_.slope(p[0]) * x_.array();
@@ -60,17 +57,7 @@ class LineCost final : public TrajectoryCost {
     *sums = columns.transpose() * columns / (sigma_ * sigma_);
     return true;
   }
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const std::vector<double> p = {*parameters[0], *parameters[1]};
-    Eigen::VectorXd readings;
-    Eigen::MatrixXd jacobian;
-    Readings(p, &readings, &jacobian);
-    Eigen::Map<Eigen::VectorXd>(residuals, x_.size()) = (value_ - readings) / sigma_;
-    for (int j = 0; jacobians != nullptr && j < 2; ++j) {
-      if (jacobians[j] != nullptr) Eigen::Map<Eigen::VectorXd>(jacobians[j], x_.size()) = -jacobian.col(j) / sigma_;
-    }
-    return true;
-  }
+  bool Motion(std::span<const double>, bool, MotionStates*) const override { return false; }
   TraceSummary Trace(std::span<const double>) const override { return {}; }
   bool ComesToRest(std::span<const double>, double) const override { return false; }
   void set_tolerance(double) override {}

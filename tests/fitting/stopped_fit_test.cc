@@ -41,17 +41,9 @@ std::stop_token Requested() {
 class StoppingCost final : public TrajectoryCost {
  public:
   StoppingCost(const FitProblem& problem, std::stop_source stop, int evaluations)
-      : cost_(MakeTrajectoryCost(problem.model, problem.start.start, problem.data)),
-        stop_(std::move(stop)),
-        left_(evaluations) {
-    set_num_residuals(cost_->num_residuals());
-    *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
-  }
+      : StoppingCost(MakeTrajectoryCost(problem.model, problem.start.start, problem.data), std::move(stop),
+                     evaluations) {}
 
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    Count();
-    return cost_->Evaluate(parameters, residuals, jacobians);
-  }
   bool SumOfSquares(std::span<const double> p, double* sum) const override {
     Count();
     return cost_->SumOfSquares(p, sum);
@@ -63,6 +55,10 @@ class StoppingCost final : public TrajectoryCost {
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
     Count();
     return cost_->Readings(p, readings, jacobian);
+  }
+  bool Motion(std::span<const double> p, bool with_jacobian, MotionStates* states) const override {
+    Count();
+    return cost_->Motion(p, with_jacobian, states);
   }
   TraceSummary Trace(std::span<const double> p) const override {
     Count();
@@ -83,6 +79,12 @@ class StoppingCost final : public TrajectoryCost {
   int evaluations() const { return evaluations_; }
 
  private:
+  StoppingCost(std::unique_ptr<TrajectoryCost> cost, std::stop_source stop, int evaluations)
+      : TrajectoryCost(static_cast<int>(cost->parameter_block_sizes().size())),
+        cost_(std::move(cost)),
+        stop_(std::move(stop)),
+        left_(evaluations) {}
+
   void Count() const {
     ++evaluations_;
     if (left_-- == 0) stop_.request_stop();
