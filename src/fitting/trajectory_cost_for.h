@@ -85,7 +85,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     if (is_stopped()) return false;
     if (!last_.IsAt(Asking(p))) {
       if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
-      last_.SetAt(Asking(p), *sums);
+      last_.value = *sums;  // into the room it has
+      last_.SetAt(Asking(p));
     }
     *sums = last_.value;
     AddPriors(priors(), p, sums);
