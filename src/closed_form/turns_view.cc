@@ -14,9 +14,9 @@ namespace {
 using Eigen::Index;
 
 /// The passages through the bottom: maxima of the reading.
-std::vector<Extremum> Bottoms(const Recording& upright) {
+std::vector<Extremum> Bottoms(const Recording& upright, double threshold) {
   constexpr double kAlike = 0.25;  // of a swing of the reading; it falls with the energy, by less in one swing
-  const std::vector<Extremum> turns = FindTurns(upright, TurningThreshold(upright, SuccessiveDifferenceNoise(upright)));
+  const std::vector<Extremum> turns = FindTurns(upright, threshold);
   std::vector<Extremum> bottoms;
   for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima in turn
     if (turns[i].value > turns[i + 1].value) bottoms.push_back(turns[i]);
@@ -28,10 +28,26 @@ std::vector<Extremum> Bottoms(const Recording& upright) {
   return bottoms;
 }
 
+/// Joins what stands out on the two sides of each passage by a line: between them the root of noise has turning points
+/// of its own.
+void BridgePassages(const std::vector<Extremum>& bottoms, double least, Recording& view) {
+  Eigen::VectorXd& value = view.value;
+  for (const Extremum& bottom : bottoms) {
+    Index before = bottom.sample;
+    Index after = bottom.sample;
+    while (before > 0 && std::abs(value[before]) < least) --before;
+    while (after + 1 < value.size() && std::abs(value[after]) < least) ++after;
+    if (std::abs(value[before]) < least || std::abs(value[after]) < least) continue;
+    const double slope = (value[after] - value[before]) / (view.time[after] - view.time[before]);
+    for (Index i = before + 1; i < after; ++i) value[i] = value[before] + slope * (view.time[i] - view.time[before]);
+  }
+}
+
 /// MODEL.md eq. (74), with the bottoms' readings joined by lines.
 Recording Unfolded(Recording recording) {
   if (recording.value.mean() < 0) recording.value = -recording.value;
-  const std::vector<Extremum> bottoms = Bottoms(recording);
+  const double threshold = TurningThreshold(recording, SuccessiveDifferenceNoise(recording));
+  const std::vector<Extremum> bottoms = Bottoms(recording, threshold);
   if (bottoms.size() < 2) return recording;
   const double spacing = (bottoms.back().time - bottoms.front().time) / static_cast<double>(bottoms.size() - 1);
   std::size_t next = 0;
@@ -48,6 +64,7 @@ Recording Unfolded(Recording recording) {
     const bool is_over = next == bottoms.size() && time > bottoms.back().time + spacing;
     recording.value[i] = is_over ? 0.0 : side * std::sqrt(std::max(bottom - recording.value[i], 0.0));
   }
+  BridgePassages(bottoms, std::sqrt(threshold), recording);
   return recording;
 }
 
