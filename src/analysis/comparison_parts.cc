@@ -43,9 +43,10 @@ std::string WhyNone(const FitReport& best, const std::string& memory) {
   const std::string residuals =
       "the residuals of " + std::string(best.model.name) + ", the model nearest to the readings, ";
   if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
-  const std::string why = best.noise.censored > 0 ? "readings at an end of the sensor's range"
-                          : IsNormal(best)        ? "noise below half a count"
-                                                  : "a robust loss";
+  const std::string why = best.noise.censored > 0                    ? "readings at an end of the sensor's range"
+                          : IsNormal(best)                           ? "noise below half a count"
+                          : best.noise.family == NoiseFamily::kEdges ? "rows at uneven times"
+                                                                     : "a robust loss";
   return residuals + "remember (" + memory + "), and no likelihood is known for that with " + why;
 }
 

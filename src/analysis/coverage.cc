@@ -33,10 +33,6 @@ struct RunOutcome {
   bool converged = false;
 };
 
-std::vector<ParameterInfo> Parameters(const CoverageScenario& scenario) {
-  return FitParameters(scenario.run.model, scenario.run.start, scenario.run.quantity, false, scenario.run.sensor);
-}
-
 /// How many units of the report are one unit of G-relative values.
 double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
   return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
@@ -53,7 +49,7 @@ void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) 
 /// What came out of one recording, or set of them, for the parameters that are counted.
 RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>& truth,
                      const std::vector<std::optional<double>>& bounds, const FitReport* report) {
-  const std::vector<ParameterInfo> infos = Parameters(scenario);
+  const std::vector<ParameterInfo> infos = ParametersOf(scenario.run);
   RunOutcome outcome;
   outcome.has_report = report != nullptr;
   outcome.converged = report != nullptr && report->termination == Termination::kConverged;
@@ -174,7 +170,7 @@ void Judge(const CoverageScenario& scenario, int recordings, CoverageRow& row) {
 }
 
 CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutcome>& outcomes, std::size_t i) {
-  const ParameterInfo info = Parameters(scenario)[i];
+  const ParameterInfo info = ParametersOf(scenario.run)[i];
   const double truth = outcomes.front().parameters[i].truth;
   CoverageRow row;
   row.parameter = info.name;

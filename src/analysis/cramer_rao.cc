@@ -31,11 +31,16 @@ std::optional<Sensitivities> SensitivitiesAt(const SyntheticOptions& truth, cons
   data.natural_frequency = 1 / std::sqrt(truth.parameters.front());
   data.latest_release = data.time.back();
   std::vector<double> parameters = TrueParameters(truth);
-  if (truth.start == StartKind::kRelease) parameters[parameters.size() - 2] -= time[0];
+  const bool events = truth.rows == RowTiming::kEvents;
+  if (events) parameters.pop_back();  // the lag, which moves no other derivative
+  if (truth.start == StartKind::kRelease) parameters[truth.parameters.size() + 1] -= time[0];
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(truth.model, truth.start, data);
   cost->set_tolerance(kTolerance);
   Sensitivities at;
   if (!cost->Readings(parameters, &at.readings, &at.jacobian)) return std::nullopt;
+  if (!events) return at;
+  at.jacobian.conservativeResize(Eigen::NoChange, at.jacobian.cols() + 1);
+  at.jacobian.rightCols<1>() = -RatesOf(time, at.readings).array().sign();
   return at;
 }
 
@@ -125,6 +130,11 @@ std::vector<std::optional<double>> BoundsOf(const Eigen::MatrixXd& information) 
 }
 
 }  // namespace
+
+std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run) {
+  const ZeroMotion zero = run.rows == RowTiming::kEvents ? ZeroMotion::kLags : ZeroMotion::kNone;
+  return FitParameters(run.model, run.start, run.quantity, zero, run.sensor);
+}
 
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
   const std::size_t count = TrueParameters(truth).size();

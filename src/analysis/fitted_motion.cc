@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/trajectory_cost.h"
 
 namespace pendulum {
@@ -14,11 +15,13 @@ FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const st
                            std::stop_token stop)
     : model_(fit.model), start_(fit.start), quantity_(fit.quantity), sensor_(fit.sensor), stop_(std::move(stop)) {
   instants_ = used.clock_scale * (used.time.array() - used.time[0]);
+  if (fit.Find(kEdgeLag.name) != nullptr) against_ = Moves(used, instants_, ZeroMotion::kLags);
   const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   for (const ParameterEstimate& parameter : fit.parameters) {
     const std::string_view name = parameter.info.name;
     const bool is_release = name == kReleaseTime.name;
-    drifts_ = drifts_ || name == kZeroDrift.name || name == kBiasDrift.name;
+    if (name == kZeroDrift.name || name == kBiasDrift.name) zero_motion_ = ZeroMotion::kDrifts;
+    if (name == kEdgeLag.name) zero_motion_ = ZeroMotion::kLags;
     reported_.push_back(is_release                             ? 1 / used.clock_scale
                         : parameter.info.scales_with_gravity() ? gravity_torque
                                                                : 1.0);
@@ -37,7 +40,7 @@ FittedMotion FittedMotion::WithGravity(Gravity gravity) const {
 
 FittedMotion FittedMotion::WithoutDrift() const {
   FittedMotion motion = *this;
-  if (drifts_) motion.parameters_.back() = 0;
+  if (drifts()) motion.parameters_.back() = 0;
   return motion;
 }
 
@@ -60,7 +63,9 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
   data.value.assign(data.time.size(), 0.0);
   data.natural_frequency = 1 / std::sqrt(parameters_[0]);
   data.latest_release = instants[instants.size() - 1];
-  data.drifts = drifts_;
+  if (drifts()) data.moves = data.time;
+  if (zero_motion_ == ZeroMotion::kLags)
+    data.moves = instants == instants_ ? against_ : std::vector(data.time.size(), 0.0);
   data.stop = stop_;
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model_, start_, data);
   Eigen::VectorXd readings;

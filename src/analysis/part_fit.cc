@@ -49,7 +49,8 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
 /// The noise of a fit whose sensor has this range.
 NoiseModel NoiseBetween(const FitReport& fit, double low, double high) {
   const NoiseEstimate& noise = fit.noise;
-  return {noise.family, noise.sigma, noise.resolution, low, high, noise.edge, noise.stamp_ratio, noise.spread};
+  return {noise.family, noise.sigma,       noise.resolution, low,         high,
+          noise.edge,   noise.stamp_ratio, noise.lag,        noise.spread};
 }
 
 /// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its

@@ -184,7 +184,7 @@ Result<Plan> MakePlan(const SyntheticOptions& base) {
   const Result<Recording> recording = SimulateRecording(base);
   if (!recording) return tl::unexpected(recording.error());
   Plan plan;
-  plan.parameters = FitParameters(base.model, base.start, base.quantity);
+  plan.parameters = ParametersOf(base);
   plan.truth = TrueParameters(base);
   plan.physical = base.parameters.size();
   if (base.noise == 0) plan.noise_of_levels = NoiseOfLevels(base.resolution);

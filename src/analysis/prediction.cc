@@ -52,7 +52,6 @@ StartValues StartAtEstimates(const FitProblem& problem, const FitReport& fit) {
     start.parameters[i] = std::clamp(internal, problem.solve.lower[i], problem.solve.upper[i]);
   }
   start.natural_frequency = 1 / std::sqrt(start.parameters[0]);
-  if (problem.data.drifts) start.parameters.pop_back();  // the options begin it
   return start;
 }
 
@@ -60,7 +59,8 @@ FitOptions OptionsAtEstimates(const FitProblem& problem, const FitReport& fit, F
   options = AskAlike(fit, std::move(options));
   options.start_values = StartAtEstimates(problem, fit);
   options.initial.clear();
-  if (problem.data.drifts) options.initial[std::string(problem.infos.back().name)] = fit.parameters.back().estimate;
+  if (problem.zero_motion != ZeroMotion::kNone)
+    options.initial[std::string(problem.infos.back().name)] = fit.parameters.back().estimate;
   options.interval = IntervalMethod::kCovariance;
   options.progress = nullptr;
   return options;

@@ -86,8 +86,8 @@ Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions&
   FitOptions narrowed = options;
   narrowed.model = simpler->name;
   if (options.start_values) narrowed.start_values = StartOf(*simpler, problem);
-  const std::vector<ParameterInfo> known =
-      FitParameters(*FindMotionModel(narrowed.model), problem.start.start, recording.quantity, true);
+  const std::vector<ParameterInfo> known = FitParameters(*FindMotionModel(narrowed.model), problem.start.start,
+                                                         recording.quantity, problem.zero_motion, problem.data.sensor);
   KeepKnown(known, narrowed.fixed);
   KeepKnown(known, narrowed.initial);
   KeepKnown(known, narrowed.bounds);

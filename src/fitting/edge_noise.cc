@@ -39,8 +39,16 @@ Differences DifferencesOf(const NoiseModel& noise, const Eigen::Ref<const Eigen:
 }  // namespace
 
 Recording WithEdges(Recording recording, const FitOptions& options) {
-  const bool wanted = options.noise == NoiseChoice::kAuto || options.noise == NoiseChoice::kEdges;
+  const bool wanted =
+      options.loss == Loss::kNone && (options.noise == NoiseChoice::kAuto || options.noise == NoiseChoice::kEdges);
   return wanted && !recording.edge && IsEventDriven(recording) ? TakeEdges(std::move(recording)) : recording;
+}
+
+std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero) {
+  if (zero == ZeroMotion::kNone) return {};
+  if (zero == ZeroMotion::kDrifts) return {times.begin(), times.end()};
+  const Eigen::VectorXd against = -EdgeDirections(recording);
+  return {against.begin(), against.end()};
 }
 
 Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,

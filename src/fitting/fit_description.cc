@@ -77,6 +77,7 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
   noise.lag1_correlation = Lag1Correlation(z);
   if (noise.family != NoiseFamily::kEdges) return noise;
   noise.stamp_ratio = solution.noise.stamp_ratio;
+  noise.lag = solution.noise.lag;
   noise.edge = solution.noise.edge;
   noise.spread = solution.noise.spread;
   return noise;

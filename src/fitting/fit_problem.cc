@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/closed_form/turns_view.h"
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/sensor_start.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/nesting.h"
@@ -176,9 +177,12 @@ tl::unexpected<Status> NeedsCalibration(const Recording& recording, const Motion
                    "need none");
 }
 
-bool NamesDrift(const FitOptions& options) {
+ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {
+  if (sensor.kind != SensorKind::kDirect) return ZeroMotion::kNone;
   const auto names = [](const auto& map) { return map.contains(kZeroDrift.name) || map.contains(kBiasDrift.name); };
-  return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+  const bool drifts = names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+  const bool lags = recording.edge && options.loss == Loss::kNone;
+  return drifts ? ZeroMotion::kDrifts : lags ? ZeroMotion::kLags : ZeroMotion::kNone;
 }
 
 }  // namespace
@@ -206,7 +210,7 @@ double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
   return left / (values.array() - values.mean()).matrix().squaredNorm();
 }
 
-std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, bool drifts,
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity, ZeroMotion zero,
                                          const SensorModel& sensor) {
   std::vector<ParameterInfo> infos = PhysicalParameters(model);
   if (start == StartKind::kRelease) {
@@ -220,7 +224,8 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
     return infos;
   }
   infos.push_back(quantity == Quantity::kRate ? kRateBias : kZeroAngle);
-  if (drifts) infos.push_back(quantity == Quantity::kRate ? kBiasDrift : kZeroDrift);
+  if (zero == ZeroMotion::kDrifts) infos.push_back(quantity == Quantity::kRate ? kBiasDrift : kZeroDrift);
+  if (zero == ZeroMotion::kLags) infos.push_back(kEdgeLag);
   return infos;
 }
 
@@ -295,7 +300,6 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   if (!model) return tl::unexpected(model.error());
   model->gravity = options.gravity.value_or(model->gravity);
   const SensorModel sensor = SensorOf(recording, model->gravity);
-  const bool is_direct = sensor.kind == SensorKind::kDirect;
   if (const Result<void> checked = CheckSensor(recording, *model, sensor, options); !checked) {
     return tl::unexpected(checked.error());
   }
@@ -312,15 +316,16 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
 
   problem.model = *model;
   problem.start = *start;
-  const bool drifts = is_direct && NamesDrift(options);
-  problem.infos = FitParameters(*model, start->start, recording.quantity, drifts, sensor);
-  if (drifts) problem.start.parameters.push_back(0);
+  problem.zero_motion = ZeroMotionOf(recording, sensor, options);
+  problem.infos = FitParameters(*model, start->start, recording.quantity, problem.zero_motion, sensor);
+  const bool moves = problem.zero_motion != ZeroMotion::kNone;
+  if (moves && problem.start.parameters.size() < problem.infos.size()) problem.start.parameters.push_back(0);
   if (problem.start.parameters.size() != problem.infos.size()) {
     return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
   }
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, sensor, *start);
-  problem.data.drifts = drifts;
+  problem.data.moves = Moves(recording, problem.data.times(), problem.zero_motion);
   problem.data.stop = options.stop;
   SetCensoring(recording, problem);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;

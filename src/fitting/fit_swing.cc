@@ -240,7 +240,10 @@ void WithdrawJumping(const std::string& why, FitReport& fit) {
 
 /// Says what became of jumps, and where there may be one that is too small to be told.
 void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
-  if (!jumps && !lacks && fit.noise.family != NoiseFamily::kQuantized && MayJump(fit)) {
+  // Of events a misfit hides nothing: what lasts between two edges is a zero's.
+  const bool may_tell =
+      fit.noise.family == NoiseFamily::kEdges || (!lacks && fit.noise.family != NoiseFamily::kQuantized);
+  if (!jumps && may_tell && MayJump(fit)) {
     fit.warnings.push_back({"zero_unsteady",
                             "the mean of the residuals changes within the window by more than chance has it: the zero "
                             "may have jumped or drifted by too little to be told; look at --residuals"});

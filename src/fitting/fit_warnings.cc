@@ -62,7 +62,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
                  std::vector<Warning>& warnings) {
   constexpr Eigen::Index kFewest = 5;
   constexpr double kSure = 5;  // standard errors
-  if (problem.data.drifts || problem.data.sensor.kind != SensorKind::kDirect) return;
+  if (problem.zero_motion == ZeroMotion::kDrifts || problem.data.sensor.kind != SensorKind::kDirect) return;
   const Eigen::VectorXd& time = recording.time;
   const double period = 2 * kPi / (problem.start.natural_frequency * recording.clock_scale);
   std::vector<double> when, mean;

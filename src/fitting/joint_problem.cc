@@ -24,9 +24,7 @@ Result<FitProblem> ProblemOf(const JointRun& run, FitOptions& options) {
   options.start_values = run.alone.start_values;
   options.initial.clear();
   for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {  // a parameter where the options name it
-    if (run.alone.Find(drift) == nullptr) continue;
-    options.start_values->parameters.pop_back();
-    if (!options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
+    if (run.alone.Find(drift) != nullptr && !options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
   }
   return MakeFitProblem(run.used, options);
 }
@@ -39,6 +37,7 @@ NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
   const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kEdges;
   noise.resolution = has_levels ? problem.resolution : 0;
   noise.stamp_ratio = alone.noise.stamp_ratio;
+  noise.lag = alone.noise.lag;
   noise.spread = alone.noise.spread;
   return noise;
 }

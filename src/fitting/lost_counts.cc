@@ -8,6 +8,8 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/edge_noise.h"
+#include "pendulum/fitting/edge_steps.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/zero_steps.h"
 
@@ -40,16 +42,6 @@ struct Left {
   FitResiduals residuals;
 };
 
-Eigen::VectorXd RateOf(const Eigen::VectorXd& time, const Eigen::VectorXd& readings) {
-  const Index last = readings.size() - 1;
-  Eigen::VectorXd rate(last + 1);
-  for (Index i = 0; i <= last; ++i) {
-    const Index before = std::max<Index>(i - 1, 0), after = std::min(i + 1, last);
-    rate[i] = (readings[after] - readings[before]) / (time[after] - time[before]);
-  }
-  return rate;
-}
-
 std::optional<Left> FitCorrected(const Recording& recording, const Recording& corrected, const FitOptions& options) {
   const Result<FitReport> fit = FitRecording(corrected, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
@@ -65,7 +57,7 @@ std::optional<Left> FitCorrected(const Recording& recording, const Recording& co
   if (!cost->Readings(parameters, &readings, &left.residuals.jacobian)) return std::nullopt;
   left.residuals.time = problem->data.times();
   left.residuals.residual = recording.value - readings;
-  left.residuals.rate = RateOf(left.residuals.time, readings);
+  left.residuals.rate = RatesOf(left.residuals.time, readings);
   left.residuals.period = 2 * kPi / problem->start.natural_frequency;
   return left;
 }
@@ -178,7 +170,8 @@ std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions&
     if (!left) return std::nullopt;
     if (round == 0) rms = left->rms;
     settled.explain = round > 0 && (!left->lacks || left->rms < kGoodPart * rms);
-    std::vector<ZeroStep> found = FindZeroSteps(left->residuals, kMostJumps, options.stop);
+    std::vector<ZeroStep> found = recording.edge ? FindEdgeSteps(left->residuals, recording)
+                                                 : FindZeroSteps(left->residuals, kMostJumps, options.stop);
     if (options.stop.stop_requested()) return std::nullopt;
     std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording); });
     settled.is_settled = AreAlike(found, settled.steps);

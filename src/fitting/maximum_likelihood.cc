@@ -52,14 +52,18 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
 /// One σ after the other, each with the parameters that belong to it.
 void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 15;
-  constexpr int kSpreadRounds = 3;  // in which edges learn what their stamps' errors are
-  constexpr double kSame = 3e-3;    // of σ: some tenths of its standard error at most
+  constexpr int kSpreadRounds = 3;   // in which edges learn what their stamps' errors are
+  constexpr double kMostLead = 0.4;  // of a count: its silences have some room left
+  constexpr double kSame = 3e-3;     // of σ: some tenths of its standard error at most
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
   const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
   for (int round = 0; round < kMostRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
     if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
+    if (problem.zero_motion == ZeroMotion::kLags) {
+      solution.noise.lag = std::max(solution.parameters.back(), -kMostLead * problem.resolution);
+    }
     const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
     const double change = std::abs(std::log(sigma / solution.noise.sigma));
     solution.noise.sigma = sigma;

@@ -112,7 +112,8 @@ struct Interval {
 Interval IntervalOf(const NoiseModel& noise, double y) {
   if (y <= noise.low) return {-kInfinity, noise.low};
   if (y >= noise.high) return {noise.high, kInfinity};
-  return {y - 0.5 * noise.resolution, y + 0.5 * noise.resolution};
+  const double half = 0.5 * noise.resolution + noise.lag;
+  return {y - half, y + half};
 }
 
 /// b · density, 0 where b is infinite.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <boost/math/distributions/students_t.hpp>
 
 #include "level_likelihoods.h"
@@ -130,6 +132,21 @@ void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& pa
   part.bread = part.meat = (sums - priors)(columns, columns);
 }
 
+/// The meat, in no direction less than the bread. A slow misfit taken for continuous noise has next to nothing at the
+/// swing's frequency: by its sandwich alone readings would tell more than independent ones of the same scatter.
+Eigen::MatrixXd NoLessThan(const Eigen::MatrixXd& bread, const Eigen::MatrixXd& meat) {
+  const Eigen::VectorXd scale = bread.diagonal().cwiseSqrt();
+  if (!(scale.array() > 0).all()) return meat;
+  const Eigen::VectorXd unit = scale.cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(unit.asDiagonal() * bread * unit.asDiagonal());
+  if (factor.info() != Eigen::Success) return meat;
+  const auto lower = factor.matrixL();
+  const Eigen::MatrixXd half = lower.solve(unit.asDiagonal() * meat * unit.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> over(lower.solve(half.transpose()));
+  const Eigen::MatrixXd root = scale.asDiagonal() * Eigen::MatrixXd(lower) * over.eigenvectors();
+  return root * over.eigenvalues().cwiseMax(1).asDiagonal() * root.transpose();
+}
+
 Part PartOf(const FittedRun& run, const Optimum& optimum) {
   Part part;
   part.samples = static_cast<double>(run.problem.data.time.size());
@@ -152,6 +169,7 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
   part.sigma_information = terms.sigma_information;
   if (!IsWhite(run) || noise.IsRobust()) {
     part.meat = MeatOf(run.problem, noise, terms, jacobian, run.correlation);
+    if (run.correlation.kind == Autocorrelation::Kind::kContinuous) part.meat = NoLessThan(part.bread, part.meat);
   } else {
     // σ is estimated beside the parameters.
     part.beside_sigma = !noise.IsPlain();

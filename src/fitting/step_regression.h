@@ -125,7 +125,7 @@ class StepRegression {
 
   /// The bin where one step more explains most, with that memory; -1: none.
   Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
-    constexpr Eigen::Index kEdge = 3;    // bins on either side
+    constexpr Eigen::Index kEdge = 3;    // bins on either side of the recording
     constexpr double kToldApart = 1e-6;  // of a step, beside the columns
     Explained explained;
     explained.memory = std::move(memory);
@@ -139,12 +139,10 @@ class StepRegression {
     for (Eigen::Index k = 0; k < explained.basis.cols(); ++k) norm -= Along(rise, explained.basis.col(k)).cwiseAbs2();
     Eigen::Index best = -1;
     double most = 0;
-    for (const Stretch& stretch : bins_.stretches) {
-      for (Eigen::Index i = stretch.begin + kEdge; i + kEdge <= stretch.begin + stretch.size; ++i) {
-        if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
-        most = product[i] * product[i] / norm[i];
-        best = i;
-      }
+    for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
+      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
+      most = product[i] * product[i] / norm[i];
+      best = i;
     }
     return best;
   }

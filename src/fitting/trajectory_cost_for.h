@@ -39,7 +39,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
-      : TrajectoryCost(kParameters + (data.drifts ? 1 : 0)),
+      : TrajectoryCost(kParameters + (data.moves.empty() ? 0 : 1)),
         gravity_(gravity),
         data_(data),
         used_samples_(data.time.size()) {
@@ -84,7 +84,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
     if (is_stopped()) return false;
     if (!last_.IsAt(Asking(p))) {
-      if (!(data_.drifts ? AddUp<2>(drifting_, p, sums) : AddUp<1>(steady_, p, sums))) return false;
+      if (!(data_.moves.empty() ? AddUp<1>(steady_, p, sums) : AddUp<2>(moving_, p, sums))) return false;
       last_.value = *sums;  // into the room it has
       last_.SetAt(Asking(p));
     }
@@ -115,7 +115,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       read(block.row[kModel].data(), first, count);
       for (int j = 0; j < kZero; ++j) std::copy_n(block.row[j].data(), count, &(*jacobian)(first, j));
       jacobian->col(kZero).segment(first, count).setOnes();
-      if (data_.drifts) jacobian->col(kZero + 1).segment(first, count) = data_.times().segment(first, count);
+      if (!data_.moves.empty()) std::copy_n(&data_.moves[first], count, &(*jacobian)(first, kZero + 1));
     };
     Samples<Dual, kParameters, double> columns;
     return VisitSamples(columns, p, work, add);
@@ -154,8 +154,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
   void Read(std::span<const double> p, const double* row, std::size_t first, int count, double* readings) const {
     const double zero = p[kZero];
     for (int i = 0; i < count; ++i) readings[i] = row[i] + zero;
-    if (!data_.drifts) return;
-    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.time[first + i];
+    if (data_.moves.empty()) return;
+    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.moves[first + i];
   }
 
   /// As noise_.At, without an exponential and an error function for every sample of a level.
@@ -175,7 +175,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     for (int i = 0; i < count; ++i) residuals[i] = value[i] - readings[i];
   }
 
-  /// The rows of a block whose products are wanted: derivatives, zero, its drift if there is one, residuals.
+  /// The rows of a block whose products are wanted: derivatives, zero, what moves it if anything does, residuals.
   template <int kBaseline>
   using Rows = SampleBlock<kZero + kBaseline + 1>;
 
@@ -193,7 +193,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     constexpr int kResidual = kZero + kBaseline;
     auto& residual = block.row[kResidual];
     std::fill_n(block.row[kZero].begin(), count, 1.0);
-    if constexpr (kBaseline == 2) std::copy_n(data_.time.begin() + first, count, block.row[kZero + 1].begin());
+    if constexpr (kBaseline == 2) std::copy_n(&data_.moves[first], count, block.row[kZero + 1].begin());
     if (noise_.IsPlain()) {
       FindResiduals(readings, first, count, residual.data());
       return 0;
@@ -209,8 +209,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return deviance;
   }
 
-  /// kBaseline parameters for the zero: itself, and its drift. Residuals are measured - modelled: their derivatives are
-  /// minus the model's.
+  /// kBaseline parameters for the zero: itself, and what moves it. Residuals are measured - modelled: their derivatives
+  /// are minus the model's.
   template <int kBaseline>
   bool AddUp(auto& samples, std::span<const double> p, Eigen::MatrixXd* sums) const {
     constexpr int kResidual = kZero + kBaseline;
@@ -365,7 +365,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   // Room that evaluations leave to the next one.
   mutable Samples<double, 1, double> values_;
   mutable Samples<Dual, kZero + 2, Part<1>> steady_;
-  mutable Samples<Dual, kZero + 3, Part<2>> drifting_;
+  mutable Samples<Dual, kZero + 3, Part<2>> moving_;
 };
 
 }  // namespace pendulum

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Index;
 
-/// Counts from the row before; 0 for the first one.
-double StepTo(const Recording& recording, Index i) {
-  return i == 0 ? 0 : std::round((recording.value[i] - recording.value[i - 1]) / recording.resolution);
+/// Counts from the row before, in parts of a count; 0 for the first one.
+double StepTo(const Recording& recording, Index i, double parts = 1) {
+  return i == 0 ? 0 : std::round(parts * (recording.value[i] - recording.value[i - 1]) / recording.resolution);
 }
 
 bool HasUnevenStamps(const Recording& recording) {
@@ -23,6 +23,33 @@ bool HasUnevenStamps(const Recording& recording) {
   Eigen::VectorXd intervals = recording.time.tail(last) - recording.time.head(last);
   std::sort(intervals.begin(), intervals.end());
   return intervals[last * 9 / 10] > kUneven * intervals[last / 10];
+}
+
+/// Runs of rows in one direction: where each begins, and the end.
+std::vector<Index> RunsOf(const Recording& recording) {
+  std::vector<Index> begins = {0};
+  double direction = 0;
+  for (Index i = 1; i < recording.size(); ++i) {
+    const double step = StepTo(recording, i);
+    if (step * direction < 0) begins.push_back(i);
+    if (step != 0) direction = step;
+  }
+  begins.push_back(recording.size());
+  return begins;
+}
+
+/// Which rows are a slip amid a motion: one or two against it between long runs. A counter that misses edges while its
+/// logger is busy makes them; they are no edges at their stamps.
+std::vector<bool> Slips(const Recording& recording) {
+  constexpr Index kShort = 2, kLong = 8;
+  const std::vector<Index> begins = RunsOf(recording);
+  const auto size = [&](std::size_t k) { return begins[k + 1] - begins[k]; };
+  std::vector<bool> slips(static_cast<std::size_t>(recording.size()), false);
+  for (std::size_t k = 1; k + 2 < begins.size(); ++k) {
+    if (size(k) > kShort || size(k - 1) < kLong || size(k + 1) < kLong) continue;
+    std::fill(slips.begin() + begins[k], slips.begin() + begins[k + 1], true);
+  }
+  return slips;
 }
 
 /// The direction changes between two rows one count apart: the angle turned within the count of the first.
@@ -45,12 +72,17 @@ bool BeginsHeld(const Recording& recording) {
   return recording.time[1] - recording.time[0] > kLonger * longest;
 }
 
-Warning NoteOf(Index silences) {
-  return {"event_driven",
-          "a row stands only where the count changes: each is taken as the edge of its count, crossed "
-          "at its stamp, and the angle as within its count in " +
-              std::to_string(silences) +
-              " silences at turning points and rest; --noise gaussian takes the rows for samples"};
+Warning NoteOf(Index silences, std::ptrdiff_t slips) {
+  std::string text =
+      "a row stands only where the count changes: each is taken as the edge of its count, crossed at its stamp, and "
+      "the "
+      "angle as within its count in " +
+      std::to_string(silences) + " silences at turning points and rest";
+  if (slips > 0) {
+    text += "; " + std::to_string(slips) + (slips == 1 ? " row" : " rows") +
+            " against the motion left out: the counter slipped";
+  }
+  return {"event_driven", text + "; --noise gaussian takes the rows for samples"};
 }
 
 }  // namespace
@@ -77,14 +109,17 @@ bool IsEventDriven(const Recording& recording) {
 
 Recording TakeEdges(Recording recording) {
   const double half = 0.5 * recording.resolution;
+  const std::vector<bool> slips = Slips(recording);
+  const auto slipped = [&](Index i) { return slips[static_cast<std::size_t>(i)]; };
   std::vector<double> time, value;
   Index silences = 0;
   for (Index i = BeginsHeld(recording) ? 1 : 0; i < recording.size(); ++i) {
+    if (slipped(i)) continue;
     const double step = StepTo(recording, i);
     time.push_back(recording.time[i]);
     value.push_back(recording.value[i] - (step > 0 ? half : step < 0 ? -half : 0.0));
     silences += step == 0 ? 1 : 0;
-    if (!TurnsAfter(recording, i)) continue;
+    if (!TurnsAfter(recording, i) || slipped(i + 1)) continue;
     const double middle = 0.5 * (recording.time[i] + recording.time[i + 1]);
     if (!(recording.time[i] < middle && middle < recording.time[i + 1])) continue;
     time.push_back(middle);
@@ -95,8 +130,23 @@ Recording TakeEdges(Recording recording) {
   recording.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Index>(time.size()));
   recording.value = Eigen::Map<const Eigen::VectorXd>(value.data(), static_cast<Index>(value.size()));
   std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "event_driven"; });
-  recording.warnings.push_back(NoteOf(silences));
+  recording.warnings.push_back(NoteOf(silences, std::ranges::count(slips, true)));
   return recording;
+}
+
+Eigen::VectorXd EdgeDirections(const Recording& recording) {
+  constexpr double kHalves = 2;
+  const Index last = recording.size() - 1;
+  Eigen::VectorXd directions(recording.size());
+  for (Index i = 0; i <= last; ++i) {
+    const double levels = (recording.value[i] - *recording.edge) / recording.resolution;
+    const bool is_silence = std::abs(levels - std::round(levels)) > 0.25;
+    const double from = StepTo(recording, i, kHalves);
+    const double to = i == last ? 0 : StepTo(recording, i + 1, kHalves);
+    const double step = std::abs(to) == kHalves || from == 0 ? to : from;
+    directions[i] = is_silence || step == 0 ? 0 : std::copysign(1.0, step);
+  }
+  return directions;
 }
 
 }  // namespace pendulum

@@ -107,7 +107,7 @@ std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& mo
   }
   infos.insert(infos.end(),
                {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias, kZeroDrift, kBiasDrift,
-                kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX, kPivotY});
+                kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX, kPivotY, kEdgeLag});
   return infos;
 }
 

@@ -250,6 +250,7 @@ std::vector<double> TrueParameters(const SyntheticOptions& options) {
   } else {
     parameters.insert(parameters.end(), options.sensor_parameters.begin(), options.sensor_parameters.end());
   }
+  if (options.rows == RowTiming::kEvents) parameters.push_back(options.edge_lag);
   return parameters;
 }
 

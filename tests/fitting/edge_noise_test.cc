@@ -154,6 +154,27 @@ TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
   }
 }
 
+/// A lag of a third of a count taken for none would be friction: it is told from it.
+TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
+  SyntheticOptions run = Encoder(7);
+  run.edge_lag = 0.35 * kResolution;
+  const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
+  const FitReport fit = Must(FitRecording(edges, {}));
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  const std::vector<double> truth = TrueParameters(run);
+  ASSERT_EQ(fit.parameters.size(), truth.size());
+  EXPECT_EQ(fit.parameters.back().info.name, "edge_lag");
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    ASSERT_TRUE(fit.parameters[i].std_error) << fit.parameters[i].info.name;
+    EXPECT_THAT(fit.parameters[i].estimate, DoubleNear(truth[i], 4 * *fit.parameters[i].std_error))
+        << fit.parameters[i].info.name;
+  }
+  FitOptions blind;
+  blind.fixed["edge_lag"] = 0;
+  const FitReport taken_for_none = Must(FitRecording(edges, blind));
+  EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 10 * *fit.Find("coulomb")->std_error);
+}
+
 TEST(EdgeNoise, IsRefusedForRowsThatAreNoEvents) {
   SyntheticOptions run = Encoder(1);
   run.rows = RowTiming::kEvenOfEvents;

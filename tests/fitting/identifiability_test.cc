@@ -26,7 +26,7 @@ TEST(MeasurementFor, IsThereForEveryParameterOfEveryModel) {
   for (const MotionModel& model : MotionModels()) {
     for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) {
       for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
-        for (const ParameterInfo& info : FitParameters(model, start, quantity, true)) {
+        for (const ParameterInfo& info : FitParameters(model, start, quantity, ZeroMotion::kDrifts)) {
           EXPECT_FALSE(MeasurementFor(info.name).empty()) << info.name;
         }
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/lost_counts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/fit_swing.h"
 #include "tests/fitting/fit_support.h"
 
@@ -98,6 +100,46 @@ TEST(FitSwing, FindsLostCountsWhateverTheLawAskedFor) {
   const SwingFit result = Fit(Must(SimulateRecording(run)), "viscous");
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 4 counts at 6.5"));
   EXPECT_TRUE(result.fit.Warns("lack_of_fit"));  // there is dry friction
+}
+
+TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
+  for (const int counts : {1, 2, 5}) {
+    SyntheticOptions run = CountingRun(0.5);
+    run.lost_counts = {{9.5, counts}};
+    Recording recording = Must(SimulateRecording(run));
+    const Eigen::Index gap = 900, size = 100;  // 9 s to 10 s
+    const Eigen::Index behind = recording.size() - gap - size;
+    recording.time.segment(gap, behind) = recording.time.tail(behind).eval();
+    recording.value.segment(gap, behind) = recording.value.tail(behind).eval();
+    recording.time.conservativeResize(gap + behind);
+    recording.value.conservativeResize(gap + behind);
+    const SwingFit result = Fit(recording);
+    EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("at 10 s")) << counts;
+    EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4)) << counts;
+  }
+}
+
+/// An encoder's events, whose counter loses one at a turning point now and then, and four amid the motion: there its
+/// logger was busy, so that rows are missing.
+TEST(FitSwing, MovesBackWhatAnEncoderOfEventsLost) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.start = StartKind::kMoving;
+  run.initial_angle = -0.3;
+  run.initial_rate = 0.5;
+  run.rows = RowTiming::kEvents;
+  run.sample_rate = 1000;
+  run.resolution = 0.0026;
+  run.edge_lag = 0.35 * run.resolution;
+  run.noise = 0.05 * run.resolution;
+  for (int k = 0; k < 14; ++k) run.lost_counts.push_back({1.3 + 1.297 * k, k % 3 == 0 ? -1 : 1});
+  run.lost_counts.push_back({12.4, -4});
+  std::ranges::sort(run.lost_counts, {}, &LostCounts::time);
+  const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
+  const SwingFit result = Fit(edges);
+  EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("and 10 times more"));
+  EXPECT_FALSE(result.fit.Warns("lack_of_fit"));
+  EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
 
 TEST(FitSwing, LeavesAJumpNearTheEndInTheWindow) {

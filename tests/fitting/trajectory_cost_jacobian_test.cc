@@ -108,7 +108,7 @@ TEST(Readings, OfAZeroThatDriftsHaveTheJacobianOfCentralDifferences) {
     TrajectoryData data = Samples(quantity, 500);
     const auto steady = MakeTrajectoryCost(model, start, data);
     TrajectoryData drifting = data;
-    drifting.drifts = true;
+    drifting.moves = drifting.time;
     const auto cost = MakeTrajectoryCost(model, start, drifting);
     std::vector<double> p = TypicalParameters(model, start);
     Eigen::VectorXd readings;

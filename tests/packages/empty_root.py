@@ -10,7 +10,7 @@ import shutil
 import subprocess
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
-GLIBC = r"(?:ld-linux[^/]*|libc|libm|libmvec|libpthread|libdl|librt)\.so\.\d+"
+GLIBC = r"(?:ld-linux[^/]*|libc|libm|libmvec|libpthread|libdl|librt|libresolv|libutil)\.so\.\d+"
 DATA = ["datasets/coulomb.csv", "datasets/textbook_rig.json"]
 FIT = ["--data", DATA[0], "--rig", DATA[1], "--model", "coulomb", "--json", "-"]
 

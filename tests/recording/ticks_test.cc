@@ -91,6 +91,28 @@ TEST(TakeEdges, TakesARepeatedCountForASilence) {
   EXPECT_THAT(edges.value[3], DoubleNear(2 * kResolution, 1e-15));
 }
 
+/// Rows against a fast motion between its long runs: a logger was busy, and the counter missed edges.
+TEST(TakeEdges, LeavesOutRowsOfACounterThatSlipped) {
+  std::vector<double> time, counts;
+  for (int i = 0; i < 24; ++i) {
+    time.push_back(i);
+    counts.push_back(i < 12 ? i : i - 4);  // 11, 8 and on: three edges missed, one counted backwards
+  }
+  const Recording edges = TakeEdges(Of(time, counts));
+  ASSERT_EQ(edges.size(), 23);
+  EXPECT_EQ(edges.time[12], 13);
+  EXPECT_THAT(edges.value[11], DoubleNear(10.5 * kResolution, 1e-15));
+  EXPECT_THAT(edges.value[12], DoubleNear(8.5 * kResolution, 1e-15));
+  EXPECT_THAT(edges.warnings[0].message, HasSubstr("1 row against the motion"));
+}
+
+TEST(EdgeDirections, AreThoseInWhichEdgesWereCrossed) {
+  const Recording edges = TakeEdges(Of({0, 1, 2, 3, 5, 6, 7, 8}, {0, 1, 2, 3, 2, 1, 0, -1}));
+  const Eigen::VectorXd directions = EdgeDirections(edges);
+  const std::vector<double> expected = {0, 1, 1, 1, 0, -1, -1, -1, -1};
+  EXPECT_EQ(std::vector<double>(directions.begin(), directions.end()), expected);
+}
+
 TEST(TakeEdges, LeavesOutAFirstRowThatAHoldFollows) {
   const Recording edges = TakeEdges(Of({-20, 1, 2, 3, 5, 6, 7, 8}, {0, 1, 2, 3, 2, 1, 0, -1}));
   EXPECT_EQ(edges.time[0], 1);

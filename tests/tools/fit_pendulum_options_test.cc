@@ -179,7 +179,8 @@ TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
 TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
   EXPECT_EQ(RefusalOfFix("drag=0.1"),
             "--fix: model coulomb has no parameter 'drag'; its parameters are inertia, viscous, coulomb, "
-            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, zero_drift, bias_drift");
+            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, zero_drift, bias_drift, "
+            "rate_scale, acceleration_bias, acceleration_scale, axis, radius, pivot_x, pivot_y, edge_lag");
 }
 
 TEST(MakeFitPendulumOptions, SaysOfTheFileWhatItDoesNotSayItself) {

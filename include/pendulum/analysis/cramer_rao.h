@@ -6,9 +6,13 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/model/parameter.h"
 #include "pendulum/trajectory/synthetic.h"
 
 namespace pendulum {
+
+/// The parameters of a fit to a simulated recording, as TrueParameters has them.
+std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run);
 
 /// The Cramér-Rao bound of each parameter of a simulated recording: no unbiased estimate has a smaller standard
 /// deviation. Of the noise actually simulated, its size unknown; J (N x P): the readings' sensitivities at the truth.

@@ -29,7 +29,7 @@ class FittedMotion {
   /// The same start, zero and parameters with that gravity.
   FittedMotion WithGravity(Gravity gravity) const;
 
-  bool drifts() const { return drifts_; }
+  bool drifts() const { return zero_motion_ == ZeroMotion::kDrifts; }
 
   /// The same with a zero that stays where it is at first.
   FittedMotion WithoutDrift() const;
@@ -38,7 +38,8 @@ class FittedMotion {
   FittedMotion WithViscous(double inertia, double viscous) const;
 
   /// The readings at instants (N, s from the first sample, increasing), rad or rad/s; and unless null their N x P
-  /// derivatives, in the units of the fit's report. Nothing when the motion cannot be traced.
+  /// derivatives, in the units of the fit's report; the lag of edges at the recording's own instants alone. Nothing when
+  /// the motion cannot be traced.
   std::optional<Eigen::VectorXd> Readings(const Eigen::VectorXd& instants, Eigen::MatrixXd* jacobian = nullptr) const;
 
   /// The motion over the recording; nothing when it cannot be traced.
@@ -49,10 +50,11 @@ class FittedMotion {
   StartKind start_;
   Quantity quantity_;
   SensorModel sensor_;
-  bool drifts_ = false;
+  ZeroMotion zero_motion_ = ZeroMotion::kNone;
   std::vector<double> parameters_;  // P, units of G, times from the first sample
   std::vector<double> reported_;    // P: report's unit per unit of parameters_
   Eigen::VectorXd instants_;
+  std::vector<double> against_;  // N, of edges that lag: what their lag multiplies at the recording's instants
   std::stop_token stop_;
 };
 

@@ -15,6 +15,10 @@ namespace pendulum {
 /// The recording as its edges (TakeEdges) where it is event-driven and the options do not ask for other noise.
 Recording WithEdges(Recording recording, const FitOptions& options);
 
+/// What the parameter of a zero's motion multiplies in the readings (N; TrajectoryData::moves): the times [s, from the
+/// first sample], or minus the direction of each edge; none of a zero that has no motion.
+std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero);
+
 /// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each; rad/s.
 Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings);

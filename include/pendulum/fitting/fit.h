@@ -107,6 +107,7 @@ struct NoiseEstimate {
   Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
   // Of edges, as in NoiseModel.
   double stamp_ratio = 0;  ///< s/rad: standard deviation of a stamp over sigma.
+  double lag = 0;          ///< rad: the estimate of edge_lag.
   std::optional<double> edge = std::nullopt;
   std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
 };
@@ -164,18 +165,25 @@ void WithdrawErrors(std::string_view why, FitReport& fit);
 /// `options` that ask for the kind of start and the noise family that `fit` came out with; a robust loss has its own.
 FitOptions AskAlike(const FitReport& fit, FitOptions options);
 
+/// What else a direct sensor's zero does.
+enum class ZeroMotion {
+  kNone,
+  kDrifts,  ///< Moves with time: zero_drift or bias_drift.
+  kLags,    ///< Of events: stays behind in the direction of motion, edge_lag.
+};
+
 /// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
-/// initial_rate, then those of the sensor: zero_angle or rate_bias, and its drift if it `drifts`, of a direct one.
+/// initial_rate, then those of the sensor: of a direct one zero_angle or rate_bias, and the zero's motion.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
-                                         bool drifts = false, const SensorModel& sensor = {});
+                                         ZeroMotion zero = ZeroMotion::kNone, const SensorModel& sensor = {});
 
 /// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
-/// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise.
-/// kInvalidArgument: no such model, a name in the options that it does not have with this start, a value outside its
-/// bounds, quantized noise without a resolution, edges of a recording that has none, either with a robust loss.
-/// kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or too little of one. kTryAgain:
-/// options.stop was requested. Cost: about a millisecond for 2000 samples, three with the quantized likelihood, tens
-/// where the pendulum comes to rest.
+/// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise; else edge_lag
+/// is one of events, MODEL.md eq. (81). kInvalidArgument: no such model, a name in the options that it does not have
+/// with this start, a value outside its bounds, quantized noise without a resolution, edges of a recording that has
+/// none, either with a robust loss. kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or
+/// too little of one. kTryAgain: options.stop was requested. Cost: about a millisecond for 2000 samples, three with the
+/// quantized likelihood, tens where the pendulum comes to rest.
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

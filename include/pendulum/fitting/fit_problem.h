@@ -19,6 +19,7 @@ struct FitProblem {
   std::vector<double> offset;           ///< P; the clock of the first sample for release_time, else 0.
   std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
   TrajectoryData data;
+  ZeroMotion zero_motion = ZeroMotion::kNone;
   SolveOptions solve;
   std::size_t sensor_starts = 1;  ///< Ways to begin that there are, of which one is `start`.
   bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.

@@ -65,6 +65,7 @@ struct NoiseModel {
   double low = -kInfinity, high = kInfinity;  ///< Same unit; readings at them or beyond are censored.
   std::optional<double> edge = std::nullopt;  ///< Same unit; of events one of the edges, as Recording::edge.
   double stamp_ratio = 0;                     ///< Standard deviation of a stamp over σ [s/rad]; of edges.
+  double lag = 0;                             ///< Same unit, of edges: a silence reaches so far beyond its count.
   /// N, of edges: sample i has the standard deviation σ · spread[i], its stamp's error included; none: all have σ.
   std::shared_ptr<const std::vector<double>> spread = nullptr;
 
@@ -88,7 +89,7 @@ struct NoiseModel {
   NoiseModel ForSample(Eigen::Index i) const {
     if (!spread) return *this;
     const double own = sigma * (*spread)[static_cast<std::size_t>(i)];
-    return {family, own, resolution, low, high, edge, stamp_ratio, nullptr};
+    return {family, own, resolution, low, high, edge, stamp_ratio, lag, nullptr};
   }
   /// The noise of the samples from `first` on.
   NoiseModel From(Eigen::Index first) const {

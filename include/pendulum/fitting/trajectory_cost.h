@@ -27,9 +27,11 @@ struct TrajectoryData {
   SensorModel sensor;               ///< How readings follow from the motion.
   double natural_frequency = 0;     ///< rad/s, roughly; a trial of a very different time scale is refused.
   double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
-  bool drifts = false;              ///< The zero moves: one parameter more.
-  double scale = 1;                 ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
-  std::stop_token stop;             ///< Once it is requested, nothing is evaluated any more.
+  /// N, or none: what one parameter more multiplies. Of a zero that drifts the times, of edges that lag minus the
+  /// direction of each.
+  std::vector<double> moves;
+  double scale = 1;      ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
+  std::stop_token stop;  ///< Once it is requested, nothing is evaluated any more.
 
   Eigen::Map<const Eigen::VectorXd> times() const { return {time.data(), static_cast<Eigen::Index>(time.size())}; }
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
@@ -45,8 +47,8 @@ struct MotionStates {
 /// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
 /// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
 /// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
-/// the reading per s] where the data ask for it; instead of the zero the parameters of data.sensor unless it is direct.
-/// The squared residual of a sample is its deviance under the noise,
+/// the reading per s] or the edges' lag [rad] where the data say what it moves; instead of the zero the parameters of
+/// data.sensor unless it is direct. The squared residual of a sample is its deviance under the noise,
 /// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale). As a ceres::CostFunction it has
 /// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
 /// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of

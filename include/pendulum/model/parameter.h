@@ -100,5 +100,7 @@ inline constexpr ParameterInfo kBiasDrift{"bias_drift",
                                           -kUnbounded,
                                           kUnbounded,
                                           "how fast rate_bias, that of the first used sample, moves"};
+inline constexpr ParameterInfo kEdgeLag{
+    "edge_lag", "h", "rad", "rad", -kUnbounded, kUnbounded, "how far behind its edge an encoder changes its count"};
 
 }  // namespace pendulum

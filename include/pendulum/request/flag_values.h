@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// The name that a misspelt one most likely stands for, by Levenshtein's distance; empty: it resembles none of them.
+/// The name that a misspelt one most likely stands for, by Damerau's distance; empty: it resembles none of them.
 std::string NearestName(std::string_view name, std::span<const std::string_view> names);
 
 /// kInvalidArgument: what is wrong with a flag.

@@ -52,13 +52,14 @@ struct SyntheticOptions {
   std::optional<SensorRange> range;     ///< rad or rad/s; none is unlimited.
   std::vector<LostCounts> lost_counts;  ///< Of a sensor with levels; range is that of the levels before.
   RowTiming rows = RowTiming::kEven;    ///< Of events `noise` is the error of each crossing of an edge.
+  double edge_lag = 0;                  ///< Of events: how far behind its edge the count changes [rad].
   double time_noise = 0;                ///< Standard deviation of the error of an event's stamp [s].
 
   std::uint64_t seed = 1;  ///< Of noise and jitter.
 };
 
 /// Parameters the recording is made with, in the order of a fit: of the model (units of G), of the start, of the
-/// sensor.
+/// sensor, and edge_lag of events.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
 /// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the

@@ -26,6 +26,7 @@ export const kCircumstances = new Set([
   'radius',
   'pivot_x',
   'pivot_y',
+  'edge_lag',
 ]);
 
 /** Words, symbol and the name that flags and JSON use. */

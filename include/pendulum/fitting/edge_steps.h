@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/fitting/zero_steps.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// Where the count of an event-driven encoder slips: at turning points, where an edge is crossed to and fro, and where
+/// rows are missing. Within a run of successive edges in one direction nothing is lost, so each run has a zero of its
+/// own beside the parameters, and what these zeros differ by is a number of counts (MODEL.md eq. (68)). Steps of no
+/// counts are left out; one that is not within 0.35 of a number has its own size.
+///
+/// residuals    of a fit to the edges, N
+/// edges        N, from TakeEdges
+std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges);
+
+}  // namespace pendulum
