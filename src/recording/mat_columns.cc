@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <matio.h>
+#include <sys/resource.h>
 
 #include "runs.h"
 
@@ -30,9 +31,24 @@ constexpr const char* kTopLevel = "top level";
 
 std::string* complaint = nullptr;  // Where matio complains to; it has no other place to remember whom it speaks to.
 
+/// That a file ends too early is only a warning, and numbers are wrong after it; that it holds a kind of object or text
+/// which matio does not know is one too, and says nothing of the other variables.
 void TakeComplaint(int level, char* message) {
   constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
-  if (complaint != nullptr && (level & kSerious) != 0 && complaint->empty()) *complaint = message;
+  const auto says = [&](std::string_view words) {
+    return std::string_view(message).find(words) != std::string_view::npos;
+  };
+  if (complaint == nullptr || (level & kSerious) == 0) return;
+  if (level == MATIO_LOG_LEVEL_WARNING && (says("not a supported class") || says("for character data"))) return;
+  // HDF5's reasons come one by one, from the outermost to the first.
+  const bool is_other_file = says("minor: Unable to open file");
+  if (is_other_file || complaint->empty()) *complaint = is_other_file ? kOtherFile : message;
+}
+
+/// From here on this process opens no file.
+void OpenNoMore() {
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_NOFILE, &none);
 }
 
 /// `t`, `time` and `tout`, which Simulink writes, are times in seconds.
@@ -224,6 +240,7 @@ MatTable ReadMatTable(const std::string& path) {
   complaint = &table.complaint;
   Mat_LogInitFunc("matio", TakeComplaint);
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  OpenNoMore();
   if (file == nullptr && table.complaint.empty()) table.complaint = "no MAT-file";
   Collector collector(table);
   while (file != nullptr) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -24,6 +26,7 @@
 #include "pendulum/base/sha256.h"
 #include "to_angle.h"
 #include "to_recording.h"
+#include "write_all.h"
 
 namespace pendulum {
 namespace {
@@ -69,13 +72,9 @@ class TemporaryFile {
     const std::filesystem::path folder = std::filesystem::temp_directory_path(unknown);
     path_ = ((unknown ? "/tmp" : folder) / "pendulum_XXXXXX").string();
     const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
-    if (descriptor < 0) return;
-    exists_ = true;
-    ssize_t written = 1;
-    for (; !bytes.empty() && written > 0; bytes.remove_prefix(std::max<ssize_t>(written, 0))) {
-      written = ::write(descriptor, bytes.data(), bytes.size());
-    }
-    is_whole_ = ::close(descriptor) == 0 && bytes.empty();
+    exists_ = descriptor >= 0;
+    if (!exists_ || !WriteAll(descriptor, bytes)) error_ = errno;
+    if (exists_ && ::close(descriptor) != 0 && error_ == 0) error_ = errno;
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile(TemporaryFile&&) = delete;
@@ -85,31 +84,62 @@ class TemporaryFile {
     if (exists_) ::unlink(path_.c_str());
   }
 
-  bool is_whole() const { return is_whole_; }
+  int error() const { return error_; }  // The errno of what went wrong, or 0.
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
   bool exists_ = false;
-  bool is_whole_ = false;
+  int error_ = 0;
 };
+
+/// A second is enough for a hundred megabytes, and for ever is what some damaged files take.
+ChildLimits LimitsFor(std::size_t bytes) {
+  ChildLimits limits;
+  limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
+  limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Others use the processors too.
+  return limits;
+}
+
+/// Why matio gave no table, and what to do.
+tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, const std::string& name) {
+  constexpr std::string_view kLess = "; save only the times and the angles, or export them as CSV";
+  const std::string less(kLess);
+  switch (failure) {
+    case ChildFailure::kNotStarted: break;
+    case ChildFailure::kCrashed:
+      return Fault(name, "this MAT-file is damaged: matio, which reads it, broke off; save it again");
+    case ChildFailure::kOutOfTime:
+      return Fault(name, "this MAT-file takes longer to read than " + std::to_string(limits.processor_seconds) +
+                             " s of a processor: it is damaged or holds too much" + less);
+    case ChildFailure::kOutOfMemory:
+      return Fault(name, "this MAT-file needs more memory to read than the " + std::to_string(limits.memory_bytes) +
+                             " bytes that it may have: it is damaged or holds too much" + less);
+    case ChildFailure::kAnswerTooLarge:
+      return Fault(name, "this MAT-file unpacks to more than " + std::to_string(limits.answer_bytes) +
+                             " bytes, too many for a recording" + less);
+  }
+  return Error(StatusCode::kTryAgain, name + ": no process could be started to read it in; try again");
+}
 
 Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
   if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
   const TemporaryFile file(bytes);
-  if (!file.is_whole()) {
-    return Error(StatusCode::kTryAgain,
-                 name + ": there is no room for a copy in the folder of temporary files; make some");
+  if (file.error() != 0) {
+    const std::string folder = std::filesystem::path(file.path()).parent_path().string();
+    return Error(StatusCode::kTryAgain, name + ": there can be no copy of this MAT-file in " + Quoted(folder) + " (" +
+                                            std::generic_category().message(file.error()) +
+                                            "); make room there, or name another folder in TMPDIR");
   }
-  // A second is enough for a hundred megabytes, and for ever is what some damaged files take.
-  const int seconds = 2 + static_cast<int>(bytes.size() >> 25);
-  const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, seconds);
-  if (!packed && packed.error().message.empty()) {
-    return Fault(name, "this MAT-file is damaged: matio, which reads it, did not come to its end; save it again");
-  }
-  if (!packed) return Error(packed.error().code, name + ": " + packed.error().message);
+  const ChildLimits limits = LimitsFor(bytes.size());
+  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, limits);
+  if (!packed) return NoTable(packed.error(), limits, name);
   MatTable table = UnpackMatTable(*packed);
   if (table.complaint.empty()) return table;
+  if (table.complaint == kOtherFile) {
+    return Fault(name,
+                 "this MAT-file says that numbers of it are in another file, which is not opened; save all in one");
+  }
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
@@ -196,14 +226,13 @@ Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const
   read.layout.has_header = true;
   csv::ColumnChooser chooser(line, *names, options, false, false);
   if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
-  std::vector<Warning> warnings;
-  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, warnings); !checked) {
-    return tl::unexpected(checked.error());
-  }
   Result<RawSamples> samples = SamplesOf(*table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);
   if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
   read.samples = *std::move(samples);
+  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings); !checked) {
+    return tl::unexpected(checked.error());
+  }
   read.sha256 = *std::move(sha256);
   if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
   return csv::ToRecording(std::move(read), line, options);

@@ -3,12 +3,18 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "pendulum/base/sha256.h"
 #include "tests/recording/mat_files.h"
@@ -185,6 +191,50 @@ TEST(ReadMat, SurvivesBytesThatAreChanged) {
       EXPECT_NE(recording.error().code, StatusCode::kInternal);
     }
   }
+}
+
+TEST(ReadMat, SaysWhyThereIsNoCopyForMatio) {
+  const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
+  const char* const before = std::getenv("TMPDIR");
+  const std::string folder = before == nullptr ? "" : before;
+  ::setenv("TMPDIR", "/proc", 1);  // where nobody makes a file
+  EXPECT_EQ(FaultOf(bytes, {}, StatusCode::kTryAgain),
+            "run.csv: there can be no copy of this MAT-file in \"/proc\" (No such file or directory); make room there, "
+            "or name another folder in TMPDIR");
+  before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", folder.c_str(), 1);
+}
+
+// ---- Files that would have others read --------------------------------------------------------------------------
+
+/// A file of version 7.3, made by HDF5, whose counts are the bytes of another file: by external storage, or by a link
+/// to a variable there. Its path has many slashes before it, which leave room for another.
+std::string WithOtherFile(const std::string& corpus_file, const std::string& other) {
+  const std::string exe = "/proc/self/exe";  // Its first bytes are 0x7F 'E' 'L' 'F' (elf(5)).
+  std::ifstream stream("tests/fuzz/corpus/mat/" + corpus_file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t end = bytes.find(exe) + exe.size();
+  EXPECT_LT(end, bytes.size());
+  const std::size_t begin = bytes.find_last_not_of('/', end - exe.size()) + 1;
+  return bytes.replace(begin, end - begin, std::string(end - begin - other.size(), '/') + other);
+}
+
+constexpr const char* kOneFile =
+    "run.csv: this MAT-file says that numbers of it are in another file, which is not opened; save all in one";
+
+TEST(ReadMat, ReadsNoOtherFile) {
+  for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
+    EXPECT_EQ(FaultOf(WithOtherFile(file, "/proc/self/exe"), Unit("", 100)), kOneFile);
+    EXPECT_EQ(FaultOf(WithOtherFile(file, "/nowhere/at/all"), Unit("", 100)), kOneFile);
+  }
+}
+
+TEST(ReadMat, WaitsForNoPipeThatAFileNames) {
+  const std::string pipe = (std::filesystem::temp_directory_path() / ("pipe_" + std::to_string(::getpid()))).string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
+    EXPECT_EQ(FaultOf(WithOtherFile(file, pipe), Unit("", 100)), kOneFile);
+  }
+  std::filesystem::remove(pipe);
 }
 
 }  // namespace
