@@ -51,7 +51,7 @@ void OpenNoMore() {
   ::setrlimit(RLIMIT_NOFILE, &none);
 }
 
-/// `t`, `time` and `tout`, which Simulink writes, are times in seconds.
+/// `t`, `time` and `tout` are times in seconds, as far as one can tell.
 std::string MeaningOf(const std::string& name) {
   const std::string canonical = csv::CanonicalName(name);
   if (canonical == "t" || canonical == "time" || canonical == "tout") return "time_s";
@@ -138,7 +138,8 @@ class Collector {
     if (rows < 2) return;
     const std::size_t columns = numbers.size() / rows;
     if (columns == 1) {
-      table_.columns.push_back({{written, MeaningOf(meaning), run}, std::move(numbers)});
+      const std::string sense = MeaningOf(meaning);
+      table_.columns.push_back({{written, sense, run}, std::move(numbers), TellsUnit(meaning, sense)});
       return;
     }
     if (variable.rank != 2 || columns > kMostColumns) return;
@@ -154,8 +155,15 @@ class Collector {
       const std::string number = std::to_string(j + 1);
       const std::string place = is_upright ? "(:," + number + ")" : "(" + number + ",:)";
       table_.columns.push_back({{written + place, j == 0 && has_time ? "time_s" : meaning, has_time ? written : run},
-                                j == 0 ? first : column(j)});
+                                j == 0 ? first : column(j),
+                                j > 0 || !has_time});
     }
+  }
+
+  /// Simulink's times are in seconds: `tout`, and those of a structure with signals (AddStructure).
+  static bool TellsUnit(const std::string& name, const std::string& sense) {
+    const std::string canonical = csv::CanonicalName(name);
+    return sense != "time_s" || (canonical != "t" && canonical != "time");
   }
 
   static std::size_t LongestOf(const matvar_t& variable) {
@@ -171,15 +179,19 @@ class Collector {
     if (elements == 0 || elements > kMostElements || structure.data == nullptr || depth_ == kDeepest) return;
     ++depth_;
     const std::size_t first = table_.columns.size();
+    bool has_signals = false;
     auto* const* const members = static_cast<matvar_t**>(structure.data);
     for (std::size_t i = 0; i < elements; ++i) {
       const std::string element = elements == 1 ? written : written + "(" + std::to_string(i + 1) + ")";
       const std::span<matvar_t* const> of_element(members + i * fields, fields);
       for (const matvar_t* field : of_element) {
-        if (field != nullptr && field->name != nullptr) AddField(*field, element, LabelOf(of_element, meaning));
+        if (field == nullptr || field->name == nullptr) continue;
+        has_signals |= std::string_view(field->name) == "signals";
+        AddField(*field, element, LabelOf(of_element, meaning));
       }
     }
     --depth_;
+    if (has_signals) SayUnit(first, written + ".time");
     GroupByTime(first, written);
   }
 
@@ -215,6 +227,12 @@ class Collector {
       if (csv::FindUnit(label) != nullptr) return label;
     }
     return otherwise;
+  }
+
+  void SayUnit(std::size_t first, const std::string& written) {
+    for (MatColumn& column : std::span(table_.columns).subspan(first)) {
+      column.is_unit_told |= column.name.written == written;
+    }
   }
 
   /// Columns of a structure that has a time of its own are a run of theirs.
@@ -315,6 +333,7 @@ std::string Pack(const MatTable& table) {
     for (const std::string* text : {&column.name.written, &column.name.meaning, &column.name.run}) {
       PutText(*text, bytes);
     }
+    PutSize(column.is_unit_told ? 1 : 0, bytes);
     const std::size_t size = column.values.size() * sizeof(double);
     PutSize(size, bytes);
     const std::size_t used = bytes.size();
@@ -337,6 +356,7 @@ MatTable UnpackMatTable(std::string_view bytes) {
     column.name.written = taker.Text();
     column.name.meaning = taker.Text();
     column.name.run = taker.Text();
+    column.is_unit_told = taker.Size() != 0;
     column.values = taker.Numbers();
     table.columns.push_back(std::move(column));
   }

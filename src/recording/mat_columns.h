@@ -13,6 +13,7 @@ namespace pendulum {
 struct MatColumn {
   csv::TableColumn name;
   std::vector<double> values;
+  bool is_unit_told = true;  // That of a time.
 };
 
 /// A variable that holds no columns, and what it is.

@@ -113,7 +113,7 @@ TEST(InChild, EndsWorkThatTakesTooMuchMemory) {
   if (!kMemoryIsLimited) GTEST_SKIP() << "an address sanitizer takes all that there is for itself";
   ChildLimits limits;
   limits.memory_bytes = 10'000'000;
-  const auto take = [] { return std::string(std::string(20'000'000, 'x').size() > 0 ? "taken" : ""); };
+  const auto take = [] { return std::string(std::string(500'000'000, 'x').size() > 0 ? "taken" : ""); };
   EXPECT_EQ(WhyNone(take, limits), ChildFailure::kOutOfMemory);
 }
 

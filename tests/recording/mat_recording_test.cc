@@ -123,11 +123,44 @@ TEST(ReadMat, LeavesOutRowsThatAreNoNumbers) {
   std::vector<double> times = Times(), values = Values();
   times.insert(times.begin(), -1);
   values.insert(values.begin(), std::numeric_limits<double>::quiet_NaN());
-  const Recording recording = RecordingOf(MatOf({Matrix("t", 9, times), Matrix("angle_rad", 9, values)}));
+  const Recording recording = RecordingOf(MatOf({Matrix("t_s", 9, times), Matrix("angle_rad", 9, values)}));
   ExpectTheRows(recording);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].message,
             "run.csv: 1 row was left out, with no number in column \"angle_rad\" or in its time");
+}
+
+TEST(ReadMat, WholeNumbersOfATimeNeedAUnit) {
+  const std::string vectors = MatOf({Matrix("t", 8, Times(1000)), Matrix("angle_rad", 8, Values())});
+  EXPECT_EQ(WrongFlag(vectors, {}),
+            "run.csv: column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms or "
+            ":us after the column");
+  ExpectTheRows(RecordingOf(vectors, TimeAndValue("t:ms", "")));
+  EXPECT_THAT(WrongFlag(vectors, TimeAndValue("t", "")), HasSubstr("holds whole numbers"));
+  std::vector<double> both = Times(1000);
+  for (const double value : Values()) both.push_back(value);
+  const std::string matrix = MatOf({Matrix("run_rad", 8, both)});
+  EXPECT_THAT(WrongFlag(matrix, {}), HasSubstr("column \"run_rad(:,1)\" holds whole numbers"));
+  ExpectTheRows(RecordingOf(matrix, TimeAndValue("run_rad(:,1):ms", "run_rad(:,2)")));
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t_ms", 8, Times(1000)), Matrix("angle_rad", 8, Values())})));
+}
+
+TEST(ReadMat, SaysThatATimeIsTakenAsSeconds) {
+  const auto codes = [](const MatVariables& variables) {
+    std::string list;
+    for (const Warning& warning : RecordingOf(MatOf(variables)).warnings) list += warning.code + ' ';
+    return list;
+  };
+  EXPECT_EQ(codes({Matrix("t", 8, Times()), Matrix("angle_rad", 8, Values())}), "time_unit_assumed ");
+  EXPECT_EQ(codes({Matrix("t_s", 8, Times()), Matrix("angle_rad", 8, Values())}), "");
+  EXPECT_EQ(codes({Matrix("tout", 8, Times(1000)), Matrix("angle_rad", 8, Values())}), "");
+  const auto structure = [](const char* signals) {
+    matvar_t* inner =
+        Structure(signals, {{"values", Matrix("values", 8, Values())}, {"label", Text("label", "a_rad")}});
+    return Structure("out", {{"time", Matrix("time", 8, Times(1000))}, {signals, inner}});
+  };
+  EXPECT_EQ(codes({structure("signals")}), "");  // as Simulink writes it: seconds, which may be whole
+  EXPECT_THAT(WrongFlag(MatOf({structure("mine")}), TimeAndValue("", "out.mine.values")), HasSubstr("whole numbers"));
 }
 
 TEST(ReadMat, RefusesColumnsOfDifferentLengths) {

@@ -38,9 +38,10 @@ struct ReadOptions {
 /// values (FindResolution), and counts that end at 0 or the full scale of 10, 12, 14 or 16 bits have that range.
 ///
 /// Warnings: those of RepairClock; incomplete_row, empty_cells, host_time, time_unit_assumed, lost_samples;
-/// metadata_not_applied, a calibration in a file of angles. kNotFound: no such file. kDataLoss: not readable as above,
-/// or a calibration of another unit. kInvalidArgument: the options contradict the file. kFailedPrecondition: fewer than
-/// kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file. Messages begin "path:line:", or "path:".
+/// unreadable_member, of a zip file; metadata_not_applied, a calibration in a file of angles. kNotFound: no such file.
+/// kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options contradict the
+/// file. kFailedPrecondition: fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file.
+/// Messages begin "path:line:", or "path:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from bytes in memory; `name` stands for the path in messages and in Recording::path. Not kNotFound.
