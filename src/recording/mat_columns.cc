@@ -115,7 +115,13 @@ class Collector {
   explicit Collector(MatTable& table) : table_(table) {}
 
   void Add(const matvar_t& variable) {
-    if (variable.name == nullptr) return;  // What objects are made of.
+    // Of an object in version 5 the name is lost, or that of the system it belongs to; what it is made of has none.
+    const bool is_object = variable.class_type == MAT_C_OPAQUE;
+    if (is_object && (variable.name == nullptr || std::string_view(variable.name) == "MCOS")) {
+      table_.skipped.push_back({"", KindOf(variable)});
+      return;
+    }
+    if (variable.name == nullptr) return;
     const std::string name = variable.name;
     const std::size_t before = table_.columns.size();
     if (variable.class_type == MAT_C_STRUCT) {

@@ -93,9 +93,13 @@ class TemporaryFile {
   int error_ = 0;
 };
 
-/// A second is enough for a hundred megabytes, and for ever is what some damaged files take.
-ChildLimits LimitsFor(std::size_t bytes) {
+/// A second is enough for a hundred megabytes, and for ever is what some damaged files take. Until numbers of the file
+/// are an answer, there are several copies of them.
+ChildLimits LimitsFor(std::size_t bytes, std::size_t most_unpacked) {
+  constexpr std::size_t kCopies = 8, kLeast = std::size_t{1} << 26;
   ChildLimits limits;
+  limits.answer_bytes = most_unpacked;
+  limits.memory_bytes = std::min(limits.memory_bytes, kLeast + kCopies * std::max(most_unpacked, bytes));
   limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
   limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Others use the processors too.
   return limits;
@@ -122,7 +126,7 @@ tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, 
   return Error(StatusCode::kTryAgain, name + ": no process could be started to read it in; try again");
 }
 
-Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
+Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
   const TemporaryFile file(bytes);
   if (file.error() != 0) {
@@ -131,7 +135,7 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
                                             std::generic_category().message(file.error()) +
                                             "); make room there, or name another folder in TMPDIR");
   }
-  const ChildLimits limits = LimitsFor(bytes.size());
+  const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
   const auto packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, limits);
   if (!packed) return NoTable(packed.error(), limits, name);
   MatTable table = UnpackMatTable(*packed);
@@ -146,13 +150,15 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
 /// What there is instead of a column of angles.
 Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                             const std::string& name, const ReadOptions& options) {
-  const auto named = std::ranges::find(table.skipped, options.value_column, &SkippedVariable::name);
+  const std::string& asked = options.value_column;
+  const auto named = std::ranges::find(table.skipped, asked, &SkippedVariable::name);
   const auto object = std::ranges::find(table.skipped, "an object", &SkippedVariable::kind);
-  const SkippedVariable* skipped = named != table.skipped.end() ? &*named : nullptr;
-  const bool has_candidate = !options.value_column.empty() || !csv::CandidatesOf(columns, options.unit).empty();
+  const SkippedVariable* skipped = named != table.skipped.end() && !asked.empty() ? &*named : nullptr;
+  const bool has_candidate = !asked.empty() || !csv::CandidatesOf(columns, options.unit).empty();
   if (skipped == nullptr && !has_candidate && object != table.skipped.end()) skipped = &*object;
   if (skipped != nullptr && skipped->kind == "an object") {
-    return Fault(name, "variable " + Quoted(skipped->name) +
+    const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
+    return Fault(name, which +
                            " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: "
                            "t = ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')");
   }
@@ -164,7 +170,8 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
   std::string rest;
   for (const SkippedVariable& variable :
        std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
-    rest += (rest.empty() ? " (" : ", ") + Quoted(variable.name) + " is " + variable.kind;
+    rest +=
+        (rest.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " + variable.kind;
   }
   return Fault(name, "no variable of this MAT-file is a vector or a matrix of real numbers" +
                          (rest.empty() ? rest : rest + ")") + "; save the times as t and the angles as angle_deg");
@@ -213,7 +220,7 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
 }  // namespace
 
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  const Result<MatTable> table = ReadTable(bytes, name);
+  const Result<MatTable> table = ReadTable(bytes, name, options);
   if (!table) return tl::unexpected(table.error());
   csv::Line line{name, "", csv::Line::kNoNumber};
   std::vector<csv::TableColumn> columns;

@@ -42,6 +42,8 @@ std::vector<double> Both() {
   return both;
 }
 
+constexpr std::size_t kClassAt = 144;  // Of the first variable, behind header and two tags.
+
 ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
 
 // ---- Vectors and matrices ----------------------------------------------------------------------------------------
@@ -191,6 +193,65 @@ TEST(ReadMat, ComplexAndSparseAreNoColumns) {
                              Mat_VarCreate("z_rad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX)}),
                       Value("z_rad")),
               HasSubstr("variable \"z_rad\" is complex"));
+}
+
+/// A variable of class mxOPAQUE, by hand as MATLAB writes a timeseries; its elements are tag, size and bytes.
+std::string Timeseries(const std::string& name) {
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  const auto element = [&](std::uint32_t type, const std::string& bytes) {
+    return number(type) + number(static_cast<std::uint32_t>(bytes.size())) + bytes +
+           std::string((8 - bytes.size() % 8) % 8, '\0');
+  };
+  constexpr std::uint32_t kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kUint32Class = 13, kOpaqueClass = 17;
+  const std::string numbers = element(kUint32, number(kUint32Class) + number(0)) +
+                              element(kInt32, number(2) + number(1)) + element(kInt8, "") +
+                              element(kUint32, number(0xDD000000) + number(2));
+  const std::string called = name.size() > 4 ? element(kInt8, name)  // of up to four letters size and type are one word
+                                             : number(static_cast<std::uint32_t>(name.size() << 16 | kInt8)) + name +
+                                                   std::string(4 - name.size(), '\0');
+  return element(kMatrix, element(kUint32, number(kOpaqueClass) + number(0)) + called + element(kInt8, "MCOS") +
+                              element(kInt8, "timeseries") + element(kMatrix, numbers));
+}
+
+TEST(ReadMat, SaysHowToSaveATimeseries) {
+  const std::string advice =
+      " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: t = ts.Time; "
+      "angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')";
+  for (const char* const name : {"ts", "pendulum"}) {
+    EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), "run.csv: a variable" + advice);
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), "run.csv: a variable" + advice);
+  }
+  std::string object = MatOf({Matrix("ts", 8, Values()), Matrix("t_s", 8, Times())}, MAT_FT_MAT5, false);
+  object[kClassAt] = 3;  // mxOBJECT
+  EXPECT_EQ(FaultOf(object), "run.csv: variable \"ts\"" + advice);
+  EXPECT_EQ(FaultOf(object, Value("ts", "deg")), "run.csv: variable \"ts\"" + advice);
+}
+
+TEST(ReadMat, AnObjectBesideVectorsIsNoDamage) {
+  const MatVariables vectors = {Matrix("odd", 8, Values()), Matrix("t_s", 8, Times()),
+                                Matrix("angle_deg", 8, Values())};
+  std::string bytes = MatOf(vectors, MAT_FT_MAT5, false);
+  bytes[kClassAt] = 3;
+  ExpectTheRows(RecordingOf(bytes), kDegree);
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t_s", 8, Times()), Matrix("angle_deg", 8, Values())}) + Timeseries("ts")),
+                kDegree);
+}
+
+TEST(ReadMat, UnpacksNoMoreThanItMay) {
+  std::vector<double> times, zeros(100'000);
+  for (int i = 0; i < 100'000; ++i) times.push_back(i + 0.5);
+  const std::string bytes = MatOf({Matrix("t_s", 100'000, times), Matrix("angle_deg", 100'000, zeros)});
+  ReadOptions options;
+  options.most_unpacked_bytes = 1'600'000;
+  EXPECT_EQ(FaultOf(bytes, options),
+            "run.csv: this MAT-file unpacks to more than 1600000 bytes, too many for a recording; save only the times "
+            "and the angles, or export them as CSV");
+  options.most_unpacked_bytes = 1'601'000;  // and their names
+  EXPECT_TRUE(ParseRecording(bytes, "run.csv", options).has_value());
 }
 
 TEST(ReadMat, ASampleRateReplacesTheTime) {

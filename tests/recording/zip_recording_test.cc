@@ -168,10 +168,15 @@ TEST(ReadZip, RefusesEncryptedMembers) {
 }
 
 TEST(ReadZip, RefusesABombBeforeItFillsTheMemory) {
-  const std::string zeros(kMostUnpackedBytes + 1, '\n');
-  EXPECT_EQ(FaultOf(ZipOf({{"a.csv", zeros}})),
-            "run.csv:a.csv: it unpacks to more than 536870912 bytes, too many for a recording; name another, or split "
-            "it");
+  ReadOptions options;
+  EXPECT_EQ(options.most_unpacked_bytes, 536'870'912);
+  options.most_unpacked_bytes = 1'000'000;
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const std::string most = angle + std::string(1'000'000 - angle.size(), '\n');
+  ExpectTheRows(RecordingOf(ZipOf({{"a.csv", most}}), options), kDegree);
+  EXPECT_EQ(
+      FaultOf(ZipOf({{"a.csv", most + '\n'}}), options),
+      "run.csv:a.csv: it unpacks to more than 1000000 bytes, too many for a recording; name another, or split it");
 }
 
 TEST(ReadZip, ShowsPathsThatClimbAndNeverFollowsThem) {

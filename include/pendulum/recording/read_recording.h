@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,8 @@ struct ReadOptions {
   std::optional<Calibration> calibration;  ///< Of counts or volts; none: the file's own, if it has one.
   std::optional<double> resolution;        ///< Spacing of the values, in the file's unit; 0: none; absent: the file's.
   std::optional<SensorRange> range;        ///< What the sensor can show, in the file's unit; absent: the file's own.
+  /// Of a member of a zip file, or of all columns of a MAT-file, which may be a thousand times as large as the file.
+  std::size_t most_unpacked_bytes = std::size_t{1} << 29;
 };
 
 /// Reads a recording from a file; "-" is standard input. What it is its content tells: CSV, also as phyphox, Tracker,
