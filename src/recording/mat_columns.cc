@@ -306,7 +306,7 @@ class Taker {
   std::size_t Size() {
     std::uint64_t number = 0;
     const std::string_view raw = Raw(sizeof number);
-    std::memcpy(&number, raw.data(), raw.size());
+    if (!raw.empty()) std::memcpy(&number, raw.data(), raw.size());
     return number;
   }
 
@@ -315,7 +315,7 @@ class Taker {
   std::vector<double> Numbers() {
     const std::string_view raw = Raw(Size());
     std::vector<double> values(raw.size() / sizeof(double));
-    std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
+    if (!values.empty()) std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
     return values;
   }
 
@@ -344,7 +344,7 @@ std::string Pack(const MatTable& table) {
     PutSize(size, bytes);
     const std::size_t used = bytes.size();
     bytes.resize(used + size);
-    std::memcpy(bytes.data() + used, column.values.data(), size);
+    if (size > 0) std::memcpy(bytes.data() + used, column.values.data(), size);
   }
   return bytes;
 }

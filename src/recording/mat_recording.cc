@@ -221,14 +221,18 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
 
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   const Result<MatTable> table = ReadTable(bytes, name, options);
-  if (!table) return tl::unexpected(table.error());
+  return table ? FromMatTable(*table, bytes, name, options) : tl::unexpected(table.error());
+}
+
+Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
+                               const ReadOptions& options) {
   csv::Line line{name, "", csv::Line::kNoNumber};
   std::vector<csv::TableColumn> columns;
-  for (const MatColumn& column : table->columns) columns.push_back(column.name);
+  for (const MatColumn& column : table.columns) columns.push_back(column.name);
   const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
   const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
-  if (time < columns.size() && !table->columns[time].is_unit_told) columns[time].meaning = "time";  // the user may say
-  if (auto checked = CheckVariables(*table, columns, name, options); !checked) return tl::unexpected(checked.error());
+  if (time < columns.size() && !table.columns[time].is_unit_told) columns[time].meaning = "time";  // the user may say
+  if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
   const auto names = csv::NamesOf(line, columns, options);
   if (!names) return tl::unexpected(names.error());
   csv::ReadColumns read;
@@ -237,9 +241,9 @@ Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const
   csv::ColumnChooser chooser(line, *names, options, false, false);
   if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
   if (read.layout.time && read.layout.time->index != time) {
-    read.layout.is_time_unit_told = table->columns[read.layout.time->index].is_unit_told;
+    read.layout.is_time_unit_told = table.columns[read.layout.time->index].is_unit_told;
   }
-  Result<RawSamples> samples = SamplesOf(*table, read.layout, name);
+  Result<RawSamples> samples = SamplesOf(table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);
   if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
   read.samples = *std::move(samples);

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "mat_columns.h"
 #include "pendulum/recording/read_recording.h"
 
 namespace pendulum {
@@ -16,5 +17,9 @@ namespace pendulum {
 /// kInvalidArgument: a time without a unit, or what the flags say contradicts the file. kTryAgain: no room for a copy,
 /// or no process.
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options);
+
+/// The same from what a process of its own has found in these bytes.
+Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
+                               const ReadOptions& options);
 
 }  // namespace pendulum
