@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <new>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <thread>

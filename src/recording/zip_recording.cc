@@ -113,7 +113,7 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
 /// The member that is to be read.
 Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options,
                                    std::vector<Warning>& warnings) {
-  constexpr std::size_t kMostMembers = 1000;  // A zip file of hostile bytes holds a million.
+  constexpr std::size_t kMostMembers = 1000, kMostWarnings = 8;  // A zip file of hostile bytes holds a million.
   Result<const Member*> named = TakeNamed(zip, name, options);
   if (!named || *named != nullptr) return named;
   if (zip.members().size() == 1) return &zip.members().front();
@@ -122,7 +122,7 @@ Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& nam
   std::optional<Status> fault;  // Of the first that cannot be read.
   for (std::size_t i = 0; i < std::min(zip.members().size(), kMostMembers); ++i) {
     Look look = LookAt(zip, zip.members()[i], options);
-    if (look.fault) warnings.push_back({"unreadable_member", look.fault->message});
+    if (look.fault && warnings.size() < kMostWarnings) warnings.push_back({"unreadable_member", look.fault->message});
     if (look.fault && !fault) fault = look.fault;
     if (look.candidates.empty()) continue;
     for (const std::string& column : look.candidates) candidates.push_back(QuotedPair(look.member->path, column));
