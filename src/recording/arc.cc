@@ -42,10 +42,21 @@ VectorXd Distances(const VectorXd& x, const VectorXd& y, const Circle& circle, E
   return distance.array() - circle[2];
 }
 
-tl::unexpected<Status> NoArc(const std::string& why) {
-  return Error(StatusCode::kFailedPrecondition,
-               "the points (x, y) tell no circle about a pivot: " + why +
-                   "; choose one coordinate with --value_column, or record a larger swing");
+tl::unexpected<Status> NoArc(const std::string& why, const std::string& otherwise = ", or record a larger swing") {
+  return Error(StatusCode::kFailedPrecondition, "the points (x, y) tell no circle about a pivot: " + why +
+                                                    "; choose one coordinate with --value_column" + otherwise);
+}
+
+/// The way from the centre to the middle of the points is down, unless they are all round it: a swing beyond the
+/// horizontal has as many above. In units of the radius.
+Result<void> CheckDown(const VectorXd& y, const Circle& circle) {
+  constexpr double kLeast = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii down
+  const double middle = -circle[1] / circle[2];
+  const VectorXd height = (y.array() - circle[1]) / (middle < 0 ? -circle[2] : circle[2]);
+  if (std::abs(middle) >= kLeast && height.maxCoeff() >= -height.minCoeff()) return {};
+  return NoArc("their middle is " + NumberText(std::abs(middle), 2) + " radii from its centre, and with less than " +
+                   NumberText(kLeast, 2) + ", or points farther on the other side, they do not tell which way is down",
+               ", or leave out where it turns over");
 }
 
 }  // namespace
@@ -65,21 +76,24 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   Circle circle = AlgebraicFit(at_x, at_y);
   Eigen::MatrixX3d jacobian;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (int step = 0; step < kMostSteps && circle.allFinite(); ++step) {
+  bool has_settled = false;
+  for (int step = 0; step < kMostSteps && circle.allFinite() && !has_settled; ++step) {
     const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
     information = jacobian.transpose() * jacobian;
     const Eigen::Vector3d change = information.ldlt().solve(jacobian.transpose() * distance);
     circle -= change;
-    if (change.norm() < kConverged * circle.norm()) break;
+    has_settled = change.norm() < kConverged * circle.norm();
   }
   const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
   const double variance = distance.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(x.size() - 3, 1));
   const Eigen::Matrix3d covariance = variance * information.inverse();
   if (!circle.allFinite() || !covariance.allFinite()) return NoArc("they stand on a line");
+  if (!has_settled || !(circle[2] > 0)) return NoArc("the search for it does not settle");
   const double error = std::sqrt(covariance.diagonal().maxCoeff()) / circle[2];
   if (!(error < kLargestError)) {
     return NoArc("its radius would be uncertain by " + NumberText(100 * error, 2) + " %");
   }
+  if (auto checked = CheckDown(at_y, circle); !checked) return tl::unexpected(checked.error());
   Arc arc;
   arc.x = x_mean + scale * circle[0];
   arc.y = y_mean + scale * circle[1];

@@ -28,6 +28,11 @@ struct Unit {
   constexpr double ToSi(double number) const { return number * factor / divisor; }
 };
 
+/// An acceleration or a length.
+constexpr bool IsSecondChoice(const Unit& unit) {
+  return unit.kind == Kind::kAcceleration || unit.kind == Kind::kLength;
+}
+
 /// A suffix stands before any that it ends in.
 constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},

@@ -48,6 +48,9 @@ constexpr std::array kForeign = {
     Foreign{"<?xml"sv,
             "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name "
             "that"},
+    Foreign{"# Created by Octave"sv,
+            "this is the text in which Octave keeps variables; save them with save -7 run.mat t angle_deg"},
+    Foreign{"Octave-1-"sv, "this is Octave's binary form of variables; save them with save -7 run.mat t angle_deg"},
     Foreign{"%PDF"sv, "this is a PDF; name the file of the recording"},
     Foreign{"PK\5\6"sv, "this zip file is empty; name one that holds a recording"},
     Foreign{"PK\7\x8"sv, "this is a part of a zip file that was split; put the parts together"},

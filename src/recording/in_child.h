@@ -1,17 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 
-#include "pendulum/base/status.h"
+#include <tl/expected.hpp>
 
 namespace pendulum {
 
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kMemoryIsLimited = false;
+#elif defined(__has_feature)
+inline constexpr bool kMemoryIsLimited = !__has_feature(address_sanitizer);
+#else
+inline constexpr bool kMemoryIsLimited = true;  ///< A sanitizer of addresses maps all that there are.
+#endif
+
+/// What a process may use.
+struct ChildLimits {
+  int processor_seconds = 2;
+  std::chrono::milliseconds time{15'000};           // By the clock on the wall.
+  std::size_t memory_bytes = std::size_t{1} << 32;  // Beyond what is in use, where it is limited.
+  std::size_t answer_bytes = std::size_t{1} << 29;
+};
+
+enum class ChildFailure {
+  kNotStarted,
+  kCrashed,
+  kOutOfTime,
+  kOutOfMemory,  // Of its own, or this process has none for the answer.
+  kAnswerTooLarge,
+};
+
 /// What `work` gives, done in a process of its own that may crash, hang or eat memory: libraries that read binary files
-/// of strangers do so (see MatTable). It gets so many seconds of a processor and 4 GiB of memory beyond what is in use,
-/// and its output goes nowhere. kDataLoss: it did not come to its end; the message is empty. kTryAgain: no process to
-/// be had.
-Result<std::string> InChild(const std::function<std::string()>& work, int seconds);
+/// of strangers do so (see MatTable). Its output goes nowhere, it has none of this process's descriptors, and it ends
+/// with the thread that waits for it. Any number of threads may ask at once.
+tl::expected<std::string, ChildFailure> InChild(const std::function<std::string()>& work, const ChildLimits& limits);
 
 }  // namespace pendulum

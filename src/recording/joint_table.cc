@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "name_list.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum::csv {
@@ -13,14 +14,12 @@ bool Moves(const JointRows& rows) {
   return low < high;
 }
 
-std::string ListOf(const std::vector<JointRows*>& joints, const std::string& column) {
-  constexpr std::size_t kShown = 8;
-  std::string list;
-  for (std::size_t i = 0; i < std::min(joints.size(), kShown); ++i) {
-    const std::string name = column.empty() ? joints[i]->joint : joints[i]->joint + "/" + column;
-    list += (i == 0 ? "" : i + 1 == joints.size() ? " and " : ", ") + Quoted(name);
-  }
-  return list + (joints.size() > kShown ? ", ..." : "");
+std::vector<std::string> NamesOf(const std::vector<JointRows*>& joints, const std::string& column) {
+  std::vector<std::string> names;
+  names.reserve(joints.size());
+  for (const JointRows* rows : joints)
+    names.push_back(Quoted(column.empty() ? rows->joint : rows->joint + "/" + column));
+  return names;
 }
 
 }  // namespace
@@ -62,14 +61,13 @@ Result<JointRows*> JointTable::Choose(const Line& line, const std::string& joint
   if (!joint.empty()) {
     return line.Fault(line.text.data(),
                       "--value_column is " + Quoted(joint) + ", which is neither a column nor one of " +
-                          ListOf(all, "") + "; give one of these",
+                          ListOf(NamesOf(all, "")) + "; give one of these",
                       StatusCode::kInvalidArgument);
   }
   if (all.size() == 1) return all.front();
   if (moving.size() == 1) return moving.front();
   const std::vector<JointRows*>& several = moving.empty() ? all : moving;
-  return line.Fault(line.text.data(), ListOf(several, column) + " could " + (several.size() == 2 ? "both" : "all") +
-                                          " be the quantity; choose one with --value_column");
+  return line.Fault(line.text.data(), SeveralQuantities(NamesOf(several, column)));
 }
 
 }  // namespace pendulum::csv

@@ -127,6 +127,7 @@ class ColumnChooser {
   Check ChooseValue(Layout& layout);
   Result<std::size_t> FindValue(Layout& layout) const;
   Result<std::size_t> OnlyColumnWithoutUnit(const Layout& layout) const;
+  bool IsAnotherKindAsked(const std::vector<std::size_t>& columns, const Layout& layout) const;
   std::optional<std::size_t> FindVertical(std::size_t horizontal) const;
   Check CheckCoordinate(std::size_t index) const;
   Check SetValueUnit(Layout& layout, std::size_t index);
@@ -282,6 +283,19 @@ inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& la
                      "none of the columns " + ColumnNames() + " can be the quantity; choose one with --value_column");
 }
 
+/// True where an angle, a rate or readings are asked for, and beside lengths and accelerations there is a column whose
+/// name does not tell what it is.
+inline bool ColumnChooser::IsAnotherKindAsked(const std::vector<std::size_t>& columns, const Layout& layout) const {
+  const Unit* asked = UnitOfSuffix(options_.unit);
+  if (!layout.has_header || asked == nullptr || IsSecondChoice(*asked)) return false;
+  bool is_open = false;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const bool is_time = layout.time && layout.time->index == i;
+    is_open |= !is_time && !names_[i].text.empty() && FindUnit(names_[i].text) == nullptr;
+  }
+  return is_open && std::ranges::all_of(columns, [&](auto i) { return IsSecondChoice(*FindUnit(names_[i].text)); });
+}
+
 /// The column that the user chose, or the one whose name tells a unit that was asked for, or any unit.
 inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
   if (!options_.value_column.empty()) return FindColumn("--value_column", options_.value_column, layout);
@@ -292,7 +306,7 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
     std::vector<std::size_t> asked = columns;
     std::erase_if(asked, [&](std::size_t i) { return FindUnit(names_[i].text)->suffix != options_.unit; });
     if (!asked.empty()) columns = asked;
-    if (columns.empty()) return OnlyColumnWithoutUnit(layout);
+    if (columns.empty() || (asked.empty() && IsAnotherKindAsked(columns, layout))) return OnlyColumnWithoutUnit(layout);
   }
   std::vector<std::size_t> points = columns;
   std::erase_if(points, [&](std::size_t i) { return !FindVertical(i); });

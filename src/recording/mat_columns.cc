@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <matio.h>
+#include <sys/resource.h>
 
 #include "runs.h"
 
@@ -30,12 +31,27 @@ constexpr const char* kTopLevel = "top level";
 
 std::string* complaint = nullptr;  // Where matio complains to; it has no other place to remember whom it speaks to.
 
+/// That a file ends too early is only a warning, and numbers are wrong after it; that it holds a kind of object or text
+/// which matio does not know is one too, and says nothing of the other variables.
 void TakeComplaint(int level, char* message) {
   constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
-  if (complaint != nullptr && (level & kSerious) != 0 && complaint->empty()) *complaint = message;
+  const auto says = [&](std::string_view words) {
+    return std::string_view(message).find(words) != std::string_view::npos;
+  };
+  if (complaint == nullptr || (level & kSerious) == 0) return;
+  if (level == MATIO_LOG_LEVEL_WARNING && (says("not a supported class") || says("for character data"))) return;
+  // HDF5's reasons come one by one, from the outermost to the first.
+  const bool is_other_file = says("minor: Unable to open file");
+  if (is_other_file || complaint->empty()) *complaint = is_other_file ? kOtherFile : message;
 }
 
-/// `t`, `time` and `tout`, which Simulink writes, are times in seconds.
+/// From here on this process opens no file.
+void OpenNoMore() {
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_NOFILE, &none);
+}
+
+/// `t`, `time` and `tout` are times in seconds, as far as one can tell.
 std::string MeaningOf(const std::string& name) {
   const std::string canonical = csv::CanonicalName(name);
   if (canonical == "t" || canonical == "time" || canonical == "tout") return "time_s";
@@ -99,7 +115,13 @@ class Collector {
   explicit Collector(MatTable& table) : table_(table) {}
 
   void Add(const matvar_t& variable) {
-    if (variable.name == nullptr) return;  // What objects are made of.
+    // Of an object in version 5 the name is lost, or that of the system it belongs to; what it is made of has none.
+    const bool is_object = variable.class_type == MAT_C_OPAQUE;
+    if (is_object && (variable.name == nullptr || std::string_view(variable.name) == "MCOS")) {
+      table_.skipped.push_back({"", KindOf(variable)});
+      return;
+    }
+    if (variable.name == nullptr) return;
     const std::string name = variable.name;
     const std::size_t before = table_.columns.size();
     if (variable.class_type == MAT_C_STRUCT) {
@@ -122,7 +144,8 @@ class Collector {
     if (rows < 2) return;
     const std::size_t columns = numbers.size() / rows;
     if (columns == 1) {
-      table_.columns.push_back({{written, MeaningOf(meaning), run}, std::move(numbers)});
+      const std::string sense = MeaningOf(meaning);
+      table_.columns.push_back({{written, sense, run}, std::move(numbers), TellsUnit(meaning, sense)});
       return;
     }
     if (variable.rank != 2 || columns > kMostColumns) return;
@@ -138,8 +161,15 @@ class Collector {
       const std::string number = std::to_string(j + 1);
       const std::string place = is_upright ? "(:," + number + ")" : "(" + number + ",:)";
       table_.columns.push_back({{written + place, j == 0 && has_time ? "time_s" : meaning, has_time ? written : run},
-                                j == 0 ? first : column(j)});
+                                j == 0 ? first : column(j),
+                                j > 0 || !has_time});
     }
+  }
+
+  /// Simulink's times are in seconds: `tout`, and those of a structure with signals (AddStructure).
+  static bool TellsUnit(const std::string& name, const std::string& sense) {
+    const std::string canonical = csv::CanonicalName(name);
+    return sense != "time_s" || (canonical != "t" && canonical != "time");
   }
 
   static std::size_t LongestOf(const matvar_t& variable) {
@@ -155,15 +185,19 @@ class Collector {
     if (elements == 0 || elements > kMostElements || structure.data == nullptr || depth_ == kDeepest) return;
     ++depth_;
     const std::size_t first = table_.columns.size();
+    bool has_signals = false;
     auto* const* const members = static_cast<matvar_t**>(structure.data);
     for (std::size_t i = 0; i < elements; ++i) {
       const std::string element = elements == 1 ? written : written + "(" + std::to_string(i + 1) + ")";
       const std::span<matvar_t* const> of_element(members + i * fields, fields);
       for (const matvar_t* field : of_element) {
-        if (field != nullptr && field->name != nullptr) AddField(*field, element, LabelOf(of_element, meaning));
+        if (field == nullptr || field->name == nullptr) continue;
+        has_signals |= std::string_view(field->name) == "signals";
+        AddField(*field, element, LabelOf(of_element, meaning));
       }
     }
     --depth_;
+    if (has_signals) SayUnit(first, written + ".time");
     GroupByTime(first, written);
   }
 
@@ -201,6 +235,12 @@ class Collector {
     return otherwise;
   }
 
+  void SayUnit(std::size_t first, const std::string& written) {
+    for (MatColumn& column : std::span(table_.columns).subspan(first)) {
+      column.is_unit_told |= column.name.written == written;
+    }
+  }
+
   /// Columns of a structure that has a time of its own are a run of theirs.
   void GroupByTime(std::size_t first, const std::string& run) {
     const std::span<MatColumn> own = std::span(table_.columns).subspan(first);
@@ -224,6 +264,7 @@ MatTable ReadMatTable(const std::string& path) {
   complaint = &table.complaint;
   Mat_LogInitFunc("matio", TakeComplaint);
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  OpenNoMore();
   if (file == nullptr && table.complaint.empty()) table.complaint = "no MAT-file";
   Collector collector(table);
   while (file != nullptr) {
@@ -265,7 +306,7 @@ class Taker {
   std::size_t Size() {
     std::uint64_t number = 0;
     const std::string_view raw = Raw(sizeof number);
-    std::memcpy(&number, raw.data(), raw.size());
+    if (!raw.empty()) std::memcpy(&number, raw.data(), raw.size());
     return number;
   }
 
@@ -274,7 +315,7 @@ class Taker {
   std::vector<double> Numbers() {
     const std::string_view raw = Raw(Size());
     std::vector<double> values(raw.size() / sizeof(double));
-    std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
+    if (!values.empty()) std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
     return values;
   }
 
@@ -298,11 +339,12 @@ std::string Pack(const MatTable& table) {
     for (const std::string* text : {&column.name.written, &column.name.meaning, &column.name.run}) {
       PutText(*text, bytes);
     }
+    PutSize(column.is_unit_told ? 1 : 0, bytes);
     const std::size_t size = column.values.size() * sizeof(double);
     PutSize(size, bytes);
     const std::size_t used = bytes.size();
     bytes.resize(used + size);
-    std::memcpy(bytes.data() + used, column.values.data(), size);
+    if (size > 0) std::memcpy(bytes.data() + used, column.values.data(), size);
   }
   return bytes;
 }
@@ -320,6 +362,7 @@ MatTable UnpackMatTable(std::string_view bytes) {
     column.name.written = taker.Text();
     column.name.meaning = taker.Text();
     column.name.run = taker.Text();
+    column.is_unit_told = taker.Size() != 0;
     column.values = taker.Numbers();
     table.columns.push_back(std::move(column));
   }

@@ -13,6 +13,7 @@ namespace pendulum {
 struct MatColumn {
   csv::TableColumn name;
   std::vector<double> values;
+  bool is_unit_told = true;  // That of a time.
 };
 
 /// A variable that holds no columns, and what it is.
@@ -27,8 +28,13 @@ struct MatTable {
   std::string complaint;  // Of matio; what it complains of cannot be trusted.
 };
 
+/// The complaint about a file whose data stand in another one.
+inline constexpr std::string_view kOtherFile = "another file";
+
 /// Reads the file at this path by matio, which was written for files of friends: it and the HDF5 library below it crash
-/// on some that are damaged, so this is called in a process of its own. Both are for one thread.
+/// on some that are damaged, so this is called in a process of its own. Both are for one thread. A file of version 7.3
+/// may say that its data stand in any other file, which HDF5 would open and read, or wait for where it is a pipe: so
+/// once this one is open, the process opens no more, ever.
 MatTable ReadMatTable(const std::string& path);
 
 /// The table as bytes, for the way between processes, and back.

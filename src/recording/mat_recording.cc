@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -24,6 +26,7 @@
 #include "pendulum/base/sha256.h"
 #include "to_angle.h"
 #include "to_recording.h"
+#include "write_all.h"
 
 namespace pendulum {
 namespace {
@@ -69,13 +72,9 @@ class TemporaryFile {
     const std::filesystem::path folder = std::filesystem::temp_directory_path(unknown);
     path_ = ((unknown ? "/tmp" : folder) / "pendulum_XXXXXX").string();
     const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
-    if (descriptor < 0) return;
-    exists_ = true;
-    ssize_t written = 1;
-    for (; !bytes.empty() && written > 0; bytes.remove_prefix(std::max<ssize_t>(written, 0))) {
-      written = ::write(descriptor, bytes.data(), bytes.size());
-    }
-    is_whole_ = ::close(descriptor) == 0 && bytes.empty();
+    exists_ = descriptor >= 0;
+    if (!exists_ || !WriteAll(descriptor, bytes)) error_ = errno;
+    if (exists_ && ::close(descriptor) != 0 && error_ == 0) error_ = errno;
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile(TemporaryFile&&) = delete;
@@ -85,44 +84,81 @@ class TemporaryFile {
     if (exists_) ::unlink(path_.c_str());
   }
 
-  bool is_whole() const { return is_whole_; }
+  int error() const { return error_; }  // The errno of what went wrong, or 0.
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
   bool exists_ = false;
-  bool is_whole_ = false;
+  int error_ = 0;
 };
 
-Result<MatTable> ReadTable(std::string_view bytes, const std::string& name) {
+/// A second is enough for a hundred megabytes, and for ever is what some damaged files take. Until numbers of the file
+/// are an answer, there are several copies of them.
+ChildLimits LimitsFor(std::size_t bytes, std::size_t most_unpacked) {
+  constexpr std::size_t kCopies = 8, kLeast = std::size_t{1} << 26;
+  ChildLimits limits;
+  limits.answer_bytes = most_unpacked;
+  limits.memory_bytes = std::min(limits.memory_bytes, kLeast + kCopies * std::max(most_unpacked, bytes));
+  limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
+  limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Others use the processors too.
+  return limits;
+}
+
+/// Why matio gave no table, and what to do.
+tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, const std::string& name) {
+  constexpr std::string_view kLess = "; save only the times and the angles, or export them as CSV";
+  const std::string less(kLess);
+  switch (failure) {
+    case ChildFailure::kNotStarted: break;
+    case ChildFailure::kCrashed:
+      return Fault(name, "this MAT-file is damaged: matio, which reads it, broke off; save it again");
+    case ChildFailure::kOutOfTime:
+      return Fault(name, "this MAT-file takes longer to read than " + std::to_string(limits.processor_seconds) +
+                             " s of a processor: it is damaged or holds too much" + less);
+    case ChildFailure::kOutOfMemory:
+      return Fault(name, "this MAT-file needs more memory to read than the " + std::to_string(limits.memory_bytes) +
+                             " bytes that it may have: it is damaged or holds too much" + less);
+    case ChildFailure::kAnswerTooLarge:
+      return Fault(name, "this MAT-file unpacks to more than " + std::to_string(limits.answer_bytes) +
+                             " bytes, too many for a recording" + less);
+  }
+  return Error(StatusCode::kTryAgain, name + ": no process could be started to read it in; try again");
+}
+
+Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
   const TemporaryFile file(bytes);
-  if (!file.is_whole()) {
-    return Error(StatusCode::kTryAgain,
-                 name + ": there is no room for a copy in the folder of temporary files; make some");
+  if (file.error() != 0) {
+    const std::string folder = std::filesystem::path(file.path()).parent_path().string();
+    return Error(StatusCode::kTryAgain, name + ": there can be no copy of this MAT-file in " + Quoted(folder) + " (" +
+                                            std::generic_category().message(file.error()) +
+                                            "); make room there, or name another folder in TMPDIR");
   }
-  // A second is enough for a hundred megabytes, and for ever is what some damaged files take.
-  const int seconds = 2 + static_cast<int>(bytes.size() >> 25);
-  const Result<std::string> packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, seconds);
-  if (!packed && packed.error().message.empty()) {
-    return Fault(name, "this MAT-file is damaged: matio, which reads it, did not come to its end; save it again");
-  }
-  if (!packed) return Error(packed.error().code, name + ": " + packed.error().message);
+  const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
+  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, limits);
+  if (!packed) return NoTable(packed.error(), limits, name);
   MatTable table = UnpackMatTable(*packed);
   if (table.complaint.empty()) return table;
+  if (table.complaint == kOtherFile) {
+    return Fault(name,
+                 "this MAT-file says that numbers of it are in another file, which is not opened; save all in one");
+  }
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
 /// What there is instead of a column of angles.
 Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                             const std::string& name, const ReadOptions& options) {
-  const auto named = std::ranges::find(table.skipped, options.value_column, &SkippedVariable::name);
+  const std::string& asked = options.value_column;
+  const auto named = std::ranges::find(table.skipped, asked, &SkippedVariable::name);
   const auto object = std::ranges::find(table.skipped, "an object", &SkippedVariable::kind);
-  const SkippedVariable* skipped = named != table.skipped.end() ? &*named : nullptr;
-  const bool has_candidate = !options.value_column.empty() || !csv::CandidatesOf(columns, options.unit).empty();
+  const SkippedVariable* skipped = named != table.skipped.end() && !asked.empty() ? &*named : nullptr;
+  const bool has_candidate = !asked.empty() || !csv::CandidatesOf(columns, options.unit).empty();
   if (skipped == nullptr && !has_candidate && object != table.skipped.end()) skipped = &*object;
   if (skipped != nullptr && skipped->kind == "an object") {
-    return Fault(name, "variable " + Quoted(skipped->name) +
+    const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
+    return Fault(name, which +
                            " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: "
                            "t = ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')");
   }
@@ -134,7 +170,8 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
   std::string rest;
   for (const SkippedVariable& variable :
        std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
-    rest += (rest.empty() ? " (" : ", ") + Quoted(variable.name) + " is " + variable.kind;
+    rest +=
+        (rest.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " + variable.kind;
   }
   return Fault(name, "no variable of this MAT-file is a vector or a matrix of real numbers" +
                          (rest.empty() ? rest : rest + ")") + "; save the times as t and the angles as angle_deg");
@@ -183,12 +220,19 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
 }  // namespace
 
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  const Result<MatTable> table = ReadTable(bytes, name);
-  if (!table) return tl::unexpected(table.error());
+  const Result<MatTable> table = ReadTable(bytes, name, options);
+  return table ? FromMatTable(*table, bytes, name, options) : tl::unexpected(table.error());
+}
+
+Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
+                               const ReadOptions& options) {
   csv::Line line{name, "", csv::Line::kNoNumber};
   std::vector<csv::TableColumn> columns;
-  for (const MatColumn& column : table->columns) columns.push_back(column.name);
-  if (auto checked = CheckVariables(*table, columns, name, options); !checked) return tl::unexpected(checked.error());
+  for (const MatColumn& column : table.columns) columns.push_back(column.name);
+  const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
+  const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
+  if (time < columns.size() && !table.columns[time].is_unit_told) columns[time].meaning = "time";  // the user may say
+  if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
   const auto names = csv::NamesOf(line, columns, options);
   if (!names) return tl::unexpected(names.error());
   csv::ReadColumns read;
@@ -196,14 +240,16 @@ Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const
   read.layout.has_header = true;
   csv::ColumnChooser chooser(line, *names, options, false, false);
   if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
-  std::vector<Warning> warnings;
-  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, warnings); !checked) {
-    return tl::unexpected(checked.error());
+  if (read.layout.time && read.layout.time->index != time) {
+    read.layout.is_time_unit_told = table.columns[read.layout.time->index].is_unit_told;
   }
-  Result<RawSamples> samples = SamplesOf(*table, read.layout, name);
+  Result<RawSamples> samples = SamplesOf(table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);
   if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
   read.samples = *std::move(samples);
+  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings); !checked) {
+    return tl::unexpected(checked.error());
+  }
   read.sha256 = *std::move(sha256);
   if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
   return csv::ToRecording(std::move(read), line, options);

@@ -4,13 +4,22 @@
 #include <string>
 #include <string_view>
 
+#include "mat_columns.h"
 #include "pendulum/recording/read_recording.h"
 
 namespace pendulum {
 
 /// Reads a recording from the bytes of a MAT-file of version 5 to 7.3. Columns are vectors and the columns of matrices
-/// under the names of their variables, fields of structures, and timeseries; `t`, `time` and `tout` are times in
-/// seconds, as is a first column that increases. Messages begin "name:". kDataLoss: damaged, or without such columns.
+/// under the names of their variables, and fields of structures; `t`, `time`, `tout` and a first column that increases
+/// are times in seconds, which only Simulink's (`tout`, a structure with `signals`) tell: others are warned of, and
+/// refused where they are whole numbers. Messages begin "name:". kDataLoss: damaged, without such columns, with data in
+/// another file, or larger than options.most_unpacked_bytes; a timeseries or another object, with advice.
+/// kInvalidArgument: a time without a unit, or what the flags say contradicts the file. kTryAgain: no room for a copy,
+/// or no process.
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options);
+
+/// The same from what a process of its own has found in these bytes.
+Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
+                               const ReadOptions& options);
 
 }  // namespace pendulum

@@ -41,7 +41,9 @@ Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   const Result<std::size_t> got = file.Read(begin);
   if (!got) return tl::unexpected(got.error());
   begin.resize(*got);
-  if (ContentOf(begin) == Content::kText) return ReadRows(LineReader(std::move(file), begin), options);
+  const Content content = ContentOf(begin);
+  if (content == Content::kText) return ReadRows(LineReader(std::move(file), begin), options);
+  if (content == Content::kForeign) return ForeignContent(begin, file.name());  // which may be larger than the memory
   const Result<std::string> bytes = ReadRest(file, std::move(begin));
   if (!bytes) return tl::unexpected(bytes.error());
   return ParseRecording(*bytes, file.name(), options);

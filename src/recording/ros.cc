@@ -44,8 +44,23 @@ std::size_t FindLast(const std::vector<TableColumn>& columns, std::initializer_l
   return found == columns.end() ? kNone : found - columns.begin();
 }
 
+/// Text of the field with that index, empty where there is none.
+std::string_view FieldOf(std::string_view row, char separator, std::size_t index) {
+  FieldCutter fields(row, separator);
+  for (std::size_t i = 0; !fields.done(); ++i) {
+    const std::string_view field = fields.Next();
+    if (i == index) return Unquote(field);
+  }
+  return {};
+}
+
+/// Whole numbers of fewer digits than nanoseconds since 1970 may be of any unit, which is then for the user to say.
+bool TellsItsUnit(std::string_view stamp) {
+  return stamp.find('.') != std::string_view::npos || stamp.size() > kLongestSeconds;
+}
+
 /// The stamp of the message's header before that of its arrival.
-void FindStamps(const std::vector<TableColumn>& columns, RosTable& table) {
+void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, char separator, RosTable& table) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Path path = PathOf(columns[i].written);
     if (!IsOneOf(path.last, {"sec", "secs"})) continue;
@@ -58,9 +73,12 @@ void FindStamps(const std::vector<TableColumn>& columns, RosTable& table) {
     }
   }
   for (const std::string_view word : {"stamp", "%time", "__time"}) {
-    table.seconds = FindLast(columns, {word});
-    table.is_nanoseconds = word != "__time";
-    if (table.seconds != kNone) return;
+    const std::size_t found = FindLast(columns, {word});
+    const std::string_view first = found == kNone ? "" : FieldOf(row, separator, found);
+    if (found == kNone || (word == "stamp" && !first.empty() && !TellsItsUnit(first))) continue;
+    table.seconds = found;
+    table.is_nanoseconds = word == "%time";
+    return;
   }
 }
 
@@ -71,18 +89,9 @@ std::string MeaningOf(const std::string& written) {
   const bool is_axis = IsOneOf(path.last, {"x", "y", "z"});
   if (path.last == "position") return written + "_rad";
   if (path.last == "velocity" || (is_axis && parent == "angular_velocity")) return written + "_rad_s";
-  if (is_axis && parent == "linear_acceleration") return written + "_m_s2";
+  // What the sensor feels, with gravity in it (REP 145), which the word "linear" elsewhere says it has not.
+  if (is_axis && parent == "linear_acceleration") return "specific_force_" + path.last + "_m_s2";
   return written;
-}
-
-/// Text of the field with that index, empty where there is none.
-std::string_view FieldOf(std::string_view row, char separator, std::size_t index) {
-  FieldCutter fields(row, separator);
-  for (std::size_t i = 0; !fields.done(); ++i) {
-    const std::string_view field = fields.Next();
-    if (i == index) return Unquote(field);
-  }
-  return {};
 }
 
 /// The column of names in a table of joints.
@@ -116,7 +125,8 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
   if (error != std::errc() || stop != whole_end) return std::nullopt;
   const bool is_long = is_whole_nanoseconds || text.size() > kLongestSeconds;
   if (point == std::string_view::npos && is_long) return seconds;
-  if (std::abs(seconds) > std::numeric_limits<std::int64_t>::max() / kSecond - 1) return std::nullopt;
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max() / kSecond - 1;
+  if (seconds > kMost || seconds < -kMost) return std::nullopt;
   if (point != std::string_view::npos) {
     std::string digits(text.substr(point + 1));
     if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
@@ -124,6 +134,20 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
     std::from_chars(digits.data(), digits.data() + kDigits, fraction);
   }
   return seconds * kSecond + (text.starts_with('-') ? -fraction : fraction);
+}
+
+/// The column that the user says is the time is one of stamps unless its unit is said, or is for the user to say.
+void TakeNamedTime(const std::vector<TableColumn>& columns, std::string_view row, char separator,
+                   const ReadOptions& options, RosTable& table) {
+  const TimeFlag flag = TimeFlagOf(columns, options.time_column);
+  const std::size_t named = flag.column.empty() ? columns.size() : IndexOf(columns, flag.column);
+  if (named == columns.size() || (named == table.seconds && flag.unit == nullptr)) return;
+  const std::string name = PathOf(columns[named].written).last;
+  const bool is_stamp = IsOneOf(name, {"%time", "__time"}) ||
+                        (IsOneOf(name, {"stamp", "time"}) && TellsItsUnit(FieldOf(row, separator, named)));
+  table.seconds = is_stamp && flag.unit == nullptr ? named : kNone;
+  table.nanoseconds = kNone;
+  table.is_nanoseconds = name == "%time";
 }
 
 }  // namespace
@@ -136,7 +160,7 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
     return unit != nullptr && unit->kind == Kind::kTime;
   };
   const bool has_time = std::ranges::any_of(columns, is_time);
-  if (!has_time) FindStamps(columns, table);
+  if (!has_time) FindStamps(columns, row, separator, table);
   table.joint = FindJoint(columns, row, separator);
   const bool has_paths = std::ranges::any_of(columns, [](const TableColumn& column) {
     return column.written.starts_with('/') && MeaningOf(column.written) != column.written;
@@ -146,18 +170,11 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
     if (FindUnit(column.meaning) == nullptr) column.meaning = MeaningOf(column.written);
   }
   if (table.seconds == kNone && !has_time) {
-    // Whole numbers may be of any unit, which is then for the user to say.
     const std::size_t plain = FindLast(columns, {"time", "timestamp", "t"});
     const std::string_view first = plain == kNone ? "" : FieldOf(row, separator, plain);
-    if (first.find('.') != std::string_view::npos || first.size() > kLongestSeconds) table.seconds = plain;
+    if (TellsItsUnit(first)) table.seconds = plain;
   }
-  const std::size_t named = options.time_column.empty() ? columns.size() : IndexOf(columns, options.time_column);
-  if (named < columns.size() && named != table.seconds) {
-    const bool is_stamp = IsOneOf(PathOf(columns[named].written).last, {"stamp", "%time", "__time", "time"});
-    table.seconds = is_stamp ? named : kNone;
-    table.nanoseconds = kNone;
-    table.is_nanoseconds = is_stamp && IsOneOf(PathOf(columns[named].written).last, {"stamp", "%time"});
-  }
+  TakeNamedTime(columns, row, separator, options, table);
   if (table.seconds != kNone) columns[table.seconds].meaning = "time_s";
   const bool is_joint = table.joint != kNone;  // Then the user may name one, and none of its columns.
   const std::string asked = is_joint ? ChoiceOf(columns, options.value_column).column : options.value_column;
@@ -179,7 +196,8 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
     if (!ParseNumber(seconds, number) || std::abs(number) > kMost) return false;
     stamp = std::llround(number * kSecond);
   }
-  const std::int64_t now = *stamp + beyond;
+  std::int64_t now = 0;
+  if (__builtin_add_overflow(*stamp, beyond, &now)) return false;
   if (!first_) first_ = now;
   // Stamps of one recording are near each other, unless they are no stamps.
   std::int64_t since = 0;

@@ -19,7 +19,8 @@ inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 struct RosTable {
   std::size_t seconds = kNone;      // Column of stamps: seconds, or nanoseconds since 1970.
   std::size_t nanoseconds = kNone;  // Column of what a stamp has beyond whole seconds.
-  bool is_nanoseconds = false;      // A whole number in the first of these columns is in nanoseconds, however small.
+  bool is_nanoseconds = false;      // A whole number in the first of these columns is in nanoseconds, however small:
+                                    // those of `%time`, which rostopic writes.
   std::size_t joint = kNone;        // Column of names, where each row is one joint's.
 };
 

@@ -17,6 +17,15 @@ ReadOptions RosRows::TakeJoint(const ReadOptions& options) {
   return rest;
 }
 
+Result<void> RosRows::CheckSecond(const Line& line) const {
+  if (!has_joints() || !layout_.second) return {};
+  return line.Fault(columns_[layout_.second->index].at,
+                    "columns " + layout_.value.name + " and " + layout_.second->name +
+                        " are both coordinates of a point, of which only one is read where each row is one joint's; "
+                        "choose it with --value_column, or keep the rows of one joint and leave out column " +
+                        Quoted(columns_[table_.joint].written));
+}
+
 Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& cells) {
   fields_.clear();
   for (FieldCutter fields(line.text, layout_.separator); !fields.done();) fields_.push_back(Unquote(fields.Next()));
@@ -28,6 +37,11 @@ Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& ce
   const Column& column = layout_.value;
   if (auto read = cells.Read(line, fields_[column.index], column, sample.value); !read) {
     return tl::unexpected(std::move(read).error());
+  }
+  if (layout_.second) {
+    if (auto read = cells.Read(line, fields_[layout_.second->index], *layout_.second, sample.second); !read) {
+      return tl::unexpected(std::move(read).error());
+    }
   }
   if (cells.is_gap) return std::nullopt;
   if (!has_joints()) return sample;

@@ -24,8 +24,11 @@ class RosRows {
   /// What the user asks for, without the joint.
   ReadOptions TakeJoint(const ReadOptions& options);
 
+  /// kDataLoss: both coordinates of a point, where each row is one joint's.
+  Result<void> CheckSecond(const Line& line) const;
+
   struct Sample {
-    double time = 0, value = 0;
+    double time = 0, value = 0, second = 0;
   };
 
   /// The sample of a row, none where it has a gap or goes to its joint.

@@ -2,7 +2,6 @@
 #include "recording/row_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <exception>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "cell.h"
 #include "column.h"
 #include "csv.h"
+#include "cut_off.h"
 #include "head.h"
 #include "host_stamp.h"
 #include "layout.h"
@@ -160,7 +160,7 @@ Check Reader::ChooseColumns() {
   if (!names) return tl::unexpected(names.error());
   csv::ColumnChooser chooser(line_, *names, options, metadata_.sample_rate_hz > 0, has_host_);
   if (Check chosen = chooser.Choose(layout_); !chosen) return chosen;
-  if (ros_) layout_.second.reset();  // its rows have one value
+  if (Check checked = ros_ ? ros_->CheckSecond(line_) : Check(); !checked) return checked;
   if (Check checked = CheckCalibration(line_, layout_.value, options_, metadata_, samples_.warnings); !checked) {
     return checked;
   }
@@ -294,7 +294,7 @@ Check Reader::Append(double time, double value, double second) {
 Check Reader::ReadRosRow() {
   const auto sample = ros_->Read(line_, cells_);
   if (!sample) return tl::unexpected(sample.error());
-  if (*sample) return Append((*sample)->time, (*sample)->value);
+  if (*sample) return Append((*sample)->time, (*sample)->value, (*sample)->second);
   gap_rows_ += cells_.TakeGap() ? 1 : 0;
   return {};
 }
@@ -332,13 +332,7 @@ Check Reader::CheckEnd() {
 
 /// Of a paste without header the first stamp may have lost its leading digits and read as a number all the same.
 void Reader::LeaveOutCutStamp() {
-  constexpr double kFar = 10;  // Times the steps that follow, and a digit or more.
-  constexpr Eigen::Index kSteps = 7;
-  const Eigen::VectorXd& time = samples_.time;
-  if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples) return;
-  double usual = 0;
-  for (Eigen::Index i = 2; i <= kSteps; ++i) usual = std::max(usual, time[i] - time[i - 1]);
-  if (time[0] < 0 || kFar * time[0] > time[1] || !(time[1] - time[0] > kFar * usual)) return;
+  if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples || !csv::IsCutStamp(samples_.time)) return;
   WarnOfIncompleteRow({lines_.name(), lines_of_head_.front().text, lines_of_head_.front().number});
   LineNumbers lines;
   for (Eigen::Index i = 1; i < rows_; ++i) lines.Add(samples_.lines.LineOf(i));
@@ -350,15 +344,13 @@ void Reader::LeaveOutCutStamp() {
   }
 }
 
-/// A last value without a line end may have lost digits and read as a number all the same: it leaps as no other does.
+/// A last value without a line end may have lost digits and read as a number all the same.
 void Reader::LeaveOutCutValue() {
-  constexpr double kLeap = 2;  // Times the largest step between other rows.
   const Eigen::Index last = rows_ - 1;
   if (lines_.is_terminated() || last < kMinimumSamples || samples_.lines.LineOf(last) != lines_.number()) return;
-  const Eigen::VectorXd& value = samples_.value;
-  const double leap = std::abs(value[last] - value[last - 1]);
-  const double usual = (value.segment(1, last - 1) - value.head(last - 1)).cwiseAbs().maxCoeff();
-  if (!(usual > 0) || leap <= kLeap * usual) return;
+  const bool is_cut =
+      csv::IsCutValue(samples_.value, last) || (layout_.second && csv::IsCutValue(samples_.second, last));
+  if (!is_cut) return;
   WarnOfIncompleteRow({lines_.name(), lines_.line(), lines_.number()});
   --rows_;
 }

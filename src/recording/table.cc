@@ -7,34 +7,25 @@
 #include <string_view>
 #include <utility>
 
+#include "name_list.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum::csv {
 namespace {
 
-/// The length of a rate or an acceleration has lost its sign, so that it swings twice as often.
+/// The length of a vector has lost its sign, so that it swings twice as often.
 bool IsLengthOfVector(const TableColumn& column) {
   constexpr std::string_view kWord = "absolute";
   const std::string canonical = CanonicalName(column.meaning);
   const Unit* unit = FindUnit(column.meaning);
-  if (unit == nullptr || (unit->kind != Kind::kRate && unit->kind != Kind::kAcceleration)) return false;
+  if (unit == nullptr || (unit->kind != Kind::kRate && !IsSecondChoice(*unit))) return false;
   return canonical.starts_with(kWord) && (canonical[kWord.size()] == '_' || IsBlank(canonical[kWord.size()]));
-}
-
-/// The names of some columns for a sentence: "a", "b" and "c".
-std::string ListOf(const std::vector<TableColumn>& columns, const std::vector<std::size_t>& some) {
-  constexpr std::size_t kShown = 8;
-  std::string list;
-  for (std::size_t i = 0; i < std::min(some.size(), kShown); ++i) {
-    list += (i == 0 ? "" : i + 1 == some.size() ? " and " : ", ") + Quoted(columns[some[i]].written);
-  }
-  return list + (some.size() > kShown ? ", ..." : "");
 }
 
 /// The run whose columns are read; none where that is for the chooser to say.
 Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector<TableColumn>& columns,
                                              const ReadOptions& options) {
-  for (const std::string& flag : {options.value_column, options.time_column}) {
+  for (const std::string& flag : {options.value_column, TimeFlagOf(columns, options.time_column).column}) {
     const std::size_t chosen = flag.empty() ? columns.size() : IndexOf(columns, flag);
     if (chosen < columns.size() && !columns[chosen].run.empty()) return columns[chosen].run;
   }
@@ -44,9 +35,10 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
   for (const std::size_t i : candidates) runs.insert(columns[i].run);
   if (runs.size() == 1) return columns[candidates.front()].run;
   if (candidates.empty()) return std::nullopt;
-  return line.Fault(columns[candidates[1]].at, "columns " + ListOf(columns, candidates) + " could " +
-                                                   (candidates.size() == 2 ? "both" : "all") +
-                                                   " be the quantity; choose one with --value_column");
+  std::vector<std::string> names;
+  names.reserve(candidates.size());
+  for (const std::size_t i : candidates) names.push_back(Quoted(columns[i].written));
+  return line.Fault(columns[candidates[1]].at, "columns " + SeveralQuantities(names));
 }
 
 }  // namespace
@@ -59,13 +51,20 @@ std::size_t IndexOf(const std::vector<TableColumn>& columns, const std::string& 
   return static_cast<std::size_t>(number) - 1;
 }
 
+TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& time_column) {
+  const std::size_t colon = time_column.rfind(':');
+  if (colon == std::string::npos || IndexOf(columns, time_column) < columns.size()) return {time_column};
+  const Unit* unit = UnitOfSuffix(time_column.substr(colon + 1));
+  if (unit == nullptr || unit->kind != Kind::kTime) return {time_column};
+  return {time_column.substr(0, colon), unit};
+}
+
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit) {
   std::vector<std::size_t> candidates, others, asked;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Unit* own = FindUnit(columns[i].meaning);
     if (own == nullptr || own->kind == Kind::kTime || IsLengthOfVector(columns[i])) continue;
-    const bool is_second_choice = own->kind == Kind::kAcceleration || own->kind == Kind::kLength;
-    (is_second_choice ? others : candidates).push_back(i);
+    (IsSecondChoice(*own) ? others : candidates).push_back(i);
     if (own->suffix == unit) asked.push_back(i);
   }
   if (!asked.empty()) return asked;
@@ -91,7 +90,8 @@ Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColum
     if (!one) return tl::unexpected(std::move(one).error());
     run = *std::move(one);
   }
-  const std::size_t time = options.time_column.empty() ? columns.size() : IndexOf(columns, options.time_column);
+  const std::string flag = TimeFlagOf(columns, options.time_column).column;
+  const std::size_t time = flag.empty() ? columns.size() : IndexOf(columns, flag);
   std::vector<Name> names;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const TableColumn& column = columns[i];

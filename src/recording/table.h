@@ -21,6 +21,15 @@ struct TableColumn {
 /// The one that the user names, by name or by 1-based number; its index or the number of columns.
 std::size_t IndexOf(const std::vector<TableColumn>& columns, const std::string& name);
 
+/// NAME, NUMBER, or either with the unit of the times after it: :s, :ms or :us.
+struct TimeFlag {
+  std::string column;
+  const Unit* unit = nullptr;
+};
+
+/// What --time_column says of these columns; a colon may be part of a name.
+TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& time_column);
+
 /// Those that could be the quantity, of the unit that the user asks for if there are any.
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit);
 

@@ -13,13 +13,14 @@
 /// above its first column; Capstone and SPARKvue write runs.
 namespace pendulum::csv {
 
-/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; angles and rates
-/// are in the unit that was chosen there, which it does not write.
+/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; `r` is that of the
+/// vector (x, y). Angles and rates are in the unit that was chosen there, which it does not write.
 inline std::string TrackerMeaning(const std::string& name) {
   const std::string canonical = CanonicalName(name);
   if (canonical == "t") return "time_s";
   if (canonical == "t_s" || canonical == "t_ms") return "time" + canonical.substr(1);
-  if (canonical == "x" || canonical == "y" || canonical == "r") return canonical + " (m)";
+  if (canonical == "x" || canonical == "y") return canonical + " (m)";
+  if (canonical == "r") return "absolute r (m)";
   return PlainUnits(name);
 }
 

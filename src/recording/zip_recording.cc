@@ -8,6 +8,7 @@
 
 #include "content.h"
 #include "mat_recording.h"
+#include "name_list.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
@@ -25,16 +26,8 @@ using Member = ZipMembers::Member;
 struct Look {
   const Member* member = nullptr;
   std::vector<std::string> candidates;  // Names of columns; one is empty for a MAT-file, which is not looked into.
+  std::optional<Status> fault;          // Why nothing is known of it.
 };
-
-std::string ListOf(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 8;
-  std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
-    list += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
-  return list + (names.size() > kShown ? ", ..." : "");
-}
 
 /// "MEMBER/COLUMN", each of them shortened where a message may not show more.
 std::string QuotedPair(const std::string& member, const std::string& column) {
@@ -47,10 +40,10 @@ std::string QuotedPair(const std::string& member, const std::string& column) {
 /// The columns that could be the quantity; none without a time.
 std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& columns, const ReadOptions& options) {
   std::vector<std::string> candidates;
-  const auto is_time = [&](const csv::TableColumn& column) {
-    return csv::IsTime(column.meaning) || (!options.time_column.empty() && column.written == options.time_column);
-  };
-  if (options.sample_rate_hz == 0 && std::ranges::none_of(columns, is_time)) return candidates;
+  const auto is_time = [](const csv::TableColumn& column) { return csv::IsTime(column.meaning); };
+  const std::string time = csv::TimeFlagOf(columns, options.time_column).column;
+  const bool is_named = !time.empty() && csv::IndexOf(columns, time) < columns.size();
+  if (options.sample_rate_hz == 0 && !is_named && std::ranges::none_of(columns, is_time)) return candidates;
   if (!options.value_column.empty()) {
     const std::size_t named = csv::IndexOf(columns, options.value_column);
     if (named < columns.size()) candidates.push_back(columns[named].written);
@@ -62,9 +55,12 @@ std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& colum
 
 Look LookAt(const ZipMembers& zip, const Member& member, const ReadOptions& options) {
   constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
-  Look look{&member, {}};
+  Look look{&member, {}, {}};
   const Result<std::string> begin = zip.Unpack(member, kHeadBytes);
-  if (!begin) return look;
+  if (!begin) {
+    look.fault = begin.error();
+    return look;
+  }
   const Content content = ContentOf(begin->substr(0, kContentBytes));
   if (content == Content::kMat) look.candidates.emplace_back();
   if (content != Content::kText) return look;
@@ -74,21 +70,32 @@ Look LookAt(const ZipMembers& zip, const Member& member, const ReadOptions& opti
   return look;
 }
 
-/// The member that --value_column names before a slash, whose name is taken off.
-const Member* TakeNamed(const ZipMembers& zip, ReadOptions& options) {
+/// The member that --value_column names before a slash, or as a whole; its name is taken off. Whole paths go before
+/// names of files. nullptr: none of them. kInvalidArgument: two files have this name.
+Result<const Member*> TakeNamed(const ZipMembers& zip, const std::string& name, ReadOptions& options) {
+  const std::string& flag = options.value_column;
+  const auto is_named = [&](std::string_view path) {
+    return flag.starts_with(path) && (flag.size() == path.size() || flag[path.size()] == '/');
+  };
+  const auto file_of = [](const Member& member) { return member.path.substr(member.path.rfind('/') + 1); };
+  const auto take = [&](const Member& member, std::size_t size) {
+    options.value_column.erase(0, std::min(size + 1, flag.size()));
+    return &member;
+  };
+  const Member* by_file = nullptr;
   for (const Member& member : zip.members()) {
-    const std::string file = member.path.substr(member.path.rfind('/') + 1);
-    for (const std::string& name : {member.path, file}) {
-      if (options.value_column == name) {
-        options.value_column.clear();
-        return &member;
-      }
-      if (!options.value_column.starts_with(name + "/")) continue;
-      options.value_column.erase(0, name.size() + 1);
-      return &member;
-    }
+    if (is_named(member.path)) return take(member, member.path.size());
   }
-  return nullptr;
+  for (const Member& member : zip.members()) {
+    if (!is_named(file_of(member))) continue;
+    if (by_file != nullptr && file_of(member) == file_of(*by_file)) {
+      return Error(StatusCode::kInvalidArgument, name + ": --value_column is " + Quoted(flag) + ", and both " +
+                                                     Quoted(by_file->path) + " and " + Quoted(member.path) +
+                                                     " are files of this name; give it with its folders");
+    }
+    by_file = &member;
+  }
+  return by_file == nullptr ? by_file : take(*by_file, file_of(*by_file).size());
 }
 
 tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) {
@@ -104,22 +111,27 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
 }
 
 /// The member that is to be read.
-Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options) {
-  constexpr std::size_t kMostMembers = 1000;  // A zip file of hostile bytes holds a million.
-  if (const Member* named = TakeNamed(zip, options)) return named;
+Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options,
+                                   std::vector<Warning>& warnings) {
+  constexpr std::size_t kMostMembers = 1000, kMostWarnings = 8;  // A zip file of hostile bytes holds a million.
+  Result<const Member*> named = TakeNamed(zip, name, options);
+  if (!named || *named != nullptr) return named;
   if (zip.members().size() == 1) return &zip.members().front();
   std::vector<Look> looks;
   std::vector<std::string> candidates;
+  std::optional<Status> fault;  // Of the first that cannot be read.
   for (std::size_t i = 0; i < std::min(zip.members().size(), kMostMembers); ++i) {
     Look look = LookAt(zip, zip.members()[i], options);
+    if (look.fault && warnings.size() < kMostWarnings) warnings.push_back({"unreadable_member", look.fault->message});
+    if (look.fault && !fault) fault = look.fault;
     if (look.candidates.empty()) continue;
     for (const std::string& column : look.candidates) candidates.push_back(QuotedPair(look.member->path, column));
     looks.push_back(std::move(look));
   }
   if (looks.size() == 1) return looks.front().member;
+  if (looks.empty() && fault) return tl::unexpected(*std::move(fault));
   if (looks.empty()) return NoMember(zip, name);
-  return pendulum::Fault(name, "columns " + ListOf(candidates) + " could " + (candidates.size() == 2 ? "both" : "all") +
-                                   " be the quantity; choose one with --value_column");
+  return pendulum::Fault(name, "columns " + SeveralQuantities(candidates));
 }
 
 Result<Recording> ReadMember(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -138,12 +150,14 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   const Result<ZipMembers> zip = ZipMembers::Open(bytes, name);
   if (!zip) return tl::unexpected(zip.error());
   ReadOptions rest = options;
-  const Result<const Member*> member = ChooseMember(*zip, name, rest);
+  std::vector<Warning> warnings;
+  const Result<const Member*> member = ChooseMember(*zip, name, rest, warnings);
   if (!member) return tl::unexpected(member.error());
-  const Result<std::string> text = zip->Unpack(**member, kMostUnpackedBytes + 1);
+  const std::size_t most = options.most_unpacked_bytes;
+  const Result<std::string> text = zip->Unpack(**member, most + 1);
   if (!text) return tl::unexpected(text.error());
-  if (text->size() > kMostUnpackedBytes) {
-    return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(kMostUnpackedBytes) +
+  if (text->size() > most) {
+    return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(most) +
                                                       " bytes, too many for a recording; name another, or split it");
   }
   Result<Recording> recording = ReadMember(*text, zip->NameOf(**member), rest);
@@ -151,6 +165,7 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   Result<std::string> sha256 = Sha256(bytes);
   if (!sha256) return tl::unexpected(std::move(sha256).error());
   recording->path = name;
+  recording->warnings.insert(recording->warnings.begin(), warnings.begin(), warnings.end());
   recording->sha256 = *std::move(sha256);
   return recording;
 }

@@ -24,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 200, kMostOptionBytes = 8192;
+constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 27;  // Of a body that is a zip or a MAT-file.
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
 /// What a client calls a file, without the folders that old browsers send along and what no terminal should see.
@@ -299,6 +300,7 @@ Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibr
     return Error(StatusCode::kInvalidArgument,
                  "--release all makes several results of a recording; a request has one, so give the number of one");
   }
+  options->read.most_unpacked_bytes = kMostUnpackedBytes;
   options->fit.threads = 1;  // of many requests at a time each has its own
   return options;
 }

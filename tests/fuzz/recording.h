@@ -36,8 +36,7 @@ inline ReadOptions Options(std::uint8_t choice) {
   return options.at(choice % options.size());
 }
 
-inline void CheckRecording(std::string_view text) {
-  const Result<Recording> recording = ParseRecording(text, "a.csv", Options(text.empty() ? 0 : text.back()));
+inline void CheckResult(const Result<Recording>& recording) {
   if (recording) {
     Require(MakeRecording(*recording).has_value());
     Require(recording->sha256.size() == 64 && recording->resolution >= 0);
@@ -46,6 +45,10 @@ inline void CheckRecording(std::string_view text) {
     Require(recording.error().code != StatusCode::kNotFound && recording.error().code != StatusCode::kInternal);
     RequireSentence(recording.error().message, "a.csv");
   }
+}
+
+inline void CheckRecording(std::string_view text) {
+  CheckResult(ParseRecording(text, "a.csv", Options(text.empty() ? 0 : text.back())));
 }
 
 }  // namespace pendulum

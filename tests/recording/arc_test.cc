@@ -65,6 +65,19 @@ TEST(FitArc, HasTheErrorsItSays) {
   EXPECT_THAT(sum / kSeeds, DoubleNear(3, 0.5));
 }
 
+/// The middle of a sine of amplitude A is J0(A) radii below the pivot (DLMF 10.9.1): 0.28 for 1.9, 0.00 for 2.4, and
+/// 0.26 above it for 3.
+TEST(FitArc, RefusesPointsThatDoNotTellWhichWayIsDown) {
+  EXPECT_TRUE(FitArc(Points(1.9, 0, 1).x, Points(1.9, 0, 1).y));
+  for (const double half : {2.4, 3.0, 30.0}) {
+    const Points points(half, 0.5, 1);
+    const Result<Arc> arc = FitArc(points.x, points.y);
+    ASSERT_FALSE(arc) << half;
+    EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
+    EXPECT_THAT(arc.error().message, HasSubstr("they do not tell which way is down; choose one coordinate with"));
+  }
+}
+
 TEST(FitArc, RefusesPointsThatTellNoPivot) {
   const Points points(0.02, 1, 1);
   const Result<Arc> arc = FitArc(points.x, points.y);

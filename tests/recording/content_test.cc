@@ -37,6 +37,9 @@ TEST(Content, SaysWhatAFileIsThatCannotBeRead) {
   EXPECT_THAT(FaultOf("\x1F\x8B\x08"s), StartsWith("run.csv: this is a gzip file; unpack it"));
   EXPECT_THAT(FaultOf("<?xml version=\"1.0\"?>\n"), HasSubstr("such as the project of Logger Pro or Tracker"));
   EXPECT_THAT(FaultOf("\xD0\xCF\x11\xE0"s), HasSubstr("a workbook of an older Excel; save it as CSV"));
+  EXPECT_EQ(FaultOf("# Created by Octave 8.4.0, Tue Nov 24 12:00:00 2026 UTC <a@b>\n# name: t\n# type: matrix\n"),
+            "run.csv: this is the text in which Octave keeps variables; save them with save -7 run.mat t angle_deg");
+  EXPECT_THAT(FaultOf("Octave-1-L\0"s), HasSubstr("this is Octave's binary form of variables; save them with save -7"));
   EXPECT_THAT(FaultOf("PK\5\6"s + std::string(18, '\0')), HasSubstr("this zip file is empty"));
 }
 
@@ -59,6 +62,17 @@ TEST(Content, OfAFileCountsWhateverItsName) {
   std::vector<double> times, values;
   for (int i = 0; i < 8; ++i) times.push_back(i / 100.0), values.push_back(100 + i);
   ExpectTheRows(ReadFileOf(MatOf({Matrix("t", 8, times), Matrix("angle_deg", 8, values)})), kDegree);
+}
+
+TEST(Content, OfALargeForeignFileIsSaidByItsFirstBytes) {
+  const std::string path = testing::TempDir() + "/content_test.bag";
+  std::ofstream(path, std::ios::binary) << "#ROSBAG V2.0\n";
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 33);  // of which the disk has next to nothing
+  const Result<Recording> recording = ReadRecording(path);
+  std::filesystem::remove(path);
+  ASSERT_FALSE(recording.has_value());
+  EXPECT_EQ(recording.error().message,
+            path + ": this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that");
 }
 
 TEST(Content, AMatFileMayBeInAZipFile) {

@@ -3,12 +3,18 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "pendulum/base/sha256.h"
 #include "tests/recording/mat_files.h"
@@ -35,6 +41,8 @@ std::vector<double> Both() {
   for (const double value : Values()) both.push_back(value);
   return both;
 }
+
+constexpr std::size_t kClassAt = 144;  // Of the first variable, behind header and two tags.
 
 ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
 
@@ -117,11 +125,44 @@ TEST(ReadMat, LeavesOutRowsThatAreNoNumbers) {
   std::vector<double> times = Times(), values = Values();
   times.insert(times.begin(), -1);
   values.insert(values.begin(), std::numeric_limits<double>::quiet_NaN());
-  const Recording recording = RecordingOf(MatOf({Matrix("t", 9, times), Matrix("angle_rad", 9, values)}));
+  const Recording recording = RecordingOf(MatOf({Matrix("t_s", 9, times), Matrix("angle_rad", 9, values)}));
   ExpectTheRows(recording);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].message,
             "run.csv: 1 row was left out, with no number in column \"angle_rad\" or in its time");
+}
+
+TEST(ReadMat, WholeNumbersOfATimeNeedAUnit) {
+  const std::string vectors = MatOf({Matrix("t", 8, Times(1000)), Matrix("angle_rad", 8, Values())});
+  EXPECT_EQ(WrongFlag(vectors, {}),
+            "run.csv: column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms or "
+            ":us after the column");
+  ExpectTheRows(RecordingOf(vectors, TimeAndValue("t:ms", "")));
+  EXPECT_THAT(WrongFlag(vectors, TimeAndValue("t", "")), HasSubstr("holds whole numbers"));
+  std::vector<double> both = Times(1000);
+  for (const double value : Values()) both.push_back(value);
+  const std::string matrix = MatOf({Matrix("run_rad", 8, both)});
+  EXPECT_THAT(WrongFlag(matrix, {}), HasSubstr("column \"run_rad(:,1)\" holds whole numbers"));
+  ExpectTheRows(RecordingOf(matrix, TimeAndValue("run_rad(:,1):ms", "run_rad(:,2)")));
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t_ms", 8, Times(1000)), Matrix("angle_rad", 8, Values())})));
+}
+
+TEST(ReadMat, SaysThatATimeIsTakenAsSeconds) {
+  const auto codes = [](const MatVariables& variables) {
+    std::string list;
+    for (const Warning& warning : RecordingOf(MatOf(variables)).warnings) list += warning.code + ' ';
+    return list;
+  };
+  EXPECT_EQ(codes({Matrix("t", 8, Times()), Matrix("angle_rad", 8, Values())}), "time_unit_assumed ");
+  EXPECT_EQ(codes({Matrix("t_s", 8, Times()), Matrix("angle_rad", 8, Values())}), "");
+  EXPECT_EQ(codes({Matrix("tout", 8, Times(1000)), Matrix("angle_rad", 8, Values())}), "");
+  const auto structure = [](const char* signals) {
+    matvar_t* inner =
+        Structure(signals, {{"values", Matrix("values", 8, Values())}, {"label", Text("label", "a_rad")}});
+    return Structure("out", {{"time", Matrix("time", 8, Times(1000))}, {signals, inner}});
+  };
+  EXPECT_EQ(codes({structure("signals")}), "");  // as Simulink writes it: seconds, which may be whole
+  EXPECT_THAT(WrongFlag(MatOf({structure("mine")}), TimeAndValue("", "out.mine.values")), HasSubstr("whole numbers"));
 }
 
 TEST(ReadMat, RefusesColumnsOfDifferentLengths) {
@@ -152,6 +193,65 @@ TEST(ReadMat, ComplexAndSparseAreNoColumns) {
                              Mat_VarCreate("z_rad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX)}),
                       Value("z_rad")),
               HasSubstr("variable \"z_rad\" is complex"));
+}
+
+/// A variable of class mxOPAQUE, by hand as MATLAB writes a timeseries; its elements are tag, size and bytes.
+std::string Timeseries(const std::string& name) {
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  const auto element = [&](std::uint32_t type, const std::string& bytes) {
+    return number(type) + number(static_cast<std::uint32_t>(bytes.size())) + bytes +
+           std::string((8 - bytes.size() % 8) % 8, '\0');
+  };
+  constexpr std::uint32_t kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kUint32Class = 13, kOpaqueClass = 17;
+  const std::string numbers = element(kUint32, number(kUint32Class) + number(0)) +
+                              element(kInt32, number(2) + number(1)) + element(kInt8, "") +
+                              element(kUint32, number(0xDD000000) + number(2));
+  const std::string called = name.size() > 4 ? element(kInt8, name)  // of up to four letters size and type are one word
+                                             : number(static_cast<std::uint32_t>(name.size() << 16 | kInt8)) + name +
+                                                   std::string(4 - name.size(), '\0');
+  return element(kMatrix, element(kUint32, number(kOpaqueClass) + number(0)) + called + element(kInt8, "MCOS") +
+                              element(kInt8, "timeseries") + element(kMatrix, numbers));
+}
+
+TEST(ReadMat, SaysHowToSaveATimeseries) {
+  const std::string advice =
+      " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: t = ts.Time; "
+      "angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')";
+  for (const char* const name : {"ts", "pendulum"}) {
+    EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), "run.csv: a variable" + advice);
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), "run.csv: a variable" + advice);
+  }
+  std::string object = MatOf({Matrix("ts", 8, Values()), Matrix("t_s", 8, Times())}, MAT_FT_MAT5, false);
+  object[kClassAt] = 3;  // mxOBJECT
+  EXPECT_EQ(FaultOf(object), "run.csv: variable \"ts\"" + advice);
+  EXPECT_EQ(FaultOf(object, Value("ts", "deg")), "run.csv: variable \"ts\"" + advice);
+}
+
+TEST(ReadMat, AnObjectBesideVectorsIsNoDamage) {
+  const MatVariables vectors = {Matrix("odd", 8, Values()), Matrix("t_s", 8, Times()),
+                                Matrix("angle_deg", 8, Values())};
+  std::string bytes = MatOf(vectors, MAT_FT_MAT5, false);
+  bytes[kClassAt] = 3;
+  ExpectTheRows(RecordingOf(bytes), kDegree);
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t_s", 8, Times()), Matrix("angle_deg", 8, Values())}) + Timeseries("ts")),
+                kDegree);
+}
+
+TEST(ReadMat, UnpacksNoMoreThanItMay) {
+  std::vector<double> times, zeros(100'000);
+  for (int i = 0; i < 100'000; ++i) times.push_back(i + 0.5);
+  const std::string bytes = MatOf({Matrix("t_s", 100'000, times), Matrix("angle_deg", 100'000, zeros)});
+  ReadOptions options;
+  options.most_unpacked_bytes = 1'600'000;
+  EXPECT_EQ(FaultOf(bytes, options),
+            "run.csv: this MAT-file unpacks to more than 1600000 bytes, too many for a recording; save only the times "
+            "and the angles, or export them as CSV");
+  options.most_unpacked_bytes = 1'601'000;  // and their names
+  EXPECT_TRUE(ParseRecording(bytes, "run.csv", options).has_value());
 }
 
 TEST(ReadMat, ASampleRateReplacesTheTime) {
@@ -185,6 +285,50 @@ TEST(ReadMat, SurvivesBytesThatAreChanged) {
       EXPECT_NE(recording.error().code, StatusCode::kInternal);
     }
   }
+}
+
+TEST(ReadMat, SaysWhyThereIsNoCopyForMatio) {
+  const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
+  const char* const before = std::getenv("TMPDIR");
+  const std::string folder = before == nullptr ? "" : before;
+  ::setenv("TMPDIR", "/proc", 1);  // where nobody makes a file
+  EXPECT_EQ(FaultOf(bytes, {}, StatusCode::kTryAgain),
+            "run.csv: there can be no copy of this MAT-file in \"/proc\" (No such file or directory); make room there, "
+            "or name another folder in TMPDIR");
+  before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", folder.c_str(), 1);
+}
+
+// ---- Files that would have others read --------------------------------------------------------------------------
+
+/// A file of version 7.3, made by HDF5, whose counts are the bytes of another file: by external storage, or by a link
+/// to a variable there. Its path has many slashes before it, which leave room for another.
+std::string WithOtherFile(const std::string& corpus_file, const std::string& other) {
+  const std::string exe = "/proc/self/exe";  // Its first bytes are 0x7F 'E' 'L' 'F' (elf(5)).
+  std::ifstream stream("tests/fuzz/corpus/mat/" + corpus_file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t end = bytes.find(exe) + exe.size();
+  EXPECT_LT(end, bytes.size());
+  const std::size_t begin = bytes.find_last_not_of('/', end - exe.size()) + 1;
+  return bytes.replace(begin, end - begin, std::string(end - begin - other.size(), '/') + other);
+}
+
+constexpr const char* kOneFile =
+    "run.csv: this MAT-file says that numbers of it are in another file, which is not opened; save all in one";
+
+TEST(ReadMat, ReadsNoOtherFile) {
+  for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
+    EXPECT_EQ(FaultOf(WithOtherFile(file, "/proc/self/exe"), Unit("", 100)), kOneFile);
+    EXPECT_EQ(FaultOf(WithOtherFile(file, "/nowhere/at/all"), Unit("", 100)), kOneFile);
+  }
+}
+
+TEST(ReadMat, WaitsForNoPipeThatAFileNames) {
+  const std::string pipe = (std::filesystem::temp_directory_path() / ("pipe_" + std::to_string(::getpid()))).string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
+    EXPECT_EQ(FaultOf(WithOtherFile(file, pipe), Unit("", 100)), kOneFile);
+  }
+  std::filesystem::remove(pipe);
 }
 
 }  // namespace

@@ -77,5 +77,19 @@ TEST(ParseRecording, MakesAnglesOfBothCoordinatesOfAPoint) {
   EXPECT_THAT(alone.error().message, HasSubstr("does not tell the side it is on"));
 }
 
+TEST(ParseRecording, LeavesOutALastHeightThatIsCutOff) {
+  std::string text = "time_s,x_px,y_px\n";
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 0.5 * std::sin(0.3 * i);
+    text += std::to_string(0.01 * i) + "," + std::to_string(640 + 400 * std::sin(angle)) + "," +
+            std::to_string(120 + 400 * std::cos(angle)) + "\n";
+  }
+  EXPECT_EQ(Of(text.substr(0, text.size() - 1)).size(), 40);
+  const Recording cut = Of(text.substr(0, text.rfind(',') + 2));  // one digit of it
+  EXPECT_EQ(cut.size(), 39);
+  ASSERT_EQ(cut.warnings.size(), 1);
+  EXPECT_EQ(cut.warnings[0].code, "incomplete_row");
+}
+
 }  // namespace
 }  // namespace pendulum::other_quantities_test

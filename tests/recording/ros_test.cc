@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/ros.h"
 
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -39,6 +40,9 @@ TEST(StampClock, RefusesWhatIsNoStamp) {
   for (const char* const text : {"", "x", "1.2.3", "1e300", "99999999999999999999", "1.5x"}) {
     EXPECT_FALSE(clock.Read(text, "", time)) << text;
   }
+  // Beyond what 64 bits hold: they begin at -2^63, and 2^63 - 1 ns have no room for five more.
+  EXPECT_FALSE(clock.Read("-9223372036854775808.0", "", time));
+  EXPECT_FALSE(clock.Read("9223372036854775807", "5", time));
   for (const char* const text : {"x", "-1", "1000000000"}) EXPECT_FALSE(clock.Read("1700000000", text, time)) << text;
 }
 
@@ -77,6 +81,16 @@ TEST(Ros, StampsOfASimulationAreSmallAndInNanosecondsAllTheSame) {
   ExpectTheRows(RecordingOf("%time,field.position\n" + Rows("{t}000000,{v}")));
 }
 
+TEST(Ros, SmallWholeNumbersOfAStampNeedAUnit) {
+  const std::string text = "stamp,angle_rad\n" + Rows("{t},{v}");
+  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; name the column of times time_s, time_ms or time_us, or give"));
+  EXPECT_THAT(WrongFlag(text, TimeAndValue("stamp", "")),
+              HasSubstr("column \"stamp\" holds whole numbers and does not tell its unit; give --time_column with :s"));
+  ExpectTheRows(RecordingOf(text, TimeAndValue("stamp:ms", "")));
+  ExpectTheRows(RecordingOf("%time,field.position\n" + Rows("{t},{v}"), TimeAndValue("%time:ms", "")));
+  ExpectTheRows(RecordingOf("stamp,angle_rad\n" + Rows("0.0{t},{v}")));
+}
+
 TEST(Ros, AStampBesideATimeIsNotLookedAt) {
   ExpectTheRows(RecordingOf("time_ms,stamp,angle_rad\n" + Rows("{t},7,{v}")));
   ExpectTheRows(RecordingOf("time_ms,sec,nsec,angle_rad\n" + Rows("{t},7,8,{v}")));
@@ -95,6 +109,29 @@ TEST(Ros, OfAJointTakesTheAngleUnlessTheRateIsAskedFor) {
   ExpectTheRows(RecordingOf(text, Value("/js/a/velocity")));
   ExpectTheRows(RecordingOf(text, Unit("rad_s")));
   EXPECT_EQ(RecordingOf(text, Unit("rad_s")).quantity, Quantity::kRate);
+}
+
+/// REP 145: what drivers publish under this name is the specific force, with gravity in it.
+TEST(Ros, AccelerationsOfAnImuShowGravity) {
+  const Recording recording = RecordingOf(Stamped("%time,field.linear_acceleration.x", "{s}{9},{v}"));
+  ExpectTheRows(recording);
+  EXPECT_EQ(recording.quantity, Quantity::kAcceleration);
+  EXPECT_TRUE(recording.shows_gravity);
+  const std::string paths = Stamped("__time,/imu/linear_acceleration/x,/imu/linear_acceleration/y", "{s}.{9},{v},1");
+  EXPECT_TRUE(RecordingOf(paths, Value("/imu/linear_acceleration/x")).shows_gravity);
+  EXPECT_FALSE(RecordingOf("time_s,Linear Acceleration x (m/s^2)\n" + Rows("0.0{t},{v}")).shows_gravity);
+}
+
+TEST(Ros, BothCoordinatesOfAPointAreAnAngle) {
+  std::string text = "header.stamp.sec,header.stamp.nanosec,y_px,x_px\n";
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 0.5 * std::sin(0.3 * i);
+    text += "1700000000," + std::to_string(10'000'000 * i) + "," + std::to_string(120 + 400 * std::cos(angle)) + "," +
+            std::to_string(640 + 400 * std::sin(angle)) + "\n";
+  }
+  const Recording recording = RecordingOf(text);
+  ASSERT_TRUE(recording.arc);
+  for (int i = 0; i < 40; ++i) EXPECT_NEAR(recording.value[i], 0.5 * std::sin(0.3 * i), 1e-6);
 }
 
 TEST(Ros, RefusesTwoJointsAndAxes) {
@@ -143,6 +180,15 @@ TEST(JointTable, RefusesSeveralThatMoveAndNamesThem) {
   EXPECT_EQ(WrongFlag(text, Value("wrist")),
             "run.csv:1:1: --value_column is \"wrist\", which is neither a column nor one of \"elbow\" and "
             "\"pendulum\"; give one of these");
+}
+
+TEST(JointTable, RefusesBothCoordinatesOfAPoint) {
+  const std::string text = "time_s,joint,x_px,y_px\n" + Rows("0.0{t},bob,{v},5");
+  EXPECT_EQ(FaultOf(text),
+            "run.csv:1:19: columns \"x_px\" and \"y_px\" are both coordinates of a point, of which only one is read "
+            "where each row is one joint's; choose it with --value_column, or keep the rows of one joint and leave out "
+            "column \"joint\"");
+  EXPECT_EQ(RecordingOf(text, Value("x_px")).quantity, Quantity::kPosition);
 }
 
 TEST(JointTable, RefusesAColumnOfTextThatNamesNoJoints) {

@@ -22,6 +22,23 @@ TEST(TrackerMeaning, GivesTimesAndLengthsTheirUnits) {
   EXPECT_EQ(csv::TrackerMeaning("\u03B8"), "\u03B8");
 }
 
+TEST(Tracker, NeverTakesTheLengthOfTheVector) {
+  const std::string text = "mass_A\nt\tr\t\u03B8\n" + Rows("0.0{t}\t1\t{v}");
+  EXPECT_THAT(WrongFlag(text, Value("r", "")), HasSubstr("column \"r\" is the length of a vector"));
+  EXPECT_THAT(FaultOf(text), HasSubstr("none of the columns \"t\", \"r\", \"\u03B8\" is an angle"));
+  ExpectTheRows(RecordingOf(text, Unit("deg")), kDegree);
+  ExpectTheRows(RecordingOf("mass_A\nt\tx\tr\n" + Rows("0.0{t}\t{v}\t1")));
+}
+
+TEST(Tracker, TakesTheAngleThatIsAskedForBesideCoordinates) {
+  const std::string text = "mass_A\nt\tx\ty\t\u03B8\n" + Rows("0.0{t}\t0.1\t0.2\t{v}");
+  ExpectTheRows(RecordingOf(text, Unit("deg")), kDegree);
+  EXPECT_THAT(FaultOf("mass_A\nt\tx\t\u03B8\t\u03C9\n" + Rows("0.0{t}\t0.1\t1\t2"), Unit("deg")),
+              HasSubstr("columns \"\u03B8\" and \"\u03C9\" could both be the quantity"));
+  EXPECT_THAT(WrongFlag("mass_A\nt\tx\n" + Rows("0.0{t}\t{v}"), Unit("deg")),
+              HasSubstr("column \"x\" is in m, so --unit deg contradicts it"));
+}
+
 TEST(Tracker, ReadsOneTrackUnderItsName) {
   const std::string text = "mass_A\nt\tx\ty\t\u03B8\n" + Rows("0.0{t}\t0.1\t0.2\t{v}");
   ExpectTheRows(RecordingOf(text, Value("\u03B8", "deg")), kDegree);

@@ -79,6 +79,28 @@ TEST(ReadZip, RefusesTwoMembersWithCandidatesAndNamesThem) {
   ExpectTheRows(RecordingOf(two, Value("a.csv")), kDegree);
 }
 
+TEST(ReadZip, WholePathsGoBeforeNamesOfFiles) {
+  const std::string other = "time_s,angle_deg\n" + Rows("0.0{t},7");
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const std::string nested = ZipOf({{"old/run.csv", other}, {"run.csv", angle}});
+  ExpectTheRows(RecordingOf(nested, Value("run.csv/angle_deg")), kDegree);
+  EXPECT_EQ(RecordingOf(nested, Value("old/run.csv")).value[3], 7 * kDegree);
+  const std::string two = ZipOf({{"old/run.csv", other}, {"new/run.csv", angle}});
+  ExpectTheRows(RecordingOf(two, Value("new/run.csv/angle_deg")), kDegree);
+  EXPECT_EQ(
+      WrongFlag(two, Value("run.csv/angle_deg")),
+      "run.csv: --value_column is \"run.csv/angle_deg\", and both \"old/run.csv\" and \"new/run.csv\" are files of "
+      "this name; give it with its folders");
+}
+
+TEST(ReadZip, TheTimeColumnMayHaveItsUnitAfterIt) {
+  const std::string text = "tick,angle_deg\n" + Rows("{t},{v}");
+  for (const char* const time : {"tick:ms", "1:ms"}) {
+    ExpectTheRows(RecordingOf(ZipOf({{"Light.csv", kLight}, {"a.csv", text}}), TimeAndValue(time, "angle_deg")),
+                  kDegree);
+  }
+}
+
 TEST(ReadZip, ReadsSemicolonsAndDecimalCommasAndLeavesOutNaN) {
   std::string rows = Gyroscope("0,0{t};1;{v},0E0;2;3") + "8,000000000E-2;NaN;NaN;NaN;NaN\n";
   for (char& c : rows.replace(0, rows.find('\n'), std::string(rows, 0, rows.find('\n')))) {
@@ -122,16 +144,39 @@ TEST(ReadZip, RefusesDamagedBytesOfAMember) {
   EXPECT_THAT(FaultOf(bytes), StartsWith("run.csv:a.csv: it cannot be unpacked ("));
 }
 
+TEST(ReadZip, SaysWhichMemberItCouldNotLookAt) {
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const auto damaged = [&](const std::string& other) {
+    std::string bytes = ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 60)}, {"other.csv", other}});
+    for (std::size_t i = 60; i < 100; ++i) bytes[i] = static_cast<char>(bytes[i] ^ 0x55);
+    return bytes;
+  };
+  const Recording recording = RecordingOf(damaged(angle));
+  ExpectTheRows(recording, kDegree);
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].code, "unreadable_member");
+  EXPECT_THAT(recording.warnings[0].message, StartsWith("run.csv:a.csv: it cannot be unpacked ("));
+  EXPECT_TRUE(RecordingOf(damaged(angle), Value("other.csv")).warnings.empty());
+  EXPECT_THAT(FaultOf(damaged(kLight)), StartsWith("run.csv:a.csv: it cannot be unpacked ("));
+  EXPECT_EQ(FaultOf(ZipOf({{"a.csv", angle}, {"b.csv", angle}}, "secret")),
+            "run.csv:a.csv: it is encrypted; unpack it with its password and name the file");
+}
+
 TEST(ReadZip, RefusesEncryptedMembers) {
   EXPECT_EQ(FaultOf(ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}")}}, "secret")),
             "run.csv:a.csv: it is encrypted; unpack it with its password and name the file");
 }
 
 TEST(ReadZip, RefusesABombBeforeItFillsTheMemory) {
-  const std::string zeros(kMostUnpackedBytes + 1, '\n');
-  EXPECT_EQ(FaultOf(ZipOf({{"a.csv", zeros}})),
-            "run.csv:a.csv: it unpacks to more than 536870912 bytes, too many for a recording; name another, or split "
-            "it");
+  ReadOptions options;
+  EXPECT_EQ(options.most_unpacked_bytes, 536'870'912);
+  options.most_unpacked_bytes = 1'000'000;
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const std::string most = angle + std::string(1'000'000 - angle.size(), '\n');
+  ExpectTheRows(RecordingOf(ZipOf({{"a.csv", most}}), options), kDegree);
+  EXPECT_EQ(
+      FaultOf(ZipOf({{"a.csv", most + '\n'}}), options),
+      "run.csv:a.csv: it unpacks to more than 1000000 bytes, too many for a recording; name another, or split it");
 }
 
 TEST(ReadZip, ShowsPathsThatClimbAndNeverFollowsThem) {

@@ -73,6 +73,7 @@ TEST(ParseFitRequest, TakesARecordingAsItIs) {
     EXPECT_THAT(request->options.models, ElementsAre("drag"));
     EXPECT_EQ(request->options.swing.from, 0.5);
     EXPECT_EQ(request->options.fit.threads, 1);
+    EXPECT_EQ(request->options.read.most_unpacked_bytes, 134'217'728);  // 128 MiB
   }
 }
 

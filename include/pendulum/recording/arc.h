@@ -21,7 +21,8 @@ struct Arc {
 
 /// The circle nearest to N points by geometric distance (Gauss-Newton from G. Taubin's algebraic fit, IEEE Trans.
 /// Pattern Anal. 13 (1991) 1115). The middle of the points lies below the centre: that is how y grows.
-/// kFailedPrecondition: the points stand on a line, or nearly, so that they do not tell where the pivot is.
+/// kFailedPrecondition: the points stand on a line, or nearly, so that they do not tell where the pivot is; or all
+/// round it, so that they do not tell which way is down.
 Result<Arc> FitArc(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
 
 }  // namespace pendulum

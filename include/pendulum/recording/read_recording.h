@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,8 @@ struct ReadOptions {
   std::optional<Calibration> calibration;  ///< Of counts or volts; none: the file's own, if it has one.
   std::optional<double> resolution;        ///< Spacing of the values, in the file's unit; 0: none; absent: the file's.
   std::optional<SensorRange> range;        ///< What the sensor can show, in the file's unit; absent: the file's own.
+  /// Of a member of a zip file, or of all columns of a MAT-file, which may be a thousand times as large as the file.
+  std::size_t most_unpacked_bytes = std::size_t{1} << 29;
 };
 
 /// Reads a recording from a file; "-" is standard input. What it is its content tells: CSV, also as phyphox, Tracker,
@@ -38,9 +41,10 @@ struct ReadOptions {
 /// values (FindResolution), and counts that end at 0 or the full scale of 10, 12, 14 or 16 bits have that range.
 ///
 /// Warnings: those of RepairClock; incomplete_row, empty_cells, host_time, time_unit_assumed, lost_samples;
-/// metadata_not_applied, a calibration in a file of angles. kNotFound: no such file. kDataLoss: not readable as above,
-/// or a calibration of another unit. kInvalidArgument: the options contradict the file. kFailedPrecondition: fewer than
-/// kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file. Messages begin "path:line:", or "path:".
+/// unreadable_member, of a zip file; metadata_not_applied, a calibration in a file of angles. kNotFound: no such file.
+/// kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options contradict the
+/// file. kFailedPrecondition: fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file.
+/// Messages begin "path:line:", or "path:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from bytes in memory; `name` stands for the path in messages and in Recording::path. Not kNotFound.
