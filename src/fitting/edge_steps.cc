@@ -50,8 +50,7 @@ std::vector<Run> RunsOf(const Recording& recording) {
   return runs;
 }
 
-/// Each run's mean of the residuals, once the parameters explain what they can of what differs within runs.
-void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
+RunRegression Regress(const FitResiduals& data, const std::vector<Run>& runs) {
   Index size = 0;
   for (const Run& run : runs) size += static_cast<Index>(run.edges.size());
   Eigen::MatrixXd within(size, data.jacobian.cols());
@@ -69,7 +68,12 @@ void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(within.rows(), within.cols());
   qr.setThreshold(1e-9);
   qr.compute(within * scale.cwiseInverse().asDiagonal());
-  const Eigen::VectorXd change = qr.solve(residual).cwiseQuotient(scale);
+  return {qr.solve(residual).cwiseQuotient(scale), residual.norm() / std::sqrt(static_cast<double>(size))};
+}
+
+/// Each run's mean of the residuals, once the parameters explain what they can of what differs within runs.
+void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
+  const Eigen::VectorXd change = Regress(data, runs).change;
   for (Run& run : runs) {
     run.zero = data.residual(run.edges).mean() - data.jacobian(run.edges, Eigen::all).colwise().mean().dot(change);
   }
@@ -86,6 +90,12 @@ double LagOf(const std::vector<Run>& runs) {
 }
 
 }  // namespace
+
+RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& edges) {
+  const std::vector<Run> runs = RunsOf(edges);
+  if (runs.empty()) return {Eigen::VectorXd::Zero(residuals.jacobian.cols()), 0};
+  return Regress(residuals, runs);
+}
 
 std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges) {
   constexpr double kWithin = 0.35;   // counts

@@ -42,6 +42,48 @@ struct Left {
   FitResiduals residuals;
 };
 
+/// What the recording has that readings at these parameters have not; false where there are none.
+bool LeaveOver(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+               const std::vector<double>& parameters, FitResiduals& residuals) {
+  Eigen::VectorXd readings;
+  if (!cost.Readings(parameters, &readings, &residuals.jacobian)) return false;
+  residuals.time = problem.data.times();
+  residuals.residual = recording.value - readings;
+  residuals.rate = RatesOf(residuals.time, readings);
+  residuals.period = 2 * kPi / problem.start.natural_frequency;
+  return true;
+}
+
+/// Goes on to where the edges within runs are told best, whatever the counts between these: Gauss's steps, halved while
+/// they do not lead down.
+void SettleWithinRuns(const Recording& edges, const FitProblem& problem, const TrajectoryCost& cost,
+                      std::vector<double> parameters, FitResiduals& residuals) {
+  constexpr int kMostSteps = 12, kMostHalves = 5;
+  constexpr double kSame = 1e-3;  // of the rms
+  RunRegression now = RegressWithinRuns(residuals, edges);
+  for (int step = 0, halves = 0; step < kMostSteps && halves < kMostHalves; ++step) {
+    std::vector<double> there = parameters;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      there[i] += now.change[static_cast<Eigen::Index>(i)];
+      there[i] = std::clamp(there[i], problem.solve.lower[i], problem.solve.upper[i]);
+    }
+    FitResiduals left;
+    const bool traced = LeaveOver(edges, problem, cost, there, left);
+    RunRegression next = traced ? RegressWithinRuns(left, edges) : now;
+    if (!traced || !(next.rms < now.rms)) {
+      now.change *= 0.5;
+      ++halves;
+      continue;
+    }
+    const bool is_same = next.rms > (1 - kSame) * now.rms;
+    parameters = std::move(there);
+    residuals = std::move(left);
+    now = std::move(next);
+    halves = 0;
+    if (is_same) return;
+  }
+}
+
 std::optional<Left> FitCorrected(const Recording& recording, const Recording& corrected, const FitOptions& options) {
   const Result<FitReport> fit = FitRecording(corrected, options);
   if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
@@ -53,12 +95,8 @@ std::optional<Left> FitCorrected(const Recording& recording, const Recording& co
   }
   const auto cost = MakeTrajectoryCost(problem->model, problem->start.start, problem->data);
   Left left{fit->statistics.rms_residual, fit->Warns("lack_of_fit") || fit->Warns("correlated_residuals"), {}};
-  Eigen::VectorXd readings;
-  if (!cost->Readings(parameters, &readings, &left.residuals.jacobian)) return std::nullopt;
-  left.residuals.time = problem->data.times();
-  left.residuals.residual = recording.value - readings;
-  left.residuals.rate = RatesOf(left.residuals.time, readings);
-  left.residuals.period = 2 * kPi / problem->start.natural_frequency;
+  if (!LeaveOver(recording, *problem, *cost, parameters, left.residuals)) return std::nullopt;
+  if (recording.edge) SettleWithinRuns(recording, *problem, *cost, std::move(parameters), left.residuals);
   return left;
 }
 

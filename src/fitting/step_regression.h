@@ -127,6 +127,7 @@ class StepRegression {
   Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
     constexpr Eigen::Index kEdge = 3;    // bins on either side of the recording
     constexpr double kToldApart = 1e-6;  // of a step, beside the columns
+    constexpr double kMore = 1 + 1e-9;   // behind a gap the first of many places that are told alike
     Explained explained;
     explained.memory = std::move(memory);
     Regress(columns, &explained);
@@ -140,7 +141,7 @@ class StepRegression {
     Eigen::Index best = -1;
     double most = 0;
     for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
-      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
+      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > kMore * most * norm[i])) continue;
       most = product[i] * product[i] / norm[i];
       best = i;
     }

@@ -172,7 +172,7 @@ TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
   FitOptions blind;
   blind.fixed["edge_lag"] = 0;
   const FitReport taken_for_none = Must(FitRecording(edges, blind));
-  EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 10 * *fit.Find("coulomb")->std_error);
+  EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
 
 TEST(EdgeNoise, IsRefusedForRowsThatAreNoEvents) {

@@ -3,10 +3,20 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "pendulum/fitting/zero_steps.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
+
+/// What differs within runs of successive edges in one direction, where nothing is lost: a step of the parameters (P)
+/// that explains most of it whatever the zero of each run, and the root mean square before it [unit of the residuals].
+struct RunRegression {
+  Eigen::VectorXd change;
+  double rms = 0;
+};
+RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& edges);
 
 /// Where the count of an event-driven encoder slips: at turning points, where an edge is crossed to and fro, and where
 /// rows are missing. Within a run of successive edges in one direction nothing is lost, so each run has a zero of its
