@@ -21,6 +21,7 @@ namespace {
 /// One parameter of one recording: what is true, and what the fit said. Units of the report.
 struct ParameterOutcome {
   double truth = 0;
+  std::string unit;             ///< Of the report, if there is one.
   std::optional<double> bound;  ///< Cramér-Rao
   std::optional<double> estimate, std_error;
   bool has_interval = false;
@@ -39,6 +40,7 @@ double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
 }
 
 void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) {
+  outcome.unit = parameter.unit;
   outcome.estimate = parameter.estimate;
   outcome.std_error = parameter.std_error;
   outcome.has_interval = parameter.lower95.has_value() || parameter.upper95.has_value();
@@ -175,6 +177,9 @@ CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutco
   CoverageRow row;
   row.parameter = info.name;
   row.unit = scenario.fit.rig ? info.unit : info.relative_unit;
+  for (const RunOutcome& outcome : outcomes) {
+    if (const std::string& unit = outcome.parameters[i].unit; !unit.empty()) row.unit = unit;
+  }
   row.at_bound = truth == info.lower || truth == info.upper;
   Summarize(outcomes, i, row);
   Judge(scenario, static_cast<int>(outcomes.size()), row);

@@ -13,6 +13,22 @@ namespace {
 
 using Eigen::Index;
 
+/// What readings reach, a few outliers apart.
+struct Extremes {
+  double low = 0, high = 0;
+};
+
+/// Unlike the mean they are the same however long the recording goes on after the swing.
+Extremes ExtremesOf(const Recording& recording) {
+  const std::size_t outliers = 2 + static_cast<std::size_t>(recording.size()) / 10000;
+  std::vector<double> value(recording.value.begin(), recording.value.end());
+  const auto low = value.begin() + static_cast<std::ptrdiff_t>(outliers);
+  const auto high = value.end() - 1 - static_cast<std::ptrdiff_t>(outliers);
+  std::nth_element(value.begin(), low, value.end());
+  std::nth_element(low + 1, high, value.end());
+  return {*low, *high};
+}
+
 /// The passages through the bottom: maxima of the reading.
 std::vector<Extremum> Bottoms(const Recording& upright, double threshold) {
   constexpr double kAlike = 0.25;  // of a swing of the reading; it falls with the energy, by less in one swing
@@ -45,7 +61,7 @@ void BridgePassages(const std::vector<Extremum>& bottoms, double least, Recordin
 
 /// MODEL.md eq. (74), with the bottoms' readings joined by lines.
 Recording Unfolded(Recording recording) {
-  if (recording.value.mean() < 0) recording.value = -recording.value;
+  recording.value *= RadialSide(recording);
   const double threshold = TurningThreshold(recording, SuccessiveDifferenceNoise(recording));
   const std::vector<Extremum> bottoms = Bottoms(recording, threshold);
   if (bottoms.size() < 2) return recording;
@@ -71,9 +87,16 @@ Recording Unfolded(Recording recording) {
 }  // namespace
 
 bool IsRadial(const Recording& recording) {
-  const double mean = recording.value.mean();
-  if (recording.shows_gravity) return std::abs(mean) > 0.5 * kStandardGravity;
-  return std::abs(mean) > 0.25 * (recording.value.maxCoeff() - recording.value.minCoeff());
+  constexpr double kOneSided = 0.5;
+  if (recording.shows_gravity) return std::abs(recording.value.mean()) > 0.5 * kStandardGravity;
+  const Extremes extremes = ExtremesOf(recording);
+  return std::abs(extremes.high + extremes.low) > kOneSided * (extremes.high - extremes.low);
+}
+
+double RadialSide(const Recording& recording) {
+  if (recording.shows_gravity) return std::copysign(1.0, recording.value.mean());
+  const Extremes extremes = ExtremesOf(recording);
+  return std::copysign(1.0, extremes.high + extremes.low);
 }
 
 Recording TurnsView(const Recording& recording) {

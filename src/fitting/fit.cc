@@ -9,11 +9,13 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/broken_order.h"
+#include "pendulum/fitting/cross_jumps.h"
 #include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_problem.h"
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/rival_solutions.h"
 #include "pendulum/fitting/search.h"
 #include "pendulum/fitting/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
@@ -33,22 +35,6 @@ void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
   solution.parameters[angle] += 2 * kPi * turns;
 }
 
-/// Goes on where a jump of an acceleration's sum of squares has stopped the solver.
-void CrossJumps(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
-  constexpr int kMostJumps = 10;
-  if (problem.data.quantity != Quantity::kAcceleration) return;
-  for (int jump = 0; jump < kMostJumps && solution.usable; ++jump) {
-    const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
-    if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) <= kLargestShift) return;
-    const auto lower = LowerAlongShift(*optimum, cost, solution);
-    if (!lower) return;
-    solution.parameters = *lower;
-    solution = Continue(cost, solution, problem.solve);
-    solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);
-    if (solution.usable) solution.log_likelihood = LogLikelihoodOf(problem, solution);
-  }
-}
-
 /// Solves at the tolerance expected to suffice, measures the trajectory's error at the solution, and solves again with
 /// a finer one while the error is too large.
 Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
@@ -61,7 +47,7 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   Solution solution = Search(cost, problem.data, guess, problem.solve);
   TakeTurnsOut(problem, solution);
   MaximizeLikelihood(cost, problem, options, solution);
-  CrossJumps(cost, problem, solution);
+  CrossJumps(cost, problem, options, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureTraceError(cost, tolerance, solution);
     if (solution.trace_error <= max_error || refinement == kMostTraceRefinements) break;
@@ -77,17 +63,23 @@ struct Attempt {
   std::unique_ptr<FitProblem> problem;
   std::unique_ptr<TrajectoryCost> cost;
   Solution solution;
+  std::vector<RivalSolution> rivals;  ///< Where searches from other starts ended.
 };
 
-Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
-  Result<FitProblem> problem = MakeFitProblem(recording, options);
-  if (!problem) return tl::unexpected(problem.error());
+/// Solves a problem that is ready.
+Attempt SolveProblem(std::unique_ptr<FitProblem> problem, const FitOptions& options) {
   Attempt attempt;
-  attempt.problem = std::make_unique<FitProblem>(*std::move(problem));
+  attempt.problem = std::move(problem);
   attempt.cost = MakeTrajectoryCost(attempt.problem->model, attempt.problem->start.start, attempt.problem->data);
   attempt.cost->set_threads(options.threads);
   attempt.solution = SolveToAccuracy(*attempt.cost, *attempt.problem, options);
   return attempt;
+}
+
+Result<Attempt> TryFit(const Recording& recording, const FitOptions& options) {
+  Result<FitProblem> problem = MakeFitProblem(recording, options);
+  if (!problem) return tl::unexpected(problem.error());
+  return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
 }
 
 /// Whether a solution leaves at most a tenth of the readings' variance.
@@ -113,6 +105,24 @@ bool IsBetter(const Attempt& a, const Attempt& b) {
   return a.solution.usable && (!b.solution.usable || LogPosterior(a) > LogPosterior(b));
 }
 
+/// Whether a search ended at a minimum, and not where it had to stop.
+bool IsAtMinimum(const Attempt& attempt) {
+  constexpr double kNear = 1, kNearJump = 3;  // standard errors
+  if (!attempt.solution.usable) return false;
+  const std::optional<Optimum> optimum = Linearize(attempt.problem->solve, *attempt.cost, attempt.solution);
+  return optimum && optimum->inverse.identifiable &&
+         RemainingShift(*optimum) < (HasJumps(*attempt.problem) ? kNearJump : kNear);
+}
+
+/// Keeps the better of two, and where the other ended.
+void Contend(Attempt other, Attempt& best) {
+  if (IsBetter(other, best)) {
+    other.rivals = std::move(best.rivals);
+    std::swap(best, other);
+  }
+  if (IsAtMinimum(other)) best.rivals.push_back({other.solution.parameters, LogPosterior(other)});
+}
+
 /// From the best of the ways to see the readings.
 Result<Attempt> TrySensorStarts(const Recording& recording, const FitOptions& options) {
   Result<Attempt> best = TryFit(recording, options);
@@ -120,8 +130,13 @@ Result<Attempt> TrySensorStarts(const Recording& recording, const FitOptions& op
   FitOptions other = options;
   const std::size_t starts = best->problem->sensor_starts;
   for (other.sensor_start = 1; other.sensor_start < starts; ++other.sensor_start) {
-    Result<Attempt> attempt = TryFit(recording, other);
-    if (attempt && IsBetter(*attempt, *best)) best = std::move(attempt);
+    if (Result<Attempt> attempt = TryFit(recording, other)) Contend(*std::move(attempt), *best);
+  }
+  if (!best->solution.usable) return best;
+  if (std::optional<std::vector<double>> image = MirrorImage(*best->problem, best->solution.parameters)) {
+    auto problem = std::make_unique<FitProblem>(*best->problem);
+    problem->first_guess = *std::move(image);
+    Contend(SolveProblem(std::move(problem), options), *best);
   }
   return best;
 }
@@ -206,7 +221,9 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
   if (const std::string broken = BrokenOrder(*attempt->problem, attempt->solution.parameters); !broken.empty()) {
     return ReportSimplerLaw(recording, options, *attempt->problem, broken);
   }
+  const double log_posterior = LogPosterior(*attempt);
   FitReport report = Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+  ConcludeFromRivals(*attempt->problem, attempt->rivals, log_posterior, report);
   // Where estimates are means of a posterior, they may lie where the likeliest do not.
   std::vector<double> estimates;
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {

@@ -254,6 +254,7 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
                          const FitOptions& options) {
   const bool is_raw_angle = recording.quantity == Quantity::kAngle && !recording.is_calibrated();
   if (is_raw_angle && model.gravity == Gravity::kSine) return NeedsCalibration(recording, model);
+  if (Result<void> checked = CheckSensorOptions(sensor, options); !checked) return checked;
   if (recording.quantity != Quantity::kAcceleration) return {};
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   if (sensor.kind == SensorKind::kDirect && IsRadial(recording)) {

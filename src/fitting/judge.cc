@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/cross_jumps.h"
 #include "pendulum/fitting/fit_description.h"
 #include "pendulum/fitting/fit_warnings.h"
 #include "pendulum/fitting/intervals.h"
@@ -69,9 +70,6 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
                  const Optimum& optimum) {
   constexpr double kBeside = 1e-5;  // standard errors
   const double shift = RemainingShift(optimum);
-  if (problem.data.quantity == Quantity::kAcceleration) {
-    return shift <= kLargestShift || LowerAlongShift(optimum, cost, solution) ? shift : 0.0;
-  }
   const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
   if (shift <= kLargestShift || !may_have_a_kink) return shift;
   const auto release = std::ranges::find(optimum.free, static_cast<int>(*ReleaseTimeOf(problem)));
@@ -91,6 +89,14 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
   return others.inverse.identifiable ? RemainingShift(others) : shift;
 }
 
+/// Whether a step is left to make only because the sum of squares jumps: nowhere along it, down to 0.1 standard errors,
+/// is it less.
+bool StopsAtJump(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                 const Optimum& optimum) {
+  return HasJumps(problem) && optimum.inverse.identifiable && RemainingShift(optimum) > kLargestShift &&
+         !LowerAlongShift(optimum, problem.solve, cost, solution);
+}
+
 /// How many small-angle periods the motion of the solution lasts in the recording.
 double PeriodsOf(const FitProblem& problem, const Solution& solution) {
   const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
@@ -100,8 +106,9 @@ double PeriodsOf(const FitProblem& problem, const Solution& solution) {
 
 /// What a solution is judged by.
 struct Judged {
-  double shift = 0;    ///< ShiftLeft
-  double periods = 0;  ///< PeriodsOf
+  double shift = 0;      ///< ShiftLeft
+  bool at_jump = false;  ///< StopsAtJump
+  double periods = 0;    ///< PeriodsOf
   bool correlated = false;
   bool on_kink = false;
 };
@@ -121,6 +128,11 @@ void SetTermination(const FitProblem& problem, const Optimum& optimum, const Jud
     report.reason = "the motion lasts " + NumberText(judged.periods, 2) +
                     " of a period of the best trajectory: that is no swing, and hardly anything of the pendulum can be "
                     "told; record several periods, or choose a window of free swing with --from and --to";
+  } else if (judged.at_jump) {
+    report.termination = Termination::kConverged;
+    report.reason = "a jump of the acceleration's sum of squares stopped the search: nowhere along the step of " +
+                    NumberText(judged.shift, 2) +
+                    " standard errors left to make is it less; the errors are those of the parabola";
   } else if (!(judged.shift <= kLargestShift)) {
     report.reason = judged.on_kink
                         ? "the best trajectory stops just where one half swing more would begin, and there the sum "
@@ -177,8 +189,10 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
   FitReport& report = described.report;
   const double shift = optimum->inverse.identifiable ? ShiftLeft(problem, cost, solution, *optimum) : 0.0;
+  const bool at_jump = StopsAtJump(problem, cost, solution, *optimum);
   const bool on_kink = OnKink(problem, described.trace, solution);
-  SetTermination(problem, *optimum, {shift, PeriodsOf(problem, solution), described.correlated, on_kink}, report);
+  SetTermination(problem, *optimum, {shift, at_jump, PeriodsOf(problem, solution), described.correlated, on_kink},
+                 report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged) {
     SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,

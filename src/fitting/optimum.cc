@@ -222,22 +222,6 @@ double RemainingShift(const Optimum& optimum) {
   return std::sqrt(gradient.dot(optimum.inverse.matrix * gradient));
 }
 
-std::optional<std::vector<double>> LowerAlongShift(const Optimum& optimum, const LeastSquares& cost,
-                                                   const Solution& solution) {
-  double least = 0;
-  if (!cost.SumOfSquares(solution.parameters, &least)) return std::nullopt;
-  const Eigen::VectorXd step = -(optimum.inverse.matrix * optimum.gradient(optimum.free));
-  for (const double share : {1.0, 0.5, 0.25, 0.1}) {
-    std::vector<double> there = solution.parameters;
-    for (Index k = 0; k < step.size(); ++k) {
-      there[static_cast<std::size_t>(optimum.free[static_cast<std::size_t>(k)])] += share * step[k];
-    }
-    double sum = 0;
-    if (cost.SumOfSquares(there, &sum) && sum < least) return there;
-  }
-  return std::nullopt;
-}
-
 namespace {
 
 /// A parameter's own number of effective samples: memory that inflates a mean may leave a swing's phase alone.

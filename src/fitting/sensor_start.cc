@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/half_swings.h"
 #include "pendulum/closed_form/period.h"
@@ -30,9 +31,7 @@ std::optional<double> Known(const FitOptions& options, const ParameterInfo& info
 }
 
 /// The direction of an accelerometer: across the rod, or along it.
-double AxisOf(const Recording& recording) {
-  return IsRadial(recording) ? std::copysign(0.5 * kPi, recording.value.mean()) : 0.0;
-}
+double AxisOf(const Recording& recording) { return IsRadial(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
 
 /// The readings' view, with what its turning points tell.
 struct Turns {
@@ -190,6 +189,23 @@ ParameterPriors SensorPriors(const Recording& recording, const SensorModel& sens
     add(kRadius, recording.arc->radius, std_dev[2]);
   }
   return priors;
+}
+
+Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& options) {
+  for (const ParameterInfo& info : sensor.Parameters()) {
+    const bool is_size =
+        info.name == kRadius.name || info.name == kRateScale.name || info.name == kAccelerationScale.name;
+    const std::optional<double> value = Known(options, info);
+    if (!is_size || !value) continue;
+    const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity, at the pivot
+    if (*value == 0 ? shows_at_0 : *value >= info.lower) continue;
+    return Error(StatusCode::kInvalidArgument, std::string(info.name) + " cannot be " + NumberText(*value) +
+                                                   ": with that the sensor would show no motion; it must be " +
+                                                   (shows_at_0        ? "at least 0"
+                                                    : info.lower == 0 ? "greater than 0"
+                                                                      : "below 0 or above it"));
+  }
+  return {};
 }
 
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,

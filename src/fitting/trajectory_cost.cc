@@ -45,6 +45,8 @@ std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, Sta
   if (data.sensor.kind != SensorKind::kDirect) return MakeSensedCost(model, start, data);
   std::unique_ptr<TrajectoryCost> cost;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
+    constexpr int kMotion = 1 + kFrictionParameters<F> + 2;
+    static_assert(kMotion + SensorModel::kMostParameters <= kMostCompressed, "Evaluate has room for so many");
     if (start == StartKind::kRelease) {
       cost = std::make_unique<TrajectoryCostFor<F, StartKind::kRelease>>(model.gravity, data);
     } else {

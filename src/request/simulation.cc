@@ -258,6 +258,10 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
     lost.push_back({*time, static_cast<int>(*counts)});
   }
   if (!lost.empty() && flags.resolution == 0) return BadFlag("--lose: counts have a size; give --resolution");
+  if (const Result<OutputUnit> unit = FindUnit(flags.unit); !lost.empty() && unit && unit->sensor == SensorKind::kArc) {
+    return BadFlag("--lose is of an encoder's counts, and --unit " + flags.unit +
+                   " has the coordinates of a point, which are not counted on; leave one of them out");
+  }
   return lost;
 }
 

@@ -21,16 +21,17 @@ constexpr double kSquare = 22;  // ω0² [1/s²]
 constexpr double kRadius = 0.3;
 constexpr Eigen::Index kSamples = 2000;
 
-/// θ, θ' and θ'' at 100 Hz of a swing from 0.6 rad with viscous and dry friction, by Runge-Kutta of order 4.
-Eigen::MatrixX3d Motion() {
-  const auto acceleration = [](double angle, double rate, double side) {
-    return -kSquare * std::sin(angle) - 0.05 * rate - 0.05 * side;
+/// θ, θ' and θ'' at 100 Hz of a swing from 0.6 rad with viscous friction [1/s] and a little dry friction, by
+/// Runge-Kutta of order 4.
+Eigen::MatrixX3d Motion(double viscous = 0.05, Eigen::Index samples = kSamples) {
+  const auto acceleration = [=](double angle, double rate, double side) {
+    return -kSquare * std::sin(angle) - viscous * rate - 0.05 * side;
   };
-  Eigen::MatrixX3d motion(kSamples, 3);
+  Eigen::MatrixX3d motion(samples, 3);
   double angle = 0.6, rate = 0, side = -1;
   constexpr int kSteps = 20;
   constexpr double kStep = 0.01 / kSteps;
-  for (Eigen::Index i = 0; i < kSamples; ++i) {
+  for (Eigen::Index i = 0; i < samples; ++i) {
     motion.row(i) << angle, rate, acceleration(angle, rate, side);
     for (int step = 0; step < kSteps; ++step) {
       if (rate != 0) side = rate > 0 ? 1 : -1;
@@ -50,31 +51,58 @@ Eigen::MatrixX3d Motion() {
 
 Recording AngleOf(const Eigen::MatrixX3d& motion) {
   Recording recording;
-  recording.time = Eigen::VectorXd::LinSpaced(kSamples, 0, 0.01 * (kSamples - 1));
+  recording.time = Eigen::VectorXd::LinSpaced(motion.rows(), 0, 0.01 * static_cast<double>(motion.rows() - 1));
   recording.value = motion.col(0);
   return recording;
 }
 
-/// What an accelerometer shows along an axis, with noise of that standard deviation (MODEL.md eq. (71)).
-Recording Acceleration(double axis, double noise) {
-  const Eigen::MatrixX3d motion = Motion();
+/// What an accelerometer shows of a motion along an axis, with noise of that standard deviation (MODEL.md eq. (71)).
+Recording Seen(const Eigen::MatrixX3d& motion, double axis, double noise, double gravity) {
   Recording recording = AngleOf(motion);
   recording.quantity = Quantity::kAcceleration;
   recording.unit = "m/s^2";
   std::mt19937_64 generator(1);
   boost::random::normal_distribution<double> draw;
-  for (Eigen::Index i = 0; i < kSamples; ++i) {
-    const double across = kRadius * motion(i, 2) + kStandardGravity * std::sin(motion(i, 0));
-    const double along = kRadius * motion(i, 1) * motion(i, 1) + kStandardGravity * std::cos(motion(i, 0));
+  recording.shows_gravity = gravity > 0;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    const double across = kRadius * motion(i, 2) + gravity * std::sin(motion(i, 0));
+    const double along = kRadius * motion(i, 1) * motion(i, 1) + gravity * std::cos(motion(i, 0));
     recording.value[i] = across * std::cos(axis) + along * std::sin(axis) + noise * draw(generator);
   }
   return recording;
 }
 
+Recording Acceleration(double axis, double noise) { return Seen(Motion(), axis, noise, kStandardGravity); }
+
 TEST(IsRadial, TellsAlongFromAcross) {
   EXPECT_FALSE(IsRadial(Acceleration(0, 0.05)));
   EXPECT_TRUE(IsRadial(Acceleration(kPi / 2, 0.05)));
   EXPECT_TRUE(IsRadial(Acceleration(-kPi / 2, 0.05)));
+}
+
+/// From two swings to a hundred times as long as the motion lasts, which dry friction ends, and with strong friction.
+TEST(IsRadial, TellsAlongFromAcrossWithoutGravityHoweverLongTheRecordingIs) {
+  for (const double viscous : {0.0, 0.05, 1.0}) {
+    for (const Eigen::Index samples : {300, 2000, 10000, 100000}) {
+      const Eigen::MatrixX3d motion = Motion(viscous, samples);
+      for (const double upright : {1.0, -1.0}) {
+        const Recording along = Seen(motion, upright * (kPi / 2 + 0.03), 0.05, 0);
+        EXPECT_TRUE(IsRadial(along)) << viscous << ", " << samples;
+        EXPECT_EQ(RadialSide(along), upright);
+        EXPECT_FALSE(IsRadial(Seen(motion, (upright - 1) / 2 * kPi + 0.03, 0.05, 0))) << viscous << ", " << samples;
+      }
+    }
+  }
+}
+
+TEST(IsRadial, IsNotMisledByOutliers) {
+  Recording along = Seen(Motion(), kPi / 2, 0.05, 0);
+  Recording across = Seen(Motion(), 0, 0.05, 0);
+  for (const Eigen::Index i : {700, 1200}) along.value[i] = -20;
+  for (const Eigen::Index i : {700, 1200}) across.value[i] = 50;
+  EXPECT_TRUE(IsRadial(along));
+  EXPECT_EQ(RadialSide(along), 1);
+  EXPECT_FALSE(IsRadial(across));
 }
 
 /// The view is in proportion to sin(θ/2) between passages through the bottom, with its sign (MODEL.md eq. (74)), but

@@ -2,8 +2,11 @@
 // Fits of readings that are neither an angle nor a rate: their truth is found again, within the errors they give.
 #include "pendulum/fitting/sensor_start.h"
 
+#include <algorithm>
 #include <cmath>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -75,6 +78,106 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
         Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
     ExpectTruth(options, Fit(options));
   }
+}
+
+/// With jumps of 0.13 m/s², six times the noise, a third of the searches end beside one.
+TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
+  int stopped = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 6U, 8U, 9U, 10U}) {
+    SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0.02, 0.3}, 0.02);
+    options.parameters = {1 / 22.0, 0.0005, 0.01};
+    options.duration = 15;
+    options.seed = seed;
+    const FitReport fit = Fit(options);
+    EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+    const bool at_jump = fit.reason.starts_with("a jump of the acceleration's sum of squares stopped the search");
+    EXPECT_TRUE(at_jump || fit.reason == "the step left to make is below 0.1 standard errors") << fit.reason;
+    stopped += at_jump ? 1 : 0;
+  }
+  EXPECT_GE(stopped, 1);
+}
+
+/// Without gravity, and on until the pendulum rests: k r ω² along the rod and k r α across it.
+TEST(FitRecording, FindsTheRadiusOfAnAccelerometerWhoseReadingsAreWithoutGravity) {
+  for (const double duration : {30.0, 150.0}) {
+    for (const double axis : {0.02, kPi / 2 + 0.02, -kPi / 2 - 0.02}) {
+      SCOPED_TRACE(std::to_string(axis) + " rad, " + std::to_string(duration) + " s");
+      SyntheticOptions options =
+          Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.05, 1.005, axis, 0.3}, 0.02);
+      options.sensor.gravity = 0;
+      options.duration = duration;
+      options.sample_rate = 50;
+      ExpectTruth(options, Fit(options));
+    }
+  }
+}
+
+/// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m looks the same but for friction, and here is little.
+SyntheticOptions WithLittleFriction(std::uint64_t seed) {
+  SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
+  options.model = FindMotionModel("viscous").value();
+  options.parameters = {1 / 22.0, 0.0003};
+  options.duration = 20;
+  options.seed = seed;
+  return options;
+}
+
+TEST(FitRecording, SaysBothRadiiThatAnAccelerationAcrossTheRodMayHave) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    FitOptions viscous;
+    viscous.model = "viscous";
+    const FitReport fit = Fit(WithLittleFriction(seed), viscous);
+    EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
+    EXPECT_TRUE(fit.Warns("ambiguous_sensor"));
+    std::smatch said;
+    ASSERT_TRUE(std::regex_search(fit.reason, said, std::regex("with radius (\\S+) m instead of (\\S+) m")));
+    const auto [nearer, farther] = std::minmax({std::stod(said[1]), std::stod(said[2])});
+    EXPECT_NEAR(nearer, 0.3, 0.02);
+    EXPECT_NEAR(nearer + farther, 2 * kStandardGravity / 22, 0.01);
+    EXPECT_THAT(fit.reason, HasSubstr("give --prior radius=r:std_dev"));
+    EXPECT_FALSE(fit.Find("radius")->std_error);
+    EXPECT_FALSE(fit.Find("viscous")->std_error);
+    for (const Identifiability& known : fit.identifiability) {
+      EXPECT_EQ(known.verdict == Identifiability::Verdict::kNotIdentifiable, known.parameter == "radius");
+    }
+  }
+}
+
+TEST(FitRecording, FindsTheRadiusAcrossTheRodWithWhatIsKnownOfIt) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    FitOptions known;
+    known.model = "viscous";
+    known.priors["radius"] = {0.31, 0.02};
+    ExpectTruth(WithLittleFriction(seed), Fit(WithLittleFriction(seed), known));
+    // A prior that has room for both tells neither.
+    known.priors["radius"] = {0.45, 0.2};
+    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kNotIdentifiable);
+    known.priors.clear();
+    known.fixed["radius"] = 0.3;
+    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kConverged);
+  }
+}
+
+TEST(FitRecording, RefusesSensorsThatWouldShowNothing) {
+  const auto message = [](const SyntheticOptions& options, const std::string& name) {
+    FitOptions fit;
+    fit.initial[name] = 0;
+    const auto begun = FitRecording(SimulateRecording(options).value(), fit);
+    std::swap(fit.initial, fit.fixed);
+    const auto fixed = FitRecording(SimulateRecording(options).value(), fit);
+    EXPECT_FALSE(begun || fixed);
+    if (begun || fixed) return std::string();
+    EXPECT_EQ(begun.error().code, StatusCode::kInvalidArgument);
+    EXPECT_EQ(fixed.error().message, begun.error().message);
+    return begun.error().message;
+  };
+  EXPECT_EQ(message(Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
+            "rate_scale cannot be 0: with that the sensor would show no motion; it must be below 0 or above it");
+  EXPECT_EQ(message(Seen(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5), "radius"),
+            "radius cannot be 0: with that the sensor would show no motion; it must be greater than 0");
+  EXPECT_EQ(
+      message(Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05), "acceleration_scale"),
+      "acceleration_scale cannot be 0: with that the sensor would show no motion; it must be greater than 0");
 }
 
 TEST(FitRecording, FindsThePivotOfAHorizontalCoordinate) {

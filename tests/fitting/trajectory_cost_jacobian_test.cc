@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/trajectory_cost.h"
+#include "tests/fitting/quiet_samples.h"
 #include "tests/fitting/trajectory_cost_examples.h"
 
 namespace pendulum::trajectory_cost_jacobian_test {
@@ -23,57 +24,11 @@ using testing::Ge;
 using testing::Le;
 using testing::SizeIs;
 
-/// When the motion begins, turns and stops [s].
-std::vector<double> Instants(const MotionModel& model, StartKind start, const std::vector<double>& p, double end) {
-  const double begin = start == StartKind::kRelease ? p[p.size() - 2] : 0.0;
-  std::vector<double> instants = {begin};
-  FrictionModels::Visit(model.friction, [&]<typename F>() {
-    Pendulum<F, double> pendulum{model.gravity, p[0], {}};
-    std::copy_n(p.begin() + 1, pendulum.friction.size(), pendulum.friction.begin());
-    TraceOptions options;
-    options.end = end;
-    options.tolerance = 1e-14;
-    const double rate = start == StartKind::kRelease ? 0.0 : p[p.size() - 2];
-    TraceTrajectory(pendulum, Start<double>{start, begin, p[p.size() - 3], rate}, options,
-                    [&](const Segment<double>& segment) {
-                      const bool turns = segment.order == 0 || segment.angle[1] == 0;
-                      if (turns && segment.start > begin) instants.push_back(segment.start);
-                    });
-  });
-  return instants;
-}
-
-/// Samples that no instant passes while a parameter is shifted.
-std::vector<Eigen::Index> QuietSamples(const std::vector<double>& time,
-                                       const std::array<std::vector<double>, 3>& instants) {
-  std::vector<Eigen::Index> quiet;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    bool is_passed = false;
-    for (std::size_t k = 0; k < instants[0].size(); ++k) {
-      const auto [first, last] = std::minmax({instants[0][k], instants[1][k], instants[2][k]});
-      is_passed |= time[i] >= first - 1e-9 && time[i] <= last + 1e-9;
-    }
-    if (!is_passed) quiet.push_back(static_cast<Eigen::Index>(i));
-  }
-  return quiet;
-}
-
 void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const TrajectoryCost& cost,
                                const TrajectoryData& data, const std::vector<double>& p, int column,
                                const Eigen::MatrixXd& jacobian) {
-  const std::vector<ParameterInfo> infos = PhysicalParameters(model);
-  const bool is_share = static_cast<std::size_t>(column) < infos.size() && std::isfinite(infos[column].upper);
-  const double step = (is_share ? 1e-4 : 1e-6) * std::abs(p[column]);  // readings hardly move with a share
-  std::vector<double> above = p, below = p;
-  above[column] += step;
-  below[column] -= step;
-  const double end = data.time.back();
-  const std::array instants = {Instants(model, start, p, end), Instants(model, start, above, end),
-                               Instants(model, start, below, end)};
-  ASSERT_THAT(instants, Each(SizeIs(instants[0].size())));
-  ASSERT_THAT(instants[0].size(), Ge(31));
-  const std::vector<Eigen::Index> quiet = QuietSamples(data.time, instants);
-  EXPECT_THAT(quiet.size(), Ge(0.95 * static_cast<double>(data.time.size())));
+  const auto [above, below, step] = Beside(model, p, column);
+  const std::vector<Eigen::Index> quiet = QuietSamples(model, start, data, {p, above, below});
   const Eigen::VectorXd difference = (ReadingsOf(cost, above) - ReadingsOf(cost, below)) / (2 * step);
   const double scale = jacobian.col(column).lpNorm<Eigen::Infinity>();
   EXPECT_GT(scale, 0);

@@ -5,9 +5,12 @@
 
 namespace pendulum {
 
-/// Whether an acceleration is rather that along the rod than that across it: it stands near g, or, without gravity, to
-/// one side of zero.
+/// Whether an acceleration is rather that along the rod than that across it: it stands near g, or, without gravity,
+/// swings to one side of zero only.
 bool IsRadial(const Recording& recording);
+
+/// The sign of readings along the rod: 1 if the axis points to the pivot.
+double RadialSide(const Recording& recording);
 
 /// Whether turning points are looked for in another view of it.
 inline bool HasOtherView(const Recording& recording) {

@@ -32,12 +32,6 @@ Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solutio
 /// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
 double RemainingShift(const Optimum& optimum);
 
-/// Where along that step the sum of squares is less than at the solution; nothing where it is nowhere. The acceleration
-/// jumps when dry friction changes its side, and with it the sum of squares each time such an instant passes a sample:
-/// it is least beside a jump, where its slope is not 0.
-std::optional<std::vector<double>> LowerAlongShift(const Optimum& optimum, const LeastSquares& cost,
-                                                   const Solution& solution);
-
 /// One recording's part in a fit of one or several.
 struct FittedRun {
   const FitProblem& problem;

@@ -25,6 +25,10 @@ SensorModel SensorOf(const Recording& recording, Gravity gravity);
 /// arc.
 ParameterPriors SensorPriors(const Recording& recording, const SensorModel& sensor, const FitOptions& options);
 
+/// Whether a sensor shows anything where the options begin, fix or expect its scale and its radius. kInvalidArgument:
+/// with 0 it would not, and the message names which.
+Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& options);
+
 /// One way to see the readings as an angle or a rate.
 struct SensorStart {
   std::vector<double> parameters;  ///< S
