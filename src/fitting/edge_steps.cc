@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include <Eigen/QR>
 
@@ -79,14 +80,44 @@ void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
   }
 }
 
-/// How far zeros of runs upwards stand above those downwards: the median over turning points, most of which lose none.
-double LagOf(const std::vector<Run>& runs) {
-  std::vector<double> lags;
-  for (std::size_t k = 1; k < runs.size(); ++k) {
-    const double turn = runs[k].direction - runs[k - 1].direction;
-    if (turn != 0) lags.push_back((runs[k].zero - runs[k - 1].zero) / turn);
+/// What the zeros of two successive runs differ by, in counts, and how many counts that is beside the lag.
+struct Step {
+  double turn = 0;  // change of direction: 2, -2, or 0 within one
+  double difference = 0;
+  double lag = 0, whole = 0;
+
+  double Off() const { return difference - turn * lag - whole; }
+};
+
+/// The lag around each step: half of what zeros of runs upwards stand above those downwards, less the counts that were
+/// lost. A motion that is late against the readings, as a law makes it that does not quite hold, moves it slowly.
+void FindLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
+  std::vector<double> lags(steps.size(), 0);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    std::vector<double> around;
+    for (std::size_t j = std::max(k, near) - near; j < std::min(k + near + 1, steps.size()); ++j) {
+      if (steps[j].turn != 0) around.push_back((steps[j].difference - steps[j].whole) / steps[j].turn);
+    }
+    if (around.empty()) continue;
+    const double sum = std::accumulate(around.begin(), around.end(), 0.0);
+    lags[k] = by_mean ? sum / static_cast<double>(around.size()) : Median(std::move(around));
   }
-  return lags.empty() ? 0 : Median(std::move(lags));
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].lag = lags[k];
+}
+
+/// Most turning points lose nothing, so that a median begins; what is left of whole counts then follows more closely.
+std::vector<Step> CountSteps(const std::vector<Run>& runs, double resolution) {
+  constexpr std::size_t kNear = 12, kNearer = 4;  // steps to either side
+  constexpr int kPasses = 4;
+  std::vector<Step> steps;
+  for (std::size_t k = 1; k < runs.size(); ++k) {
+    steps.push_back({runs[k].direction - runs[k - 1].direction, (runs[k].zero - runs[k - 1].zero) / resolution});
+  }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    FindLags(pass == 0 ? kNear : kNearer, pass > 0, steps);
+    for (Step& step : steps) step.whole = std::round(step.difference - step.turn * step.lag);
+  }
+  return steps;
 }
 
 }  // namespace
@@ -103,16 +134,14 @@ std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recordi
   std::vector<Run> runs = RunsOf(edges);
   if (runs.size() < 2) return {};
   FindZeros(residuals, runs);
-  const double lag = LagOf(runs);
+  const std::vector<Step> counted = CountSteps(runs, edges.resolution);
   std::vector<ZeroStep> steps;
-  for (std::size_t k = 1; k < runs.size(); ++k) {
-    const double turn = runs[k].direction - runs[k - 1].direction;
-    const double counts = (runs[k].zero - runs[k - 1].zero - lag * turn) / edges.resolution;
-    const double whole = std::round(counts);
-    const bool is_whole = std::abs(counts - whole) < kWithin;
-    if (is_whole && whole == 0) continue;
-    steps.push_back(
-        {runs[k].edges.front(), edges.resolution * (is_whole ? whole : counts), kStdError * edges.resolution});
+  for (std::size_t k = 0; k < counted.size(); ++k) {
+    const Step& step = counted[k];
+    const bool is_whole = std::abs(step.Off()) < kWithin;
+    if (is_whole && step.whole == 0) continue;
+    const double counts = is_whole ? step.whole : step.whole + step.Off();
+    steps.push_back({runs[k + 1].edges.front(), edges.resolution * counts, kStdError * edges.resolution});
   }
   return steps;
 }

@@ -63,10 +63,8 @@ void SettleWithinRuns(const Recording& edges, const FitProblem& problem, const T
   RunRegression now = RegressWithinRuns(residuals, edges);
   for (int step = 0, halves = 0; step < kMostSteps && halves < kMostHalves; ++step) {
     std::vector<double> there = parameters;
-    for (std::size_t i = 0; i < there.size(); ++i) {
-      there[i] += now.change[static_cast<Eigen::Index>(i)];
-      there[i] = std::clamp(there[i], problem.solve.lower[i], problem.solve.upper[i]);
-    }
+    // A bound would stand in the way of the others: what is found here is no estimate.
+    for (std::size_t i = 0; i < there.size(); ++i) there[i] += now.change[static_cast<Index>(i)];
     FitResiduals left;
     const bool traced = LeaveOver(edges, problem, cost, there, left);
     RunRegression next = traced ? RegressWithinRuns(left, edges) : now;
@@ -164,6 +162,14 @@ std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps
   return text;
 }
 
+/// " (the first that is not: at 78.6 s)" where there are others.
+std::string FirstDoubtful(const Recording& recording, const std::vector<ZeroStep>& steps) {
+  const auto doubtful =
+      std::ranges::find_if(steps, [&](const ZeroStep& step) { return !InCounts(step, recording).IsWhole(); });
+  if (steps.size() < 2 || doubtful == steps.end()) return "";
+  return " (the first that is not: at " + NumberText(recording.time[doubtful->sample], 6) + " s)";
+}
+
 }  // namespace
 
 bool MayJump(const FitReport& fit) {
@@ -231,8 +237,9 @@ std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOpti
   const auto is_whole = [&](const ZeroStep& step) { return InCounts(step, recording).IsWhole(); };
   if (!settled->is_settled || !std::ranges::all_of(steps, is_whole)) {
     jumps.message +=
-        ", not surely by whole counts: the sensor slipped, or counts were lost that cannot be told; choose a window "
-        "before it or after it with --from and --to";
+        ", not surely by whole counts" + FirstDoubtful(recording, steps) +
+        ": the sensor slipped, or counts were lost that cannot be told; choose a window before it or after it with "
+        "--from and --to";
     return jumps;
   }
   for (const ZeroStep& step : steps) {
