@@ -119,7 +119,8 @@ TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
 TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   RunOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
-  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range] = read;
+  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
+                          most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;
   [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, sensor_start, bounds, priors, noise,
                           loss, interval, seed, threads, progress, stop, max_trace_error, max_iterations, max_traces] =
@@ -130,6 +131,7 @@ TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
   const std::string json = JsonAfter({"nothing", [](RunOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"threads", [](RunOptions& o) { o.fit.threads = 7; }}));
   EXPECT_EQ(json, JsonAfter({"progress", [](RunOptions& o) { o.fit.progress = [](int, int) {}; }}));
+  EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](RunOptions& o) { o.read.most_unpacked_bytes = 1; }}));
 }
 
 // Their bytes are hashed apart.
