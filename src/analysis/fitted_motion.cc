@@ -54,6 +54,19 @@ FittedMotion FittedMotion::WithViscous(double inertia, double viscous) const {
   return motion;
 }
 
+bool FittedMotion::SetLags(TrajectoryData& data) const {
+  const bool recorded = data.times().size() == instants_.size() && data.times() == instants_;
+  if (recorded) {
+    data.moves = against_;
+    return true;
+  }
+  MotionStates states;
+  if (!MakeTrajectoryCost(model_, start_, data)->Motion(parameters_, false, &states)) return false;
+  const Eigen::VectorXd against = -states.value[1].array().sign();
+  data.moves.assign(against.begin(), against.end());
+  return true;
+}
+
 std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& instants,
                                                       Eigen::MatrixXd* jacobian) const {
   TrajectoryData data;
@@ -64,9 +77,8 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
   data.natural_frequency = 1 / std::sqrt(parameters_[0]);
   data.latest_release = instants[instants.size() - 1];
   if (drifts()) data.moves = data.time;
-  if (zero_motion_ == ZeroMotion::kLags)
-    data.moves = instants == instants_ ? against_ : std::vector(data.time.size(), 0.0);
   data.stop = stop_;
+  if (zero_motion_ == ZeroMotion::kLags && !SetLags(data)) return std::nullopt;
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model_, start_, data);
   Eigen::VectorXd readings;
   if (!cost->Readings(parameters_, &readings, jacobian)) return std::nullopt;

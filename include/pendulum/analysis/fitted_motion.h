@@ -15,6 +15,8 @@
 
 namespace pendulum {
 
+struct TrajectoryData;
+
 /// The motion that a fit found, to be followed at any instants, with another gravity or other parameters.
 class FittedMotion {
  public:
@@ -38,14 +40,17 @@ class FittedMotion {
   FittedMotion WithViscous(double inertia, double viscous) const;
 
   /// The readings at instants (N, s from the first sample, increasing), rad or rad/s; and unless null their N x P
-  /// derivatives, in the units of the fit's report; the lag of edges at the recording's own instants alone. Nothing when
-  /// the motion cannot be traced.
+  /// derivatives, in the units of the fit's report; edges lag as they were crossed at the recording's own instants, as
+  /// the motion goes at others. Nothing when the motion cannot be traced.
   std::optional<Eigen::VectorXd> Readings(const Eigen::VectorXd& instants, Eigen::MatrixXd* jacobian = nullptr) const;
 
   /// The motion over the recording; nothing when it cannot be traced.
   std::optional<Trajectory> Trace() const;
 
  private:
+  /// Which way edges are behind; false where the motion cannot be traced.
+  bool SetLags(TrajectoryData& data) const;
+
   MotionModel model_;
   StartKind start_;
   Quantity quantity_;
