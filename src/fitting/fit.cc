@@ -24,11 +24,16 @@ namespace pendulum {
 namespace {
 
 /// Takes whole turns out of the zero, which a search near the top may have put in: the same readings with the zero next
-/// to that of the turning points.
+/// to that of the turning points. Where no reading tells turns they are taken out of the angle.
 void TakeTurnsOut(const FitProblem& problem, Solution& solution) {
   const std::size_t zero = problem.zero();
   const std::size_t angle = problem.solve.last_friction + 1;
-  if (problem.model.gravity != Gravity::kSine || problem.data.quantity != Quantity::kAngle) return;
+  if (problem.model.gravity != Gravity::kSine) return;
+  if (problem.data.quantity != Quantity::kAngle) {
+    const double turns = std::round((solution.parameters[angle] - problem.start.parameters[angle]) / (2 * kPi));
+    if (!problem.solve.fixed[angle]) solution.parameters[angle] -= 2 * kPi * turns;
+    return;
+  }
   if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
   const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
   solution.parameters[zero] -= 2 * kPi * turns;
