@@ -111,6 +111,12 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
   return scenario;
 }
 
+/// The same encoder with play: its counts change behind their edges.
+CoverageScenario Lagging(CoverageScenario scenario) {
+  scenario.run.edge_lag = 0.35 * scenario.run.resolution;
+  return scenario;
+}
+
 /// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
 CoverageScenario Sampled(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenOfEvents;
@@ -211,6 +217,7 @@ std::vector<CoverageScenario> CoverageScenarios() {
            0.0005),
       OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
       OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
+      Lagging(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
       Sampled(OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
       Sampled(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
   };

@@ -230,32 +230,33 @@ void Withdraw(const std::string& why, FitReport& fit) {
   WithdrawErrors("not a pendulum", fit);
 }
 
-/// The same of readings about several zeros.
-void WithdrawJumping(const std::string& why, FitReport& fit) {
-  fit.termination = Termination::kNotConverged;
-  fit.reason = why;
-  fit.warnings.push_back({"zero_jumps", fit.reason});
-  WithdrawErrors("the zero jumps", fit);
-}
-
-/// Says what became of jumps, and where there may be one that is too small to be told.
-void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
-  // Of events a misfit hides nothing: what lasts between two edges is a zero's.
-  const bool may_tell =
-      fit.noise.family == NoiseFamily::kEdges || (!lacks && fit.noise.family != NoiseFamily::kQuantized);
-  if (!jumps && may_tell && MayJump(fit)) {
-    fit.warnings.push_back({"zero_unsteady",
-                            "the mean of the residuals changes within the window by more than chance has it: the zero "
-                            "may have jumped or drifted by too little to be told; look at --residuals"});
+/// Ends a window before counts are lost that cannot be told, if more than half of it is left and all that were lost in
+/// that can be.
+void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& result, ZeroJumps& jumps) {
+  constexpr int kMostTrials = 6;
+  constexpr double kLeast = 0.5, kStep = 0.05;  // of the window
+  FreeSwing shorter = swing;
+  std::optional<double> doubtful = jumps.doubtful_from;
+  const double length = swing.to - swing.from;
+  for (int trial = 0; trial < kMostTrials && doubtful; ++trial) {
+    shorter.to = std::min(std::nexttoward(*doubtful, swing.from), shorter.to - kStep * length);
+    shorter.ends = "counts that were lost behind it cannot be told";
+    if (shorter.to - swing.from < kLeast * length) return;
+    Result<SwingFit> part = FitBetween(result.used, shorter, options);
+    std::optional<ZeroJumps> found = part ? FindZeroJumps(part->used, options) : std::nullopt;
+    if (!found) return;
+    doubtful = found->doubtful_from;
+    if (doubtful) continue;
+    swing = shorter;
+    result = *std::move(part);
+    jumps = *std::move(found);
   }
-  if (!jumps) return;
-  if (!jumps->AreMended()) return WithdrawJumping(jumps->message, fit);
-  fit.warnings.push_back({"lost_counts", jumps->message});
 }
 
 /// Moves back the readings that counts were lost before, and fits them; says what was found.
-std::optional<ZeroJumps> MendZero(const FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
+std::optional<ZeroJumps> MendZero(FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
   std::optional<ZeroJumps> jumps = FindZeroJumps(result->used, options);
+  if (jumps && !swing.to_given) EndBeforeDoubt(options, swing, *result, *jumps);
   if (jumps && jumps->AreMended()) result = FitBetween(std::exchange(jumps->corrected, {}), swing, options);
   return jumps;
 }

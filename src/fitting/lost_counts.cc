@@ -135,10 +135,24 @@ Recording MovedBack(Recording recording, const std::vector<ZeroStep>& steps) {
   return recording;
 }
 
-bool AreAlike(const std::vector<ZeroStep>& a, const std::vector<ZeroStep>& b) {
-  return std::ranges::equal(a, b, [](const ZeroStep& one, const ZeroStep& other) {
-    return one.sample == other.sample && std::abs(one.size - other.size) < 0.2 * other.std_error;
-  });
+bool AreSame(const ZeroStep& one, const ZeroStep& other) {
+  return one.sample == other.sample && std::abs(one.size - other.size) < 0.2 * other.std_error;
+}
+
+/// The first sample from which on two searches do not agree, or a step is not of whole counts; nothing where all are.
+std::optional<Index> FirstDoubtful(const Recording& recording, const std::vector<ZeroStep>& before,
+                                   const std::vector<ZeroStep>& now) {
+  std::optional<Index> first;
+  const auto look = [&](const std::vector<ZeroStep>& steps, const std::vector<ZeroStep>& others) {
+    for (const ZeroStep& step : steps) {
+      const bool agrees = std::ranges::any_of(others, [&](const ZeroStep& other) { return AreSame(step, other); });
+      if (agrees && InCounts(step, recording).IsWhole()) continue;
+      first = std::min(first.value_or(step.sample), step.sample);
+    }
+  };
+  look(now, before);
+  look(before, now);
+  return first;
 }
 
 std::string SizeText(const Recording& recording, const ZeroStep& step) {
@@ -160,14 +174,6 @@ std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps
   }
   if (steps.size() > kMostSaid) text += " and " + std::to_string(steps.size() - kMostSaid) + " times more";
   return text;
-}
-
-/// " (the first that is not: at 78.6 s)" where there are others.
-std::string FirstDoubtful(const Recording& recording, const std::vector<ZeroStep>& steps) {
-  const auto doubtful =
-      std::ranges::find_if(steps, [&](const ZeroStep& step) { return !InCounts(step, recording).IsWhole(); });
-  if (steps.size() < 2 || doubtful == steps.end()) return "";
-  return " (the first that is not: at " + NumberText(recording.time[doubtful->sample], 6) + " s)";
 }
 
 }  // namespace
@@ -199,17 +205,17 @@ namespace {
 struct Settled {
   std::vector<ZeroStep> steps;
   Recording corrected;
-  bool is_settled = false;
-  bool explain = false;  // what the fit lacked, or a good part of it
+  std::optional<Index> doubtful;  // sample
+  bool explain = false;           // what the fit lacked, or a good part of it
 };
 
 /// Fits and looks for steps in turn. Nothing where a fit fails.
 std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions& options) {
   constexpr int kMostRounds = 8;
   constexpr double kGoodPart = 0.9;
-  Settled settled{{}, recording, false, false};
+  Settled settled{{}, recording, std::nullopt, false};
   double rms = 0;
-  for (int round = 0; round < kMostRounds && !settled.is_settled; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     const auto left = FitCorrected(recording, settled.corrected, options);
     if (!left) return std::nullopt;
     if (round == 0) rms = left->rms;
@@ -218,9 +224,11 @@ std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions&
                                                  : FindZeroSteps(left->residuals, kMostJumps, options.stop);
     if (options.stop.stop_requested()) return std::nullopt;
     std::erase_if(found, [&](const ZeroStep& step) { return !Matters(step, recording); });
-    settled.is_settled = AreAlike(found, settled.steps);
+    const bool is_settled = std::ranges::equal(found, settled.steps, AreSame);
+    settled.doubtful = FirstDoubtful(recording, settled.steps, found);
     settled.steps = std::move(found);
     settled.corrected = MovedBack(recording, settled.steps);
+    if (is_settled) break;
   }
   return settled;
 }
@@ -234,10 +242,11 @@ std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOpti
   const std::vector<ZeroStep>& steps = settled->steps;
   ZeroJumps jumps;
   jumps.message = "the zero jumps " + Jumps(recording, steps);
-  const auto is_whole = [&](const ZeroStep& step) { return InCounts(step, recording).IsWhole(); };
-  if (!settled->is_settled || !std::ranges::all_of(steps, is_whole)) {
+  if (settled->doubtful) {
+    jumps.doubtful_from = recording.time[*settled->doubtful];
+    jumps.message += ", not surely by whole counts";
+    if (steps.size() > 1) jumps.message += " from " + NumberText(*jumps.doubtful_from, 6) + " s on";
     jumps.message +=
-        ", not surely by whole counts" + FirstDoubtful(recording, steps) +
         ": the sensor slipped, or counts were lost that cannot be told; choose a window before it or after it with "
         "--from and --to";
     return jumps;
@@ -250,6 +259,32 @@ std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOpti
   jumps.message +=
       ": counts were lost; the readings after it are moved back by as much, in all that follows and in the series";
   return jumps;
+}
+
+namespace {
+
+/// Errors of readings about several zeros are none.
+void WithdrawJumping(const std::string& why, FitReport& fit) {
+  fit.termination = Termination::kNotConverged;
+  fit.reason = why;
+  fit.warnings.push_back({"zero_jumps", fit.reason});
+  WithdrawErrors("the zero jumps", fit);
+}
+
+}  // namespace
+
+void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
+  // Of events a misfit hides nothing: what lasts between two edges is a zero's.
+  const bool may_tell =
+      fit.noise.family == NoiseFamily::kEdges || (!lacks && fit.noise.family != NoiseFamily::kQuantized);
+  if (!jumps && may_tell && MayJump(fit)) {
+    fit.warnings.push_back({"zero_unsteady",
+                            "the mean of the residuals changes within the window by more than chance has it: the zero "
+                            "may have jumped or drifted by too little to be told; look at --residuals"});
+  }
+  if (!jumps) return;
+  if (!jumps->AreMended()) return WithdrawJumping(jumps->message, fit);
+  fit.warnings.push_back({"lost_counts", jumps->message});
 }
 
 }  // namespace pendulum
