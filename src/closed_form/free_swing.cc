@@ -62,6 +62,7 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
 struct Beginning {
   Index sample;
   std::string why;
+  Index hold_end = sample;  // the last sample of a hold
 };
 
 /// Whether samples [first, last] read one value: no creep beyond three standard deviations of noise, no more scatter
@@ -84,7 +85,7 @@ Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   // The release lies somewhere within the band too.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
-    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld)};
+    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld), last};
   }
   return {last, "after the release: the hold before it is not steady"};
 }
@@ -198,6 +199,7 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
   const Ending ending = End(table, run);
   swing.from = table.recording.time[beginning.sample];
   swing.to = table.recording.time[ending.sample];
+  swing.hold_until = table.recording.time[beginning.hold_end];
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
@@ -206,6 +208,15 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
     swing.amplitude = std::max(swing.amplitude, table.amplitude[i]);
   }
   return swing;
+}
+
+/// An acceleration jumps at the release, which no sample dates.
+void LeaveHoldsOut(std::vector<FreeSwing>& swings) {
+  for (FreeSwing& swing : swings) {
+    if (swing.begins != kHeld) continue;
+    swing.from = swing.hold_until;
+    swing.begins = "after the release, at which an acceleration jumps";
+  }
 }
 
 tl::unexpected<Status> NoSwing(const std::string& sentence) {
@@ -325,7 +336,11 @@ Result<void> CheckUnit(const TurnTable& table) {
 }  // namespace
 
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
-  if (HasOtherView(recording)) return FindFreeSwings(TurnsView(recording));
+  if (HasOtherView(recording)) {
+    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurnsView(recording));
+    if (swings && recording.quantity == Quantity::kAcceleration) LeaveHoldsOut(*swings);
+    return swings;
+  }
   const TurnTable table = TabulateTurns(recording);
   if (table.turns.size() < 3) {
     const Result<std::vector<Extremum>> extrema = FindExtrema(recording);

@@ -15,6 +15,7 @@
 #include "pendulum/fitting/judge.h"
 #include "pendulum/fitting/maximum_likelihood.h"
 #include "pendulum/fitting/optimum.h"
+#include "pendulum/fitting/profile.h"
 #include "pendulum/fitting/rival_solutions.h"
 #include "pendulum/fitting/search.h"
 #include "pendulum/fitting/trace_error.h"
@@ -99,6 +100,15 @@ bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
   const StartValues& start = attempt.problem->start;
   return options.start == StartChoice::kAuto && start.start == StartKind::kRelease &&
          (start.short_hold || !Explains(*attempt.problem, attempt.solution));
+}
+
+/// With StartChoice::kAuto: events show a hold by one row alone, and edges that scatter have not begun as they were
+/// taken to.
+bool MayBeginHeld(const Attempt& attempt, const FitOptions& options) {
+  constexpr double kScattered = 0.15;  // of a count
+  const NoiseModel& noise = attempt.solution.noise;
+  return options.start == StartChoice::kAuto && attempt.problem->start.start == StartKind::kMoving &&
+         noise.family == NoiseFamily::kEdges && noise.sigma > kScattered * noise.resolution;
 }
 
 /// Log-likelihood of samples and priors.
@@ -211,6 +221,17 @@ FitOptions AskAlike(const FitReport& fit, FitOptions options) {
 
 namespace {
 
+/// Amid jumps a search may end at none of the lowest minima: a profile that comes by a lower one says so.
+void ConcludeFromProfiles(const FitProblem& problem, FitReport& report) {
+  const auto found_better = [](const ParameterEstimate& p) { return p.open_interval == kBetterMinimum; };
+  if (!HasJumps(problem) || report.termination != Termination::kConverged) return;
+  if (!std::ranges::any_of(report.parameters, found_better)) return;
+  report.termination = Termination::kNotConverged;
+  report.reason =
+      "a profile of the likelihood came by a better minimum: an acceleration jumps when dry friction changes its side, "
+      "and has many; say what is known with --prior, as radius=r:std_dev";
+}
+
 /// The report, unless the fit is stopped: then it may be half made.
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TrySensorStarts(recording, options);
@@ -222,6 +243,12 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
     if (Result<Attempt> other = TrySensorStarts(recording, moving); other && IsBetter(*other, *attempt))
       attempt = std::move(other);
   }
+  if (MayBeginHeld(*attempt, options)) {
+    FitOptions held = options;
+    held.start = StartChoice::kRelease;
+    if (Result<Attempt> other = TrySensorStarts(recording, held); other && IsBetter(*other, *attempt))
+      attempt = std::move(other);
+  }
   if (!BrokenOrder(*attempt->problem, attempt->solution.parameters).empty()) FallBack(recording, options, attempt);
   if (const std::string broken = BrokenOrder(*attempt->problem, attempt->solution.parameters); !broken.empty()) {
     return ReportSimplerLaw(recording, options, *attempt->problem, broken);
@@ -229,6 +256,7 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
   const double log_posterior = LogPosterior(*attempt);
   FitReport report = Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
   ConcludeFromRivals(*attempt->problem, attempt->rivals, log_posterior, report);
+  ConcludeFromProfiles(*attempt->problem, report);
   // Where estimates are means of a posterior, they may lie where the likeliest do not.
   std::vector<double> estimates;
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {

@@ -192,7 +192,7 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   }
   if (profile.found_lower()) {
     interval.lower = interval.upper = std::nullopt;
-    interval.open = "a better minimum lies within it: the fit is not at the best one";
+    interval.open = kBetterMinimum;
   }
   if (profile.is_exhausted() || profile.found_lower()) return interval;
   interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));

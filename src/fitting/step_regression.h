@@ -127,7 +127,7 @@ class StepRegression {
   Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
     constexpr Eigen::Index kEdge = 3;    // bins on either side of the recording
     constexpr double kToldApart = 1e-6;  // of a step, beside the columns
-    constexpr double kMore = 1 + 1e-9;   // behind a gap the first of many places that are told alike
+    constexpr double kClearly = 6;       // in -2 log L
     Explained explained;
     explained.memory = std::move(memory);
     Regress(columns, &explained);
@@ -141,9 +141,16 @@ class StepRegression {
     Eigen::Index best = -1;
     double most = 0;
     for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
-      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > kMore * most * norm[i])) continue;
+      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
       most = product[i] * product[i] / norm[i];
       best = i;
+    }
+    // Samples are lost in gaps, and counts with them: such a place is taken unless another tells clearly more.
+    for (const Stretch& stretch : bins_.stretches) {
+      const Eigen::Index i = stretch.begin;
+      const bool holds_best = i >= kEdge && i < best && best < i + stretch.size;
+      if (!holds_best || !(norm[i] > smallest[i])) continue;
+      if (most - product[i] * product[i] / norm[i] < kClearly * explained.sigma * explained.sigma) best = i;
     }
     return best;
   }

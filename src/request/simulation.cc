@@ -209,6 +209,11 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
   }
   constexpr double kLargestNoise = 0.2;  // of a count
   if (!(flags.resolution > 0)) return BadFlag("--event_driven needs --resolution");
+  constexpr double kFinest = 1e-5;  // rad: a row for each
+  if (flags.resolution * (flags.unit == "deg" ? kRadFromDeg : 1) < kFinest) {
+    return BadFlag("--resolution is " + NumberText(flags.resolution) + " " + flags.unit +
+                   "; with --event_driven it must be at least 1e-05 rad");
+  }
   if (flags.noise <= kLargestNoise * flags.resolution) return {};
   return BadFlag("--noise is " + NumberText(flags.noise) +
                  "; with --event_driven it must be at most a fifth of --resolution");

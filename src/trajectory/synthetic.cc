@@ -156,7 +156,9 @@ Result<void> CheckEvents(const SyntheticOptions& options) {
         StatusCode::kInvalidArgument,
         "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
   }
-  if (!(options.resolution > 0)) return BadOption("resolution", options.resolution, "positive where rows are events");
+  constexpr double kFinest = 1e-5;  // rad: a row for each
+  if (!(options.resolution >= kFinest))
+    return BadOption("resolution", options.resolution, "at least 1e-05 rad where rows are events");
   if (options.noise > kLargestNoise * options.resolution)
     return BadOption("noise", options.noise, "at most a fifth of the resolution where rows are events");
   return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});

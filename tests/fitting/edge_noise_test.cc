@@ -175,6 +175,22 @@ TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
   EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
 
+/// One row is all that an encoder shows of a hold.
+TEST(EdgeNoise, OfACoarseEncoderFindsTheReleaseBehindOneRow) {
+  SyntheticOptions run = Encoder(7);
+  run.start = StartKind::kRelease;
+  run.release_angle = 0.5;
+  run.release_time = 0.4;
+  run.duration = 25;
+  run.resolution = 5 * 3.14159265358979 / 180;
+  run.noise = 0.01 * run.resolution;
+  const FitReport fit = Must(FitRecording(WithEdges(Must(SimulateRecording(run)), {}), {}));
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  EXPECT_EQ(fit.start, StartKind::kRelease);
+  EXPECT_THAT(std::abs(fit.Find("edge_lag")->estimate), testing::Lt(4.5 * fit.Find("edge_lag")->std_error.value()));
+  EXPECT_LT(fit.noise.sigma, 0.05 * run.resolution);
+}
+
 TEST(EdgeNoise, IsRefusedForRowsThatAreNoEvents) {
   SyntheticOptions run = Encoder(1);
   run.rows = RowTiming::kEvenOfEvents;

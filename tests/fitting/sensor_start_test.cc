@@ -14,11 +14,15 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit_swing.h"
 #include "pendulum/trajectory/synthetic.h"
+#include "tests/fitting/fit_support.h"
 
 namespace pendulum::sensor_start_test {
 namespace {
 
+using testing::AllOf;
+using testing::Ge;
 using testing::HasSubstr;
 using testing::Le;
 
@@ -77,6 +81,35 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
     const SyntheticOptions options =
         Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
     ExpectTruth(options, Fit(options));
+  }
+}
+
+/// A release is no sample of an acceleration: the window begins behind it, however long the hold before was.
+TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
+  for (const double axis : {0.02, kPi / 2 + 0.02}) {
+    for (const double release : {0.5, 2.0}) {
+      SCOPED_TRACE(std::to_string(axis) + " rad, held for " + std::to_string(release) + " s");
+      SyntheticOptions options =
+          Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, axis, 0.3}, 0.03);
+      options.start = StartKind::kRelease;
+      options.release_angle = 0.8;
+      options.release_time = release;
+      const Recording recording = Must(SimulateRecording(options));
+      const ChosenSwings swings = Must(ChooseSwings(recording, {}));
+      const SwingFit result = Must(FitSwing(recording, swings.found.at(0), {}));
+      EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+      EXPECT_EQ(result.swing.begins, "after the release, at which an acceleration jumps");
+      EXPECT_THAT(result.swing.from - release, AllOf(Ge(0.0), Le(0.3)));
+      for (const std::string_view name : {"inertia", "viscous", "coulomb", "radius", "axis"}) {
+        const ParameterEstimate& parameter = *result.fit.Find(name);
+        const double truth = name == "inertia"   ? options.parameters[0]
+                             : name == "viscous" ? options.parameters[1]
+                             : name == "coulomb" ? options.parameters[2]
+                             : name == "axis"    ? axis
+                                                 : 0.3;
+        EXPECT_THAT(std::abs(parameter.estimate - truth), Le(4.5 * parameter.std_error.value())) << name;
+      }
+    }
   }
 }
 

@@ -97,7 +97,7 @@ TEST(SimulateRecording, RefusesEventsOfWhatIsNoEncoder) {
     return recording ? std::string() : recording.error().message;
   };
   EXPECT_EQ(refused([](SyntheticOptions& o) { o.resolution = 0; }),
-            "resolution is 0; it must be positive where rows are events");
+            "resolution is 0; it must be at least 1e-05 rad where rows are events");
   EXPECT_EQ(refused([](SyntheticOptions& o) { o.noise = 0.005; }),
             "noise is 0.005; it must be at most a fifth of the resolution where rows are events");
   EXPECT_THAT(refused([](SyntheticOptions& o) { o.jitter = 0.001; }),

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pendulum/fitting/optimum.h"
@@ -17,6 +18,9 @@ struct ProfilePoint {
   /// ComputeErrors: for a parabola ((value - estimate) / standard error)².
   double statistic = 0;
 };
+
+/// Why an interval is open where the likelihood rises above that of the estimate.
+inline constexpr std::string_view kBetterMinimum = "a better minimum lies within it: the fit is not at the best one";
 
 /// An interval in the problem's units; `open` says why an end is missing, and is empty when none is.
 struct ProfileInterval {
