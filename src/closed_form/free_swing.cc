@@ -62,7 +62,7 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
 struct Beginning {
   Index sample;
   std::string why;
-  Index hold_end = sample;  // the last sample of a hold
+  Index behind_hold = sample;
 };
 
 /// Whether samples [first, last] read one value: no creep beyond three standard deviations of noise, no more scatter
@@ -85,7 +85,7 @@ Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   // The release lies somewhere within the band too.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
-    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld), last};
+    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld), last + 1};
   }
   return {last, "after the release: the hold before it is not steady"};
 }
@@ -199,7 +199,7 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
   const Ending ending = End(table, run);
   swing.from = table.recording.time[beginning.sample];
   swing.to = table.recording.time[ending.sample];
-  swing.hold_until = table.recording.time[beginning.hold_end];
+  swing.behind_hold = table.recording.time[std::min(beginning.behind_hold, table.recording.size() - 1)];
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
@@ -214,7 +214,7 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
 void LeaveHoldsOut(std::vector<FreeSwing>& swings) {
   for (FreeSwing& swing : swings) {
     if (swing.begins != kHeld) continue;
-    swing.from = swing.hold_until;
+    swing.from = swing.behind_hold;
     swing.begins = "after the release, at which an acceleration jumps";
   }
 }

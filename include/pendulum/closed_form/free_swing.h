@@ -20,8 +20,8 @@ struct FreeSwing {
   double amplitude_outside = 0;  ///< rad or rad/s: the same of what belongs to no free swing of the recording
   std::vector<double> turns;     ///< s, its turning points
   std::string begins, ends;      ///< Why it begins and ends there, to follow "begins: " and "ends: ".
-  double hold_until = 0;         ///< s, the end of the hold that it begins with; as `from` where there is none
-  bool from_given = false;       ///< The user chose `from`; likewise:
+  double behind_hold = 0;   ///< s, the first sample behind the hold that it begins with; `from` where there is none
+  bool from_given = false;  ///< The user chose `from`; likewise:
   bool to_given = false;
   bool undersampled = false;  ///< Sampled too slowly to show turning points: not looked into.
   bool beats = false;         ///< The amplitude rises again and again, though it decays: no single pendulum does that.
