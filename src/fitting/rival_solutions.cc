@@ -37,9 +37,10 @@ std::string Instead(const FitProblem& problem, const RivalSolution& rival, const
   for (const std::size_t i : different) {
     const ParameterEstimate& parameter = report.parameters[i];
     const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
-    text += (text.empty() ? "" : ", ") + std::string(parameter.info.name) + " " +
-            NumberText(problem.Reported(i, rival.parameters[i]), 4) + unit + " instead of " +
-            NumberText(parameter.estimate, 4) + unit;
+    const std::string there = NumberText(problem.Reported(i, rival.parameters[i]), 4) + unit;
+    if (!text.empty()) text += ", ";
+    text.append(parameter.info.name).append(" ").append(there);
+    text.append(" instead of ").append(NumberText(parameter.estimate, 4)).append(unit);
   }
   return text;
 }

@@ -42,10 +42,11 @@ std::vector<Case> Cases() {
 /// At several states, against central differences of the reading itself.
 TEST(SensorModel, HasTheDerivativesOfItsReading) {
   constexpr double kStep = 1e-6;
-  for (const auto& [sensor, parameters] : Cases()) {
+  for (const Case& each : Cases()) {
+    const SensorModel& sensor = each.sensor;
     for (const double angle : {-2.0, -0.4, 0.0, 0.7}) {
       std::array<double, SensorModel::kStates> state = {angle, 1.3, -7.0};
-      std::vector<double> p = parameters;
+      std::vector<double> p = each.parameters;
       const SensorModel::Response at = sensor.At(state, p.data());
       const auto slope = [&](double& number) {
         const double before = number;

@@ -185,9 +185,8 @@ TEST(ReadMat, RefusesTwoCandidatesAndTwoTimes) {
 
 TEST(ReadMat, ComplexAndSparseAreNoColumns) {
   std::vector<double> zeros(8);
-  mat_complex_split_t complex{Values().data(), zeros.data()};
   std::vector<double> values = Values();
-  complex.Re = values.data();
+  mat_complex_split_t complex{values.data(), zeros.data()};
   std::size_t sizes[] = {8, 1};
   EXPECT_THAT(FaultOf(MatOf({Matrix("t", 8, Times()),
                              Mat_VarCreate("z_rad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX)}),
