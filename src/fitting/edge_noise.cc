@@ -55,9 +55,15 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings) {
   const Index last = time.size() - 1;
   Eigen::VectorXd rates(time.size());
+  // Two stamps that are all but the same tell no rate.
+  const double least = 1e-3 * (time[last] - time[0]) / static_cast<double>(last);
   for (Index i = 0; i <= last; ++i) {
-    const Index from = std::max<Index>(i - 1, 0);
-    const Index to = std::min(i + 1, last);
+    Index from = std::max<Index>(i - 1, 0);
+    Index to = std::min(i + 1, last);
+    while (time[to] - time[from] < least) {
+      from = std::max<Index>(from - 1, 0);
+      to = std::min(to + 1, last);
+    }
     rates[i] = (readings[to] - readings[from]) / (time[to] - time[from]);
   }
   return rates;

@@ -57,17 +57,18 @@ void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& soluti
   constexpr double kSame = 3e-3;     // of σ: some tenths of its standard error at most
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
+  const bool lags = problem.zero_motion == ZeroMotion::kLags;
   const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
   for (int round = 0; round < kMostRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
     if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
-    if (problem.zero_motion == ZeroMotion::kLags) {
-      solution.noise.lag = std::max(solution.parameters.back(), -kMostLead * problem.resolution);
-    }
+    const double lag = lags ? std::max(solution.parameters.back(), -kMostLead * problem.resolution) : 0.0;
+    const bool same_lag = std::abs(lag - solution.noise.lag) <= kSame * solution.noise.sigma;
+    if (!same_lag) solution.noise.lag = lag;
     const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
     const double change = std::abs(std::log(sigma / solution.noise.sigma));
     solution.noise.sigma = sigma;
-    if (round > 0 && change < kSame) break;
+    if (round > 0 && change < kSame && same_lag) break;
     cost.set_noise(solution.noise);
     solution = Continue(cost, solution, problem.solve);
     if (!solution.usable) return;

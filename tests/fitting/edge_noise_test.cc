@@ -175,6 +175,14 @@ TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
   EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
 
+TEST(RatesOf, AreFiniteWhereStampsAreAllButTheSame) {
+  Eigen::VectorXd time(6), readings(6);
+  time << 0, 1e-16, 0.1, 0.2, std::nextafter(0.2, 1.0), 0.3;
+  readings << 0, 0.001, 0.2, 0.4, 0.401, 0.6;
+  const Eigen::VectorXd rates = RatesOf(time, readings);
+  for (const double rate : rates) EXPECT_THAT(rate, DoubleNear(2, 0.05));
+}
+
 /// One row is all that an encoder shows of a hold.
 TEST(EdgeNoise, OfACoarseEncoderFindsTheReleaseBehindOneRow) {
   SyntheticOptions run = Encoder(7);

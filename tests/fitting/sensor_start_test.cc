@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -142,52 +141,6 @@ TEST(FitRecording, FindsTheRadiusOfAnAccelerometerWhoseReadingsAreWithoutGravity
       options.sample_rate = 50;
       ExpectTruth(options, Fit(options));
     }
-  }
-}
-
-/// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m looks the same but for friction, and here is little.
-SyntheticOptions WithLittleFriction(std::uint64_t seed) {
-  SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
-  options.model = FindMotionModel("viscous").value();
-  options.parameters = {1 / 22.0, 0.0003};
-  options.duration = 20;
-  options.seed = seed;
-  return options;
-}
-
-TEST(FitRecording, SaysBothRadiiThatAnAccelerationAcrossTheRodMayHave) {
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    FitOptions viscous;
-    viscous.model = "viscous";
-    const FitReport fit = Fit(WithLittleFriction(seed), viscous);
-    EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
-    EXPECT_TRUE(fit.Warns("ambiguous_sensor"));
-    std::smatch said;
-    ASSERT_TRUE(std::regex_search(fit.reason, said, std::regex("with radius (\\S+) m instead of (\\S+) m")));
-    const auto [nearer, farther] = std::minmax({std::stod(said[1]), std::stod(said[2])});
-    EXPECT_NEAR(nearer, 0.3, 0.02);
-    EXPECT_NEAR(nearer + farther, 2 * kStandardGravity / 22, 0.01);
-    EXPECT_THAT(fit.reason, HasSubstr("give --prior radius=r:std_dev"));
-    EXPECT_FALSE(fit.Find("radius")->std_error);
-    EXPECT_FALSE(fit.Find("viscous")->std_error);
-    for (const Identifiability& known : fit.identifiability) {
-      EXPECT_EQ(known.verdict == Identifiability::Verdict::kNotIdentifiable, known.parameter == "radius");
-    }
-  }
-}
-
-TEST(FitRecording, FindsTheRadiusAcrossTheRodWithWhatIsKnownOfIt) {
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    FitOptions known;
-    known.model = "viscous";
-    known.priors["radius"] = {0.31, 0.02};
-    ExpectTruth(WithLittleFriction(seed), Fit(WithLittleFriction(seed), known));
-    // A prior that has room for both tells neither.
-    known.priors["radius"] = {0.45, 0.2};
-    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kNotIdentifiable);
-    known.priors.clear();
-    known.fixed["radius"] = 0.3;
-    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kConverged);
   }
 }
 

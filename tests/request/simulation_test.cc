@@ -261,9 +261,7 @@ TEST(MakeSimulation, RefusesWrongFlagsAndNamesThem) {
       {"--lose is 'x'; it must be a time in s", [](SimulationFlags& f) { (f.resolution = 1, f.lose = "x:1"); }},
       {"--lose: 1.5 counts; it must be a whole", [](SimulationFlags& f) { (f.resolution = 1, f.lose = "5:1.5"); }},
       {"--lose: counts have a size; give --resolution", [](SimulationFlags& f) { f.lose = "5:1"; }},
-      {"--lose is of an encoder's counts, and --unit px has the coordinates of a point, which are not counted on; "
-       "leave "
-       "one of them out",
+      {"--unit px has the coordinates of a point, which are not counted on; leave one of them out",
        [](SimulationFlags& f) { (f.resolution = 1, f.unit = "px", f.lose = "5:30"); }},
       {"--spread: 'inertia' must be name=value", [](SimulationFlags& f) { f.spread = "inertia"; }},
       {"--spread: model coulomb has no parameter 'drag'", [](SimulationFlags& f) { f.spread = "drag=1"; }},

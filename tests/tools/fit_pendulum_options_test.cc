@@ -177,10 +177,11 @@ TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
 }
 
 TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
-  EXPECT_EQ(RefusalOfFix("drag=0.1"),
-            "--fix: model coulomb has no parameter 'drag'; its parameters are inertia, viscous, coulomb, "
-            "release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, zero_drift, bias_drift, "
-            "rate_scale, acceleration_bias, acceleration_scale, axis, radius, pivot_x, pivot_y, edge_lag");
+  const std::string names =
+      "inertia, viscous, coulomb, release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, "
+      "zero_drift, bias_drift, rate_scale, acceleration_bias, acceleration_scale, axis, radius, pivot_x, pivot_y, "
+      "edge_lag";
+  EXPECT_EQ(RefusalOfFix("drag=0.1"), "--fix: model coulomb has no parameter 'drag'; its parameters are " + names);
 }
 
 TEST(MakeFitPendulumOptions, SaysOfTheFileWhatItDoesNotSayItself) {
@@ -371,8 +372,7 @@ TEST(MakeFitPendulumOptions, MakesNoBootstrapOfSeveralRecordingsTogether) {
   EXPECT_EQ(Refusal(flags), refusal);
   flags.shared = "none";
   EXPECT_EQ(Refusal(flags), "");
-  flags.shared.clear();
-  flags.data.clear();
+  flags.shared = flags.data = "";
   flags.data_list = "list.txt";
   EXPECT_EQ(Refusal(flags), refusal);
   flags = WithData();
@@ -390,9 +390,8 @@ TEST(JointOutputs, AreNumberedWhereEachRecordingHasItsOwn) {
   flags.residuals = "r.csv";
   flags.report = "page.html";
   const auto options = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(options);
   EXPECT_THAT(
-      options->JointOutputs(2),
+      options.value().JointOutputs(2),
       ElementsAre(testing::FieldsAre("--json", "fit.json"), testing::FieldsAre("--report", "page.html"),
                   testing::FieldsAre("--residuals", "r_001.csv"), testing::FieldsAre("--residuals", "r_002.csv")));
 }

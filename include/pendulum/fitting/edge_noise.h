@@ -19,7 +19,8 @@ Recording WithEdges(Recording recording, const FitOptions& options);
 /// first sample], or minus the direction of each edge; none of a zero that has no motion.
 std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero);
 
-/// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each; rad/s.
+/// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each, or those of
+/// these where they are a thousandth of a mean interval apart; rad/s.
 Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings);
 
