@@ -343,8 +343,12 @@ TEST_F(FittingServiceBatchesTest, KeepsSoManyWaitingAndNoMore) {
 }
 
 TEST_F(FittingServiceBatchesTest, StopsARunThatTakesTooLongAndGoesOn) {
+  SyntheticOptions minutes = small_batch::Truth(1);
+  minutes.duration = 300;
+  minutes.sample_rate = 200;  // a fit of seconds, wherever it runs
   options_.fit_time = std::chrono::milliseconds(1);
-  const std::string location = Sent(PartOf("data", Recording(), "a.csv") + PartOf("data", RestingRecording(), "b"));
+  const std::string location =
+      Sent(PartOf("data", small_batch::RecordingText(minutes), "a.csv") + PartOf("data", RestingRecording(), "b"));
   const Json batch = Done(location);
   EXPECT_EQ(batch["failed"], 2);
   EXPECT_EQ(batch["fits"][0]["exit_code"], 75);
