@@ -216,7 +216,8 @@ Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const Cove
     outcomes.push_back(*std::move(outcome));
   }
   for (std::size_t i = 0; i < outcomes.front().parameters.size(); ++i) {
-    study.rows.push_back(MakeRow(scenario, outcomes, i));
+    CoverageRow row = MakeRow(scenario, outcomes, i);
+    if (!scenario.fit.fixed.contains(row.parameter)) study.rows.push_back(std::move(row));
   }
   return study;
 }

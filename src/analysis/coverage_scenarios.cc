@@ -117,6 +117,12 @@ CoverageScenario Lagging(CoverageScenario scenario) {
   return scenario;
 }
 
+/// Known to have no lag, as readings at even times are taken to.
+CoverageScenario WithoutLag(CoverageScenario scenario) {
+  scenario.fit.fixed = {{std::string(kEdgeLag.name), 0}};
+  return scenario;
+}
+
 /// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
 CoverageScenario Sampled(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenOfEvents;
@@ -218,6 +224,8 @@ std::vector<CoverageScenario> CoverageScenarios() {
       OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
       OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
       Lagging(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
+      WithoutLag(OnTicks("prompt_ticks", "the encoder of ticks, known to have no lag")),
+      WithoutLag(OnFewTicks("few_prompt_ticks", "that of few_ticks, likewise")),
       Sampled(OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
       Sampled(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
   };

@@ -10,6 +10,7 @@
 #include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
+#include "pendulum/analysis/inconstancy.h"
 #include "pendulum/analysis/model_comparison.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/model/motion_model.h"
@@ -41,15 +42,16 @@ MotionModel ClosedFormModel(const RunOptions& options, const Recording& used, Ru
 bool IsStopped(const RunOptions& options) { return options.fit.stop.stop_requested(); }
 
 /// What is concluded from the fits together and from each, but for what is left out when it is stopped.
-void AddAnalysis(const RunOptions& options, const FittedModels& fitted, FitRun& run) {
+void AddAnalysis(const RunOptions& options, FittedModels& fitted, FitRun& run) {
   RunReport& report = run.report;
   FitOptions fit_options = options.fit;
   fit_options.rig = report.rig;
   if (fitted.fits.size() > 1) report.comparison = CompareModels(fitted, fit_options);
-  for (const FitReport& fit : fitted.fits) {
+  for (FitReport& fit : fitted.fits) {
     if (IsStopped(options)) return;
     const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
     report.constancy.push_back(TestConstancy(fitted.used, fit, own));
+    CountInconstancy(report.constancy.back(), fit);
   }
 }
 

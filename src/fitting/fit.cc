@@ -233,22 +233,19 @@ void ConcludeFromProfiles(const FitProblem& problem, FitReport& report) {
 }
 
 /// The report, unless the fit is stopped: then it may be half made.
+/// Takes the recording to begin so, where that is better; where release_time is fixed it may not be possible.
+void TryStart(StartChoice start, const Recording& recording, FitOptions options, Attempt& attempt) {
+  options.start = start;
+  if (Result<Attempt> other = TrySensorStarts(recording, options); other && IsBetter(*other, attempt)) {
+    attempt = *std::move(other);
+  }
+}
+
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TrySensorStarts(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());
-  if (MayBeginInMotion(*attempt, options)) {
-    FitOptions moving = options;
-    moving.start = StartChoice::kMoving;
-    // Not possible where release_time is fixed.
-    if (Result<Attempt> other = TrySensorStarts(recording, moving); other && IsBetter(*other, *attempt))
-      attempt = std::move(other);
-  }
-  if (MayBeginHeld(*attempt, options)) {
-    FitOptions held = options;
-    held.start = StartChoice::kRelease;
-    if (Result<Attempt> other = TrySensorStarts(recording, held); other && IsBetter(*other, *attempt))
-      attempt = std::move(other);
-  }
+  if (MayBeginInMotion(*attempt, options)) TryStart(StartChoice::kMoving, recording, options, *attempt);
+  if (MayBeginHeld(*attempt, options)) TryStart(StartChoice::kRelease, recording, options, *attempt);
   if (!BrokenOrder(*attempt->problem, attempt->solution.parameters).empty()) FallBack(recording, options, attempt);
   if (const std::string broken = BrokenOrder(*attempt->problem, attempt->solution.parameters); !broken.empty()) {
     return ReportSimplerLaw(recording, options, *attempt->problem, broken);

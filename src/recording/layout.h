@@ -16,6 +16,9 @@
 /// Which columns of a file are the time and the quantity, by its header and by what the user says.
 namespace pendulum::csv {
 
+/// How the name of a column may end.
+inline constexpr std::string_view kSuffixes = "_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm";
+
 struct Column {
   std::size_t index = 0;
   std::string name;  // As a message shows it.
@@ -315,8 +318,9 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
   if (columns.size() == 1) return columns[0];
   if (layout.width == 1) return 0;
   return line_.Fault(line_.text.data(), "none of the columns " + ColumnNames() +
-                                            " is an angle or a rate; end its name in its unit: _rad, _deg, _rad_s, "
-                                            "_deg_s, _counts or _volts, or give --value_column and --unit");
+                                            " is an angle, a rate or another quantity of a swing; end its name in its "
+                                            "unit: " +
+                                            std::string(kSuffixes) + ", or give --value_column and --unit");
 }
 
 /// The column of the same point's other coordinate: bob_y_px beside bob_x_px.
@@ -365,9 +369,8 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
   }
   const Unit* unit = own != nullptr ? own : asked;
   if (unit == nullptr) {
-    return line_.Fault(PlaceOf(index), column +
-                                           " does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, "
-                                           "_counts or _volts, or give --unit");
+    return line_.Fault(PlaceOf(index), column + " does not tell its unit; end its name in " + std::string(kSuffixes) +
+                                           ", or give --unit");
   }
   if (unit->kind == Kind::kTime) {
     return line_.Fault(PlaceOf(index), column + " is in " + std::string(unit->name) +
@@ -376,7 +379,8 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
   }
   const std::string name = layout.has_header ? CanonicalName(names_[index].text) : "";
   const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-  layout.value = Column{index, NameOf(index), unit, has("gyro"), has("linear") || has("without_g") || has("without g")};
+  const bool is_gyro = has("gyro") || ("_" + name).find("_rate_") != std::string::npos;
+  layout.value = Column{index, NameOf(index), unit, is_gyro, has("linear") || has("without_g") || has("without g")};
   return {};
 }
 

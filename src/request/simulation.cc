@@ -207,14 +207,12 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
         "--event_driven is of an encoder: an angle, without --range, --jitter, --noise_correlation and "
         "--noise_freedom");
   }
-  constexpr double kLargestNoise = 0.2;  // of a count
   if (!(flags.resolution > 0)) return BadFlag("--event_driven needs --resolution");
-  constexpr double kFinest = 1e-5;  // rad: a row for each
-  if (flags.resolution * (flags.unit == "deg" ? kRadFromDeg : 1) < kFinest) {
+  if (flags.resolution * (flags.unit == "deg" ? kRadFromDeg : 1) < kFinestEvents) {
     return BadFlag("--resolution is " + NumberText(flags.resolution) + " " + flags.unit +
                    "; with --event_driven it must be at least 1e-05 rad");
   }
-  if (flags.noise <= kLargestNoise * flags.resolution) return {};
+  if (flags.noise <= kMostEventNoise * flags.resolution) return {};
   return BadFlag("--noise is " + NumberText(flags.noise) +
                  "; with --event_driven it must be at most a fifth of --resolution");
 }

@@ -107,7 +107,9 @@ Result<void> CheckModel(const SyntheticOptions& options) {
 
 Result<void> CheckLostCounts(const SyntheticOptions& options) {
   for (const LostCounts& lost : options.lost_counts) {
-    if (!std::isfinite(lost.time)) return BadOption("the time of lost counts", lost.time, "finite");
+    if (!(lost.time < options.start_time + options.duration)) {
+      return BadOption("the time of lost counts", lost.time, "before the recording ends");
+    }
   }
   if (options.lost_counts.empty() || options.resolution > 0) return {};
   return Error(StatusCode::kInvalidArgument, "counts are lost by a sensor with levels; give a resolution");
@@ -142,9 +144,8 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
   return {};
 }
 
-/// Only an encoder of an angle has events; errors of an edge that is as far as the next one would be nonsense.
+/// Only an encoder of an angle has events.
 Result<void> CheckEvents(const SyntheticOptions& options) {
-  constexpr double kLargestNoise = 0.2;  // of a count
   const bool even = options.rows == RowTiming::kEven;
   if (options.time_noise != 0 && options.rows != RowTiming::kEvents)
     return BadOption("time_noise", options.time_noise, "0 unless rows are events");
@@ -156,10 +157,9 @@ Result<void> CheckEvents(const SyntheticOptions& options) {
         StatusCode::kInvalidArgument,
         "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
   }
-  constexpr double kFinest = 1e-5;  // rad: a row for each
-  if (!(options.resolution >= kFinest))
+  if (!(options.resolution >= kFinestEvents))
     return BadOption("resolution", options.resolution, "at least 1e-05 rad where rows are events");
-  if (options.noise > kLargestNoise * options.resolution)
+  if (options.noise > kMostEventNoise * options.resolution)
     return BadOption("noise", options.noise, "at most a fifth of the resolution where rows are events");
   return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
 }

@@ -128,4 +128,16 @@ inline std::vector<double> Deviations(const FitReport& report, const std::vector
   return deviations;
 }
 
+/// Every parameter within 4.5 of its standard errors of the truth: twelve of them miss that once in 12 000 fits.
+inline void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
+  ASSERT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  const std::vector<double> truth = TrueParameters(options);
+  ASSERT_EQ(fit.parameters.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    ASSERT_TRUE(parameter.std_error) << parameter.info.name;
+    EXPECT_LE(std::abs(parameter.estimate - truth[i]), 4.5 * *parameter.std_error) << parameter.info.name;
+  }
+}
+
 }  // namespace pendulum

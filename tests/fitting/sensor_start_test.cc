@@ -49,18 +49,6 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit = {}) {
   return report.value_or(FitReport{});
 }
 
-/// Every parameter within 4.5 of its standard errors of the truth: twelve of them miss that once in 12 000 fits.
-void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
-  ASSERT_EQ(fit.termination, Termination::kConverged) << fit.reason;
-  const std::vector<double> truth = TrueParameters(options);
-  ASSERT_EQ(fit.parameters.size(), truth.size());
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const ParameterEstimate& parameter = fit.parameters[i];
-    ASSERT_TRUE(parameter.std_error) << parameter.info.name;
-    EXPECT_THAT(std::abs(parameter.estimate - truth[i]), Le(4.5 * *parameter.std_error)) << parameter.info.name;
-  }
-}
-
 TEST(FitRecording, FindsTheScaleOfAGyroInVolts) {
   const SyntheticOptions options = Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
   const FitReport fit = Fit(options);

@@ -36,6 +36,8 @@ TEST(ParseRecording, ReadsAccelerationsAndCoordinates) {
   const Recording gyro = Of("time_s,gyro_volts\n" + kRows);
   EXPECT_EQ(gyro.quantity, Quantity::kRate);
   EXPECT_EQ(gyro.value_unit(), "volts");
+  EXPECT_EQ(Of("time_s,rate_volts\n" + kRows).quantity, Quantity::kRate);
+  EXPECT_EQ(Of("time_s,calibrated_volts\n" + kRows).quantity, Quantity::kAngle);
 }
 
 TEST(ParseRecording, TakesAnAngleWhereThereIsOneBesideCoordinates) {

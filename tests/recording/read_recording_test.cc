@@ -213,7 +213,8 @@ TEST(ParseRecording, RefusesAHeaderWithoutTime) {
 TEST(ParseRecording, RefusesAHeaderWithoutQuantity) {
   EXPECT_THAT(FaultOf("# one\ntime_s,angle\n" + Rows()),
               AllOf(StartsWith("run.csv:2:1: none of the columns"),
-                    HasSubstr("_rad, _deg, _rad_s, _deg_s, _counts or _volts, or give --value_column and --unit")));
+                    HasSubstr("_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm, or give "
+                              "--value_column and --unit")));
 }
 
 TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {

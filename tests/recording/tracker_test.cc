@@ -50,8 +50,8 @@ TEST(Tracker, ReadsOneTrackUnderItsName) {
 TEST(Tracker, DoesNotGuessTheUnitOfAnAngle) {
   EXPECT_THAT(
       FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
-      HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts or _volts, or give "
-                "--unit"));
+      HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, "
+                "_cm or _mm, or give --unit"));
 }
 
 TEST(Tracker, ChoosesAmongSeveralTracks) {

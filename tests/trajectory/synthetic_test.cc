@@ -310,6 +310,10 @@ TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
        [](SyntheticOptions& o) {
          (o.resolution = 0.01, o.lost_counts = {{kNan, 1}});
        }},
+      {invalid, "the time of lost counts is 500; it must be before the recording ends",
+       [](SyntheticOptions& o) {
+         (o.resolution = 0.01, o.lost_counts = {{500, 1}});
+       }},
       {unusable, "7 samples; at least 8", [](SyntheticOptions& o) { o.duration = 0.07; }},
       {unusable, "it never moves", [](SyntheticOptions& o) { o.release_angle = 0; }},
       {unusable, "the release at 20 s comes after", [](SyntheticOptions& o) { o.release_time = 20; }},

@@ -88,7 +88,7 @@ struct ParameterEstimate {
   std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
   std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
   std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
-  std::optional<double> systematic_std_error;  ///< From rig, clock and calibration; absent without their errors.
+  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, CountInconstancy; absent without.
   std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
   bool fixed = false;
   bool at_bound = false;

@@ -26,6 +26,10 @@ enum class RowTiming {
   kEvenOfEvents,  ///< At even times, of the same encoder with the same errors of its edges.
 };
 
+/// Of rows of events: an edge does not stray as far as the next one, and a row stands for each count.
+inline constexpr double kMostEventNoise = 0.2;  ///< Standard deviation of an edge, in counts.
+inline constexpr double kFinestEvents = 1e-5;   ///< Resolution, rad.
+
 /// A recording to be made, and with it the truth a fit of that recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};

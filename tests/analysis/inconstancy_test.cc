@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/inconstancy.h"
+
+#include <cmath>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/analysis/fitted_run.h"
+
+namespace pendulum::inconstancy_test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Gt;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Lt;
+
+SyntheticOptions NoisyTextbookRun(std::string_view model) {
+  SyntheticOptions run = TextbookRun(model);
+  run.noise = 0.002;
+  return run;
+}
+
+FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
+  FitOptions options = ModelOptions("viscous");
+  options.gravity = Gravity::kLinear;
+  options.rig = rig;
+  return options;
+}
+
+/// The fit, with what is not constant counted.
+FittedRun Counted(const SyntheticOptions& simulated, const FitOptions& options) {
+  FittedRun run = FitTo(Must(SimulateRecording(simulated)), options);
+  CountInconstancy(TestConstancy(run.recording, run.fit, options), run.fit);
+  return run;
+}
+
+double SystematicError(const FitReport& fit, std::string_view name) {
+  return fit.Find(name)->systematic_std_error.value_or(0);
+}
+
+TEST(Inconstancy, IsNothingWhereTheLawHolds) {
+  const FittedRun run = Counted(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
+  EXPECT_FALSE(run.fit.Warns("not_constant"));
+  EXPECT_THAT(run.fit.systematic_names, IsEmpty());
+  EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
+}
+
+// Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A; the windows' standard deviation is
+// that of A² / 8.
+TEST(Inconstancy, IsTheStandardDeviationBetweenWindows) {
+  const FitOptions options = WithLinearGravity({});
+  FittedRun run = FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options);
+  const Constancy constancy = TestConstancy(run.recording, run.fit, options);
+  double sum = 0, sum_of_squares = 0;
+  for (const AmplitudeRow& row : constancy.windows) {
+    const double inertia = 0.079 / kTextbookTorque * (1 + row.amplitude * row.amplitude / 8);
+    sum += inertia;
+    sum_of_squares += inertia * inertia;
+  }
+  const auto count = static_cast<double>(constancy.windows.size());
+  const double expected = std::sqrt((sum_of_squares - sum * sum / count) / (count - 1));
+  const double std_error = *run.fit.Find("inertia")->std_error;
+  CountInconstancy(constancy, run.fit);
+  EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
+  EXPECT_THAT(expected, Gt(10 * std_error));  // Without it the windows would contradict the whole.
+  EXPECT_EQ(*run.fit.Find("inertia")->std_error, std_error);
+}
+
+// Each window's estimate lies within three total errors of the whole's.
+TEST(Inconstancy, ExplainsHowWindowsDifferFromTheWhole) {
+  const FitOptions options = WithLinearGravity({});
+  const FittedRun run = Counted(NoisyTextbookRun("viscous"), options);
+  const ParameterEstimate& inertia = *run.fit.Find("inertia");
+  const double total = std::hypot(*inertia.std_error, *inertia.systematic_std_error);
+  const Constancy constancy = TestConstancy(run.recording, run.fit, options);
+  for (const AmplitudeRow& row : constancy.windows) {
+    EXPECT_THAT(std::abs(row.inertia - inertia.estimate), Lt(3 * total)) << row.from;
+  }
+}
+
+TEST(Inconstancy, IsSaidWithItsSize) {
+  const FittedRun run = Counted(NoisyTextbookRun("viscous"), WithLinearGravity({}));
+  ASSERT_TRUE(run.fit.Warns("not_constant"));
+  EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("beyond the errors windows differ in inertia by 0.000"));
+}
+
+// The rig's error is a factor that all torques share; this is the inertia's own.
+TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
+  FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", TextbookRig()).fit;
+  const double of_rig = *fit.Find("inertia")->systematic_std_error;
+  const Eigen::MatrixXd before = fit.systematic_covariance;
+  const auto names = fit.systematic_names;
+  Constancy constancy;
+  constancy.windows = {{0, 5, 0.4, 0.078, 1e-5, 0.003, 1e-5},
+                       {5, 10, 0.3, 0.079, 1e-5, 0.003, 1e-5},
+                       {10, 15, 0.2, 0.080, 1e-5, 0.003, 1e-5}};
+  constancy.trends = {{"inertia", "kg m^2", 1, 0.1, 0.02, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
+  CountInconstancy(constancy, fit);
+  // Of 0.078, 0.079 and 0.080 with errors of 1e-5: sqrt(1e-6 - 1e-10).
+  EXPECT_NEAR(*fit.Find("inertia")->systematic_std_error, std::hypot(of_rig, std::sqrt(1e-6 - 1e-10)), 1e-9);
+  EXPECT_EQ(fit.systematic_names, names);
+  EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), 1e-6 - 1e-10, 1e-12);
+  EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
+}
+
+TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
+  FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
+  Constancy constancy;
+  constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414},
+                      {"viscous", "s", 0.001, 0.001, 1e-5, 1e-5, 0}};
+  constancy.halves_p = 0;
+  CountInconstancy(constancy, fit);
+  EXPECT_NEAR(SystematicError(fit, "inertia"), 0.002 / std::sqrt(2), 1e-8);
+  EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
+  EXPECT_THAT(fit.warnings.back().message, HasSubstr("halves differ in inertia by 0.0014 s^2"));
+}
+
+}  // namespace
+}  // namespace pendulum::inconstancy_test
