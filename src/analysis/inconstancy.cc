@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pendulum/analysis/part_fit.h"
 #include "pendulum/analysis/random_effects.h"
 #include "pendulum/base/format.h"
 
@@ -44,6 +45,14 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
+/// Whether its halves or its windows say that this parameter by itself is no constant.
+bool Differs(const Constancy& constancy, std::string_view name) {
+  const auto half = std::ranges::find(constancy.halves, name, &HalvesRow::name);
+  const auto trend = std::ranges::find(constancy.trends, name, &AmplitudeTrend::name);
+  return (half != constancy.halves.end() && TwoSidedP(half->z) < kNotConstant) ||
+         (trend != constancy.trends.end() && trend->p < kNotConstant);
+}
+
 /// Adds a variance of the parameter that nothing else shares.
 void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
   parameter.systematic_std_error = std::hypot(parameter.systematic_std_error.value_or(0), std_dev);
@@ -62,6 +71,7 @@ void CountInconstancy(const Constancy& constancy, FitReport& fit) {
   if (constancy.constant()) return;
   std::string scatter;
   for (const Estimates& parts : EstimatesOfParts(constancy)) {
+    if (!Differs(constancy, parts.name)) continue;
     const double between = SummarizeScatter(parts.value, parts.std_error).between;
     const auto parameter = std::ranges::find(fit.parameters, parts.name,
                                              [](const ParameterEstimate& candidate) { return candidate.info.name; });

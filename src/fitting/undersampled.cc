@@ -213,11 +213,15 @@ std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector
 
 /// What rests on an assumption though it is told alone.
 std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed, double rate) {
+  constexpr double kSlowest = 0.05;  // Hz: a hundred metres of string
   const std::string chosen = ListOf({&aliases.front()});
   if (!allowed.bounded) {
+    const bool is_slow = aliases.front().frequency < kSlowest;
     return "sampled at " + Hz(rate) + " a pendulum faster than " + Hz(0.5 * rate) +
            " would look slower than it is; of those up to " + Hz(kFastestHz) + " none but " + chosen +
-           " explains the readings; a rig file with masses and length would settle it";
+           " explains the readings; " +
+           (is_slow ? "if the times are milliseconds, name their column time_ms"
+                    : "a rig file with masses and length would settle it");
   }
   return "samples at " + Hz(rate) + " tell frequencies to both sides of a multiple of " + Hz(0.5 * rate) +
          " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";

@@ -21,8 +21,9 @@ DEFINE_string(gravity, "", "Law of gravity's torque, sin or linear; default the 
 DEFINE_string(rig, "", "Rig file (JSON, SI units); without it torques and inertia are in units of the gravity torque.");
 DEFINE_string(set, "",
               "Parameters, name=value,... in SI: inertia (default the rig's), the model's friction (default 0), "
-              "release_angle and release_time or initial_angle and initial_rate, zero_angle or, for a rate, rate_bias "
-              "(default 0).");
+              "release_angle and release_time or initial_angle and initial_rate, zero_angle (default 0) or, "
+              "by --unit, rate_bias (default 0), rate_scale, acceleration_bias, acceleration_scale, axis, radius, "
+              "pivot_x, pivot_y.");
 DEFINE_string(
     spread, "",
     "Standard deviations, name=std_dev,... in SI, with which the truth of each recording scatters normally about "
@@ -42,7 +43,9 @@ DEFINE_double(duration, 20, "Length of the recording, s; default 20.");
 DEFINE_double(rate, 100, "Sampling rate, Hz; default 100.");
 DEFINE_double(start_time, 0, "Clock at the first sample, s; default 0.");
 DEFINE_double(jitter, 0, "Standard deviation of the sampling instants, s, which the stamps tell truly; default 0.");
-DEFINE_string(unit, "deg", "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro); default deg.");
+DEFINE_string(unit, "deg",
+              "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro), volts (gyro of unknown scale), m_s2 "
+              "(accelerometer), px or m (both coordinates of a point); default deg.");
 DEFINE_double(noise, 0, "Standard deviation of the noise before quantization, in --unit; default 0.");
 DEFINE_double(noise_correlation, 0, "AR(1): correlation of each sample's noise with the one before; default 0, white.");
 DEFINE_double(noise_freedom, 0,

@@ -111,8 +111,8 @@ TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
 TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   Constancy constancy;
-  constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414},
-                      {"viscous", "s", 0.001, 0.001, 1e-5, 1e-5, 0}};
+  // Friction by two of its errors: that may be chance.
+  constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   constancy.halves_p = 0;
   CountInconstancy(constancy, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), 0.002 / std::sqrt(2), 1e-8);

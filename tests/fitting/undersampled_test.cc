@@ -205,6 +205,18 @@ TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
   EXPECT_FALSE(result.swing.undersampled);
 }
 
+// Six seconds at 50 Hz, a thousand times as long.
+TEST(FitUndersampled, AsksWhetherTimesAreMilliseconds) {
+  SyntheticOptions run = Swing(50, 0.423, 1);
+  run.duration = 6;
+  Recording recording = Must(SimulateRecording(run));
+  recording.time *= 1000;
+  const SwingFit result = FitAsTheToolDoes(recording, std::nullopt, ModelOptions("viscous"));
+  EXPECT_THAT(
+      result.fit.warnings,
+      Contains(Field(&Warning::message, HasSubstr("if the times are milliseconds, name their column time_ms"))));
+}
+
 TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {
   const SwingFit result = FitSimulated(Swing(1.3, 0.423, 1, 0.13), TextbookRig(), "viscous");
   EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << result.fit.reason;

@@ -6,10 +6,11 @@
 
 namespace pendulum {
 
-/// Counts what is not constant where parameters are no constants of their recording: their standard errors say how well
-/// one value for all of it is known, and not by how much the next window or run will differ. The standard deviation
-/// between windows (between halves, where there are no windows) beyond their own errors, MODEL.md eq. (60), is added in
-/// squares to the systematic errors of `fit`, with the warning not_constant. Nothing where `constancy` is constant.
+/// Counts what is not constant: the standard error of a parameter that is no constant of its recording says how well one
+/// value for all of it is known, and not by how much the next window or run will differ. Where the parameter's own halves
+/// or its trend say so at kNotConstant, its standard deviation between windows (between halves, where there are no
+/// windows) beyond their errors, MODEL.md eq. (60), is added in squares to its systematic error in `fit`, with the
+/// warning not_constant.
 void CountInconstancy(const Constancy& constancy, FitReport& fit);
 
 }  // namespace pendulum
