@@ -59,7 +59,8 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>
     const double unit = ReportUnit(scenario, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
-    if (bounds[i]) parameter.bound = unit * *bounds[i];
+    // A bound takes for unknown what the fit holds.
+    if (bounds[i] && scenario.fit.fixed.empty()) parameter.bound = unit * *bounds[i];
     const ParameterEstimate* found = outcome.converged ? report->Find(infos[i].name) : nullptr;
     if (found != nullptr) AddEstimate(*found, parameter);
     outcome.parameters.push_back(parameter);

@@ -87,6 +87,15 @@ std::string Unexplained(const Work& work) {
   return left;
 }
 
+/// Which recording, by itself, has another solution that the others say nothing of.
+std::string Ambiguous(const Work& work) {
+  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
+    const FitReport& alone = *work.joint.members[k].alone;
+    if (alone.Warns("ambiguous_sensor")) return "recording " + std::to_string(k + 1) + ": " + alone.reason;
+  }
+  return "";
+}
+
 Ending EndOf(const Work& work) {
   if (const std::string left = Unexplained(work); !left.empty()) {
     const bool restricted = work.joint.members.front().problem->restricted;
@@ -104,6 +113,7 @@ Ending EndOf(const Work& work) {
     const std::string broken = BrokenOrder(*member.problem, member.solution.parameters);
     if (!broken.empty()) return {Termination::kNotIdentifiable, broken};
   }
+  if (std::string why = Ambiguous(work); !why.empty()) return {Termination::kNotIdentifiable, std::move(why)};
   if (const double shift = RemainingShift(work.optimum); !(shift <= kLargestShift)) {
     return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +
                                             " standard errors is left to make; shorter windows or another model may "

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/fit_jointly.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::rival_solutions_test {
@@ -75,6 +76,19 @@ TEST(RivalSolutions, FindsTheRadiusAcrossTheRodWithWhatIsKnownOfIt) {
     known.fixed["radius"] = 0.3;
     EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kConverged);
   }
+}
+
+// The other radius has the same small-angle frequency, so a second recording that is as ambiguous settles nothing.
+TEST(RivalSolutions, AreNotSettledByASecondRecordingLikeIt) {
+  FitOptions viscous;
+  viscous.model = "viscous";
+  const Recording first = Must(SimulateRecording(WithLittleFriction(1)));
+  const Recording second = Must(SimulateRecording(WithLittleFriction(2)));
+  const FitReport first_alone = Must(FitRecording(first, viscous)), second_alone = Must(FitRecording(second, viscous));
+  const std::vector<JointRun> runs = {{first, first_alone, viscous}, {second, second_alone, viscous}};
+  const JointFit fit = Must(FitJointly(runs, {"inertia", "viscous"}));
+  EXPECT_EQ(fit.whole.termination, Termination::kNotIdentifiable) << fit.whole.reason;
+  EXPECT_THAT(fit.whole.reason, HasSubstr("recording 1: with radius"));
 }
 
 }  // namespace
