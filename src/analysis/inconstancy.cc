@@ -71,21 +71,21 @@ void CountInconstancy(const Constancy& constancy, FitReport& fit) {
   if (constancy.constant()) return;
   std::string scatter;
   for (const Estimates& parts : EstimatesOfParts(constancy)) {
-    if (!Differs(constancy, parts.name)) continue;
-    const double between = SummarizeScatter(parts.value, parts.std_error).between;
     const auto parameter = std::ranges::find(fit.parameters, parts.name,
                                              [](const ParameterEstimate& candidate) { return candidate.info.name; });
-    if (!(between > 0) || !std::isfinite(between) || parameter == fit.parameters.end()) continue;
-    AddSystematic(*parameter, between, fit);
-    scatter += (scatter.empty() ? "" : " and ") + std::string(parts.name) + " by " + NumberText(between, 2) +
+    if (!Differs(constancy, parts.name) || parameter == fit.parameters.end()) continue;
+    const double about = ScatterAbout(parameter->estimate, parts.value, parts.std_error);
+    if (!(about > 0) || !std::isfinite(about)) continue;
+    AddSystematic(*parameter, about, fit);
+    scatter += (scatter.empty() ? "" : " and ") + std::string(parts.name) + " by " + NumberText(about, 2) +
                (parameter->unit == "1" ? "" : " " + parameter->unit);
   }
   if (scatter.empty()) return;
   const std::string parts = constancy.trends.empty() ? "halves" : "windows";
-  fit.warnings.push_back({"not_constant", "not constant over this recording: beyond the errors " + parts +
-                                              " differ in " + scatter +
-                                              ", and runs of other amplitudes by no less; the systematic " +
-                                              "errors count that, standard errors and intervals do not"});
+  const std::string which = "beyond the errors " + parts + " differ from the whole in " + scatter;
+  fit.warnings.push_back({"not_constant", "not constant over this recording: " + which +
+                                              ", and runs of other amplitudes will by no less; the systematic errors "
+                                              "count that, standard errors and intervals do not"});
 }
 
 }  // namespace pendulum

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -17,11 +18,13 @@ using Eigen::VectorXd;
 
 /// Runs with variances of their own and one between them.
 struct Scatter {
-  VectorXd value, variance;  // K
+  VectorXd value, variance;                     // K
+  std::optional<double> center = std::nullopt;  // Of all runs, where it is known.
 
   VectorXd Weights(double between) const { return (variance.array() + between).inverse(); }
 
   double Mean(double between) const {
+    if (center) return *center;
     const VectorXd weights = Weights(between);
     return weights.dot(value) / weights.sum();
   }
@@ -34,7 +37,7 @@ struct Scatter {
   /// The variance between runs at which the statistic is so large; 0 where it is never so large.
   double BetweenAt(double statistic) const {
     if (!(Statistic(0) > statistic)) return 0;
-    double highest = (value.array() - value.mean()).square().sum() / statistic;
+    double highest = (value.array() - center.value_or(value.mean())).square().sum() / statistic;
     while (Statistic(highest) >= statistic) highest *= 2;  // rounding, where errors are next to nothing
     std::uintmax_t most_steps = 200;
     const auto [low, high] =
@@ -63,6 +66,10 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
   const double upper = scatter.BetweenAt(boost::math::quantile(distribution, 0.025));
   effects.between_upper95 = upper > 0 ? std::sqrt(upper) : std::numeric_limits<double>::quiet_NaN();
   return effects;
+}
+
+double ScatterAbout(double center, const VectorXd& value, const VectorXd& std_error) {
+  return std::sqrt(Scatter{value, std_error.cwiseAbs2(), center}.BetweenAt(static_cast<double>(value.size())));
 }
 
 }  // namespace pendulum

@@ -50,25 +50,22 @@ TEST(Inconstancy, IsNothingWhereTheLawHolds) {
   EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
 }
 
-// Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A; the windows' standard deviation is
-// that of A² / 8.
-TEST(Inconstancy, IsTheStandardDeviationBetweenWindows) {
+// Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A.
+TEST(Inconstancy, IsTheStandardDeviationOfTheWindowsAboutTheWhole) {
   const FitOptions options = WithLinearGravity({});
   FittedRun run = FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options);
+  const ParameterEstimate whole = *run.fit.Find("inertia");
   const Constancy constancy = TestConstancy(run.recording, run.fit, options);
-  double sum = 0, sum_of_squares = 0;
+  double sum_of_squares = 0;
   for (const AmplitudeRow& row : constancy.windows) {
     const double inertia = 0.079 / kTextbookTorque * (1 + row.amplitude * row.amplitude / 8);
-    sum += inertia;
-    sum_of_squares += inertia * inertia;
+    sum_of_squares += std::pow(inertia - whole.estimate, 2);
   }
-  const auto count = static_cast<double>(constancy.windows.size());
-  const double expected = std::sqrt((sum_of_squares - sum * sum / count) / (count - 1));
-  const double std_error = *run.fit.Find("inertia")->std_error;
+  const double expected = std::sqrt(sum_of_squares / static_cast<double>(constancy.windows.size()));
   CountInconstancy(constancy, run.fit);
   EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
-  EXPECT_THAT(expected, Gt(10 * std_error));  // Without it the windows would contradict the whole.
-  EXPECT_EQ(*run.fit.Find("inertia")->std_error, std_error);
+  EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // Without it the windows would contradict the whole.
+  EXPECT_EQ(run.fit.Find("inertia")->std_error, whole.std_error);
 }
 
 // Each window's estimate lies within three total errors of the whole's.
@@ -86,7 +83,8 @@ TEST(Inconstancy, ExplainsHowWindowsDifferFromTheWhole) {
 TEST(Inconstancy, IsSaidWithItsSize) {
   const FittedRun run = Counted(NoisyTextbookRun("viscous"), WithLinearGravity({}));
   ASSERT_TRUE(run.fit.Warns("not_constant"));
-  EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("beyond the errors windows differ in inertia by 0.000"));
+  EXPECT_THAT(run.fit.warnings.back().message,
+              HasSubstr("beyond the errors windows differ from the whole in inertia by 0.000"));
 }
 
 // The rig's error is a factor that all torques share; this is the inertia's own.
@@ -100,11 +98,14 @@ TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
                        {5, 10, 0.3, 0.079, 1e-5, 0.003, 1e-5},
                        {10, 15, 0.2, 0.080, 1e-5, 0.003, 1e-5}};
   constancy.trends = {{"inertia", "kg m^2", 1, 0.1, 0.02, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
+  const double whole = fit.Find("inertia")->estimate;
   CountInconstancy(constancy, fit);
-  // Of 0.078, 0.079 and 0.080 with errors of 1e-5: sqrt(1e-6 - 1e-10).
-  EXPECT_NEAR(*fit.Find("inertia")->systematic_std_error, std::hypot(of_rig, std::sqrt(1e-6 - 1e-10)), 1e-9);
+  // Three values with the same error of 1e-5.
+  const double expected =
+      (std::pow(0.078 - whole, 2) + std::pow(0.079 - whole, 2) + std::pow(0.080 - whole, 2)) / 3 - 1e-10;
+  EXPECT_NEAR(*fit.Find("inertia")->systematic_std_error, std::sqrt(of_rig * of_rig + expected), 1e-9);
   EXPECT_EQ(fit.systematic_names, names);
-  EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), 1e-6 - 1e-10, 1e-12);
+  EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), expected, 1e-12);
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
 }
 
@@ -114,10 +115,11 @@ TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
   // Friction by two of its errors: that may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   constancy.halves_p = 0;
+  const double whole = fit.Find("inertia")->estimate;
   CountInconstancy(constancy, fit);
-  EXPECT_NEAR(SystematicError(fit, "inertia"), 0.002 / std::sqrt(2), 1e-8);
+  EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole) / std::sqrt(2), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
-  EXPECT_THAT(fit.warnings.back().message, HasSubstr("halves differ in inertia by 0.0014 s^2"));
+  EXPECT_THAT(fit.warnings.back().message, HasSubstr("halves differ from the whole in inertia by 0.0"));
 }
 
 }  // namespace

@@ -257,5 +257,29 @@ TEST(SummarizeScatter, CoversTheScatterBetweenRuns) {
   EXPECT_THAT(CoverageOf(kUnequalErrors, 0, 2000).between, AllOf(Gt(0.95), Le(0.99)));
 }
 
+// ---- About a known centre -------------------------------------------------------------------------------------------
+
+// Equal errors: K variance = Σ (value - centre)² / (error² + τ²) has a closed form.
+TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
+  const VectorXd value = Five({1.00, 1.07, 0.93, 1.12, 0.98});
+  const VectorXd std_error = VectorXd::Constant(5, 0.01);
+  const double squares = (value.array() - 0.95).square().sum();
+  EXPECT_THAT(ScatterAbout(0.95, value, std_error), DoubleNear(std::sqrt(squares / 5 - 1e-4), 1e-9));
+}
+
+TEST(ScatterAbout, IsZeroWhereErrorsExplainAll) {
+  const Effects agreeing = Agreeing();
+  EXPECT_EQ(ScatterAbout(1, agreeing.value, agreeing.std_error), 0);
+  EXPECT_THAT(ScatterAbout(1.1, agreeing.value, agreeing.std_error), Gt(0.09));  // All lie 0.1 below.
+}
+
+// Its defining equation, with errors that differ.
+TEST(ScatterAbout, MakesTheStatisticTheNumberOfValues) {
+  const Effects effects = Scattered();
+  const double about = ScatterAbout(1.05, effects.value, effects.std_error);
+  const ArrayXd weight = WeightsAt(effects, about * about);
+  EXPECT_THAT((weight * (effects.value.array() - 1.05).square()).sum(), DoubleNear(5, 1e-6));
+}
+
 }  // namespace
 }  // namespace pendulum::random_effects_test

@@ -55,6 +55,9 @@ REFERENCES = {
     "yfysiks_data32": Reference(11.5, END, (37.166, 0.0162), (37.222, 0.00592)),
 }
 
+# Two recordings each of one rig.
+PAIRS = [("stienen_Ea45", "stienen_Ef_R01"), ("cubli_PRINT_00", "cubli_PRINT_01"), ("jensen_01", "jensen_03")]
+
 # The potentiometer's line as its owners give it: angle = (V - 0.6945) 1.5769 / (0.9513 - 0.4708) rad.
 SLOPE = 1.5769 / (0.9513 - 0.4708)
 CALIBRATION = {"schema_version": 1, "input": "volts", "angle_unit": "rad", "coefficients": [-0.6945 * SLOPE, SLOPE]}
@@ -70,6 +73,20 @@ class Fit(NamedTuple):
     @property
     def gravity_over_inertia(self) -> float:
         return 1 / self.result["fits"][0]["parameters"]["inertia"]["estimate"]
+
+
+def inertia_of(result: dict) -> tuple[float, float]:
+    """Estimate, and standard and systematic error together."""
+    inertia = result["fits"][0]["parameters"]["inertia"]
+    return inertia["estimate"], math.hypot(inertia["std_error"], inertia["systematic_std_error"] or 0)
+
+
+def scatter_of_windows(result: dict) -> float:
+    """rms difference between windows of the recording and the whole, over the errors of both; 0 without windows."""
+    estimate, error = inertia_of(result)
+    windows = ((result["fits"][0]["constancy"] or {}).get("amplitude") or {}).get("windows", [])
+    squares = [(w["inertia"] - estimate) ** 2 / (error**2 + w["inertia_std_error"] ** 2) for w in windows]
+    return math.sqrt(sum(squares) / len(squares)) if squares else 0
 
 
 def rms_between(path: pathlib.Path, start: float, end: float) -> float:
@@ -108,6 +125,7 @@ class Recordings(unittest.TestCase):
         self.assertEqual(found.exit_code, 0, name)
         self.assertAlmostEqual(found.gravity_over_inertia / expected, 1, delta=0.01, msg=name)
         self.assertLessEqual(found.rms, 1.1 * rms, name)
+        self.assertLess(scatter_of_windows(found.result), 2, name)
         if reference.published:
             self.assertAlmostEqual(found.gravity_over_inertia / reference.published, 1, delta=0.01, msg=name)
         # Most of what the person took is in the window.
@@ -131,6 +149,17 @@ class Recordings(unittest.TestCase):
 
     def test_drag_finds_window_period_and_residuals_of_the_reference(self):
         self.check_all("drag")
+
+    def test_errors_explain_how_runs_of_one_rig_differ(self):
+        for pair in PAIRS:
+            inertias = []
+            for name in pair:
+                recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
+                with tempfile.TemporaryDirectory() as folder:
+                    found = fit(recording, "drag", REFERENCES[name], pathlib.Path(folder))
+                inertias.append(inertia_of(found.result))
+            (first, first_error), (second, second_error) = inertias
+            self.assertLess(abs(first - second), 3 * math.hypot(first_error, second_error), pair)
 
 
 if __name__ == "__main__":

@@ -8,9 +8,9 @@ namespace pendulum {
 
 /// Counts what is not constant: the standard error of a parameter that is no constant of its recording says how well one
 /// value for all of it is known, and not by how much the next window or run will differ. Where the parameter's own halves
-/// or its trend say so at kNotConstant, its standard deviation between windows (between halves, where there are no
-/// windows) beyond their errors, MODEL.md eq. (60), is added in squares to its systematic error in `fit`, with the
-/// warning not_constant.
+/// or its trend say so at kNotConstant, the standard deviation of the windows (of the halves, where there are no windows)
+/// about its estimate beyond their errors, as of MODEL.md eq. (60), is added in squares to its systematic error in
+/// `fit`, with the warning not_constant.
 void CountInconstancy(const Constancy& constancy, FitReport& fit);
 
 }  // namespace pendulum
