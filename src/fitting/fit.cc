@@ -265,6 +265,20 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
 
 }  // namespace
 
+FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces) {
+  FitOptions trial;
+  trial.model = "drag";
+  if (!recording.is_calibrated()) trial.gravity = Gravity::kLinear;
+  trial.start = options.start;
+  trial.max_traces = max_traces;
+  trial.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
+  trial.loss = options.loss;
+  trial.interval = IntervalMethod::kNone;
+  trial.threads = options.threads;
+  trial.stop = options.stop;
+  return trial;
+}
+
 tl::unexpected<Status> FitStopped() {
   return Error(
       StatusCode::kTryAgain,

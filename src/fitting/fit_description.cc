@@ -165,10 +165,6 @@ void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covar
 
 void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
                 FitReport& report) {
-  if (report.termination != Termination::kConverged) {
-    report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
-    return;
-  }
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   covariance(optimum.free, optimum.free) = errors.covariance;

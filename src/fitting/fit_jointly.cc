@@ -211,7 +211,7 @@ void SetReportsWithoutErrors(Work& work, JointFit& fit) {
     const JointMember& member = work.joint.members[k];
     FitReport report = work.descriptions[k].report;
     SetParameters(*member.recording, member.options, *member.problem, work.own_optima[k], member.solution, report);
-    SetDerived(*member.problem, work.own_optima[k], Errors{}, member.solution, report);
+    report.derived = DerivedQuantities(member.problem->infos, member.solution.parameters, nullptr, {});
     if (!work.optimum.inverse.identifiable) SetIdentifiability(*member.problem, work.own_optima[k], report);
     fit.runs.push_back(std::move(report));
   }

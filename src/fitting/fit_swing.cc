@@ -27,16 +27,8 @@ constexpr int kMostTraces = 60;
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
  public:
-  WindowTrials(Recording recording, const FitOptions& options) : recording_(std::move(recording)) {
-    options_.model = "drag";
-    if (!recording_.is_calibrated()) options_.gravity = Gravity::kLinear;
-    options_.start = options.start;
-    options_.max_traces = kMostTraces;
-    options_.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
-    options_.loss = options.loss;
-    options_.interval = IntervalMethod::kCovariance;
-    options_.stop = options.stop;
-  }
+  WindowTrials(Recording recording, const FitOptions& options)
+      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMostTraces)) {}
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
   double Rms(double begin, double end, double from, double to) {

@@ -194,11 +194,11 @@ FitReport Judge(const Recording& recording, const FitOptions& options, const Fit
   SetTermination(problem, *optimum, {shift, at_jump, PeriodsOf(problem, solution), described.correlated, on_kink},
                  report);
   SetParameters(recording, options, problem, *optimum, solution, report);
-  if (report.termination == Termination::kConverged) {
+  if (report.termination == Termination::kConverged && options.interval != IntervalMethod::kNone) {
     SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
               report);
   } else {
-    SetDerived(problem, *optimum, Errors{}, solution, report);
+    report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
   }
   const bool is_told = report.termination == Termination::kConverged || !optimum->inverse.identifiable;
   if (is_told) SetIdentifiability(problem, *optimum, report);

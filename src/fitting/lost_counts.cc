@@ -19,21 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr int kMostJumps = 60;
-
-FitOptions RichestLaw(const Recording& recording, const FitOptions& options) {
-  constexpr int kMostTraces = 200;
-  FitOptions richest;
-  richest.model = "drag";
-  if (!recording.is_calibrated()) richest.gravity = Gravity::kLinear;
-  richest.start = options.start;
-  richest.max_traces = kMostTraces;
-  richest.noise = options.loss == Loss::kNone ? NoiseChoice::kGaussian : NoiseChoice::kAuto;
-  richest.loss = options.loss;
-  richest.interval = IntervalMethod::kCovariance;
-  richest.threads = options.threads;
-  richest.stop = options.stop;
-  return richest;
-}
+constexpr int kMostTraces = 200;
 
 /// What a fit to readings that are moved back leaves of them, and of those that are not.
 struct Left {
@@ -237,7 +223,7 @@ std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions&
 
 std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
-  std::optional<Settled> settled = SettleSteps(recording, RichestLaw(recording, options));
+  std::optional<Settled> settled = SettleSteps(recording, TrialOptions(recording, options, kMostTraces));
   if (!settled || settled->steps.empty() || !settled->explain) return std::nullopt;
   const std::vector<ZeroStep>& steps = settled->steps;
   ZeroJumps jumps;

@@ -35,8 +35,9 @@ enum class NoiseChoice { kAuto, kGaussian, kQuantized, kEdges };
 enum class Loss { kNone, kHuber, kStudent };
 
 /// Where intervals come from. kAuto: covariance, but profiles where any parameter is at a bound or within three
-/// standard errors of one, and the posterior where counts hardly scatter.
-enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap };
+/// standard errors of one, and the posterior where counts hardly scatter. kNone: there are neither intervals nor
+/// errors.
+enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap, kNone };
 
 /// What FitRecording is to do. Values by name: SI with a rig (N m, kg m^2); torques and inertia in units of G without.
 struct FitOptions {
@@ -164,6 +165,10 @@ void WithdrawErrors(std::string_view why, FitReport& fit);
 
 /// `options` that ask for the kind of start and the noise family that `fit` came out with; a robust loss has its own.
 FitOptions AskAlike(const FitReport& fit, FitOptions options);
+
+/// Those of a quick fit whose residuals are to be looked at: by the richest law, without errors. Of `options` it has
+/// the start, the loss and how it may be stopped.
+FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces);
 
 /// What else a direct sensor's zero does.
 enum class ZeroMotion {

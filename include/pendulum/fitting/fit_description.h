@@ -46,7 +46,7 @@ void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Erro
 /// From the systematic covariance, P x P in the problem's units.
 void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covariance, FitReport& report);
 
-/// Natural frequency, damping and so on, with errors that follow; empty errors: without.
+/// Natural frequency, damping and so on, with errors that follow.
 void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
                 FitReport& report);
 
