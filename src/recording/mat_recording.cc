@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -21,6 +22,7 @@
 
 #include "in_child.h"
 #include "mat_columns.h"
+#include "mat_version_4.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
@@ -51,12 +53,24 @@ tl::unexpected<Status> NoVariable(const std::string& name, std::size_t at) {
                "the file is damaged: at byte " + std::to_string(at) + " no variable begins; save or copy it again");
 }
 
+Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& name) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    const std::optional<std::size_t> size = SizeOfVersion4(bytes.substr(at));
+    if (!size) return NoVariable(name, at);
+    if (*size > left) return CutOff(name, at, *size, left);
+    at += *size;
+  }
+  return {};
+}
+
 /// The variables of version 5 follow each other, each with its size before it: matio itself does not say when the last
 /// one is cut off.
 Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kOrderAt = 126;
   constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
   if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
+  if (SizeOfVersion4(bytes)) return CheckSizesOfVersion4(bytes, name);
   const bool is_little = bytes.substr(kOrderAt, 2) == "IM";
   const bool is_swapped = is_little != (std::endian::native == std::endian::little);
   for (std::size_t at = kHeaderBytes; at < bytes.size();) {

@@ -9,7 +9,7 @@
 
 namespace pendulum {
 
-/// Reads a recording from the bytes of a MAT-file of version 5 to 7.3. Columns are vectors and the columns of matrices
+/// Reads a recording from the bytes of a MAT-file of version 4 to 7.3. Columns are vectors and the columns of matrices
 /// under the names of their variables, fields of structures, and times and data of objects of class timeseries (R2010b
 /// and later), `ts.Time` and `ts.Data`; `t`, `time`, `tout` and a first column that increases are times in seconds,
 /// which only Simulink's (`tout`, a structure with `signals`) and a timeseries tell: others are warned of, and refused
