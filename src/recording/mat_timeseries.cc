@@ -200,8 +200,7 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
   const std::size_t rows = times->size();
   const std::optional<Spread> spread = SpreadOf(data->sizes, rows);
   if (!spread) return Unknown();
-  if (spread->columns > kMostColumns)
-    return Refusal("a timeseries of more than " + std::to_string(kMostColumns) + " columns");
+  if (spread->columns > kMostColumns) return Refusal("a timeseries of more than a hundred columns");
   for (double& time : *times) time = time * unit->factor / unit->divisor;
   std::vector<MatColumn> columns;
   columns.push_back({{name + ".Time", std::string(unit->meaning), name}, *std::move(times), !unit->name.empty()});
