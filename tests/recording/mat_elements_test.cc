@@ -88,7 +88,7 @@ TEST(ValueOf, ComplexAndCutOffIsNone) {
             Kind::kOther);
   const std::string bytes = MatOf({Matrix("m", 2, {1, 2, 3, 4})}, MAT_FT_MAT5, false).substr(136);
   for (std::size_t size = 1; size < bytes.size(); ++size) {
-    auto open = OpenMatrix(bytes.substr(0, size), false);
+    auto open = OpenMatrix(std::string_view(bytes).substr(0, size), false);
     EXPECT_TRUE(!open || ValueOf(*std::move(open), true).kind == Kind::kOther) << size;
   }
 }
