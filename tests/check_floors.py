@@ -38,6 +38,7 @@ LIBRARY_FLOORS = {
     "csv.h": {"batch"},
     "gflags": {"tools"},
     "glog": {"tools"},
+    "hdf5.h": {"recording"},
     "pendulum_logger": {"acquisition", "tools"},
     "matio.h": {"recording"},
     "nlohmann": {"base", "recording", "model", "report", "batch", "request", "service", "tools"},
@@ -45,6 +46,7 @@ LIBRARY_FLOORS = {
     "prometheus": {"service"},
     "sqlite3.h": {"batch"},
     "zip.h": {"recording"},
+    "zlib.h": {"recording"},
     "SQLiteCpp": {"batch"},
 }
 # Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.

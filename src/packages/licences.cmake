@@ -11,13 +11,15 @@ set(pendulum_third_parties
   libexpected-dev
   libgflags-dev
   libgoogle-glog-dev
+  libhdf5-dev
   libmatio-dev
   libsqlite3-dev
   libsqlitecpp-dev
   libssl-dev
   libzip4
   nlohmann-json3-dev
-  prometheus-cpp-dev)
+  prometheus-cpp-dev
+  zlib1g-dev)
 
 # The text of a file with a heading, appended to another file.
 function(append_licence file name licence)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "mat_version_4.h"
 #include "pendulum/base/file.h"
 
 namespace pendulum {
@@ -15,8 +16,10 @@ constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1A\n"sv;
 constexpr std::string_view kMat = "MATLAB "sv;
 
 /// MATLAB's own versions begin with a text of 116 bytes, "MATLAB 5.0 MAT-file, ..."; from 7.3 on HDF5 follows it.
+/// Version 4 begins with a variable.
 bool IsMat(std::string_view begin) {
   constexpr std::size_t kHeader = 128, kUserBlock = 512;
+  if (SizeOfVersion4(begin)) return true;
   if (!begin.starts_with(kMat) || begin.size() < kHeader) return false;
   const std::string_view text = begin.substr(0, kHeader - 12);
   if (text.find("MAT-file") == std::string_view::npos) return false;

@@ -8,12 +8,16 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <utility>
 
 #include <matio.h>
 #include <sys/resource.h>
 
+#include "mat_hdf5.h"
+#include "mat_subsystem.h"
+#include "mat_timeseries.h"
 #include "runs.h"
 
 namespace pendulum {
@@ -28,6 +32,8 @@ struct FreeVariable {
 
 /// The run of variables that belong to no structure or matrix with a time of its own.
 constexpr const char* kTopLevel = "top level";
+
+constexpr const char* kObject = "an object";
 
 std::string* complaint = nullptr;  // Where matio complains to; it has no other place to remember whom it speaks to.
 
@@ -104,7 +110,7 @@ std::string KindOf(const matvar_t& variable) {
     case MAT_C_SPARSE: return "sparse";
     case MAT_C_OBJECT:
     case MAT_C_FUNCTION:
-    case MAT_C_OPAQUE: return "an object";
+    case MAT_C_OPAQUE: return kObject;
     default: return "no vector";
   }
 }
@@ -112,17 +118,16 @@ std::string KindOf(const matvar_t& variable) {
 /// Puts the variables of a file into a table.
 class Collector {
  public:
-  explicit Collector(MatTable& table) : table_(table) {}
+  /// Objects are not its business.
+  Collector(MatTable& table, const std::vector<MatReference>& objects) : table_(table) {
+    for (const MatReference& object : objects) objects_.insert(object.place.substr(0, object.place.find('(')));
+  }
 
   void Add(const matvar_t& variable) {
-    // Of an object in version 5 the name is lost, or that of the system it belongs to; what it is made of has none.
-    const bool is_object = variable.class_type == MAT_C_OPAQUE;
-    if (is_object && (variable.name == nullptr || std::string_view(variable.name) == "MCOS")) {
-      table_.skipped.push_back({"", KindOf(variable)});
-      return;
-    }
-    if (variable.name == nullptr) return;
+    // Of objects matio knows no name, or that of the system they belong to.
+    if (variable.name == nullptr || variable.class_type == MAT_C_OPAQUE) return;
     const std::string name = variable.name;
+    if (name.empty() || objects_.contains(name)) return;
     const std::size_t before = table_.columns.size();
     if (variable.class_type == MAT_C_STRUCT) {
       AddStructure(variable, name, name);
@@ -131,7 +136,10 @@ class Collector {
     }
     const bool is_scalar = CountOf(variable) == 1 && variable.class_type >= MAT_C_DOUBLE;
     const bool is_plain = is_scalar && variable.class_type < MAT_C_FUNCTION;
-    if (table_.columns.size() == before && !is_plain) table_.skipped.push_back({name, KindOf(variable)});
+    if (table_.columns.size() == before && !is_plain) {
+      const std::string kind = KindOf(variable);
+      table_.skipped.push_back({name, kind, kind == kObject});
+    }
   }
 
  private:
@@ -254,118 +262,31 @@ class Collector {
   }
 
   MatTable& table_;
+  std::set<std::string> objects_;  // Names of variables.
   std::size_t depth_ = 0;
 };
 
 }  // namespace
 
-MatTable ReadMatTable(const std::string& path) {
+MatTable ReadMatTable(const std::string& path, std::string_view bytes) {
   MatTable table;
   complaint = &table.complaint;
   Mat_LogInitFunc("matio", TakeComplaint);
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const mat_ft version = file == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file.get());
+  std::function<MatSubsystem()> objects = [&] { return version == MAT_FT_MAT5 ? SubsystemOf(bytes) : MatSubsystem{}; };
+  if (version == MAT_FT_MAT73) objects = OpenHdf5(path);
   OpenNoMore();
   if (file == nullptr && table.complaint.empty()) table.complaint = "no MAT-file";
-  Collector collector(table);
-  while (file != nullptr) {
+  const MatSubsystem subsystem = objects();
+  Collector collector(table, subsystem.references);
+  for (std::size_t i = 0; file != nullptr && i < subsystem.variables; ++i) {
     const std::unique_ptr<matvar_t, FreeVariable> variable(Mat_VarReadNext(file.get()));
     if (variable == nullptr) break;
     collector.Add(*variable);
   }
   complaint = nullptr;
-  return table;
-}
-
-// ---- Between processes -------------------------------------------------------------------------------------------
-
-namespace {
-
-void PutSize(std::size_t size, std::string& bytes) {
-  const std::uint64_t number = size;
-  std::array<char, sizeof number> raw{};
-  std::memcpy(raw.data(), &number, sizeof number);
-  bytes.append(raw.data(), raw.size());
-}
-
-void PutText(const std::string& text, std::string& bytes) {
-  PutSize(text.size(), bytes);
-  bytes += text;
-}
-
-/// Takes things off the front of bytes; zeros where there are no more.
-class Taker {
- public:
-  explicit Taker(std::string_view bytes) : bytes_(bytes) {}
-
-  std::string_view Raw(std::size_t size) {
-    const std::string_view raw = bytes_.substr(0, size);
-    bytes_.remove_prefix(raw.size());
-    return raw;
-  }
-
-  std::size_t Size() {
-    std::uint64_t number = 0;
-    const std::string_view raw = Raw(sizeof number);
-    if (!raw.empty()) std::memcpy(&number, raw.data(), raw.size());
-    return number;
-  }
-
-  std::string Text() { return std::string(Raw(Size())); }
-
-  std::vector<double> Numbers() {
-    const std::string_view raw = Raw(Size());
-    std::vector<double> values(raw.size() / sizeof(double));
-    if (!values.empty()) std::memcpy(values.data(), raw.data(), values.size() * sizeof(double));
-    return values;
-  }
-
-  bool IsEmpty() const { return bytes_.empty(); }
-
- private:
-  std::string_view bytes_;
-};
-
-}  // namespace
-
-std::string Pack(const MatTable& table) {
-  std::string bytes;
-  PutText(table.complaint, bytes);
-  PutSize(table.skipped.size(), bytes);
-  for (const SkippedVariable& variable : table.skipped) {
-    PutText(variable.name, bytes);
-    PutText(variable.kind, bytes);
-  }
-  for (const MatColumn& column : table.columns) {
-    for (const std::string* text : {&column.name.written, &column.name.meaning, &column.name.run}) {
-      PutText(*text, bytes);
-    }
-    PutSize(column.is_unit_told ? 1 : 0, bytes);
-    const std::size_t size = column.values.size() * sizeof(double);
-    PutSize(size, bytes);
-    const std::size_t used = bytes.size();
-    bytes.resize(used + size);
-    if (size > 0) std::memcpy(bytes.data() + used, column.values.data(), size);
-  }
-  return bytes;
-}
-
-MatTable UnpackMatTable(std::string_view bytes) {
-  MatTable table;
-  Taker taker(bytes);
-  table.complaint = taker.Text();
-  for (std::size_t count = taker.Size(); count > 0 && !taker.IsEmpty(); --count) {
-    std::string name = taker.Text();
-    table.skipped.push_back({std::move(name), taker.Text()});
-  }
-  while (!taker.IsEmpty()) {
-    MatColumn column;
-    column.name.written = taker.Text();
-    column.name.meaning = taker.Text();
-    column.name.run = taker.Text();
-    column.is_unit_told = taker.Size() != 0;
-    column.values = taker.Numbers();
-    table.columns.push_back(std::move(column));
-  }
+  AddTimeseries(subsystem, table);
   return table;
 }
 

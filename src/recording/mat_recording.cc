@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -21,9 +22,11 @@
 
 #include "in_child.h"
 #include "mat_columns.h"
+#include "mat_version_4.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
+#include "runs.h"
 #include "to_angle.h"
 #include "to_recording.h"
 #include "write_all.h"
@@ -39,26 +42,43 @@ std::uint32_t NumberAt(std::string_view bytes, std::size_t at, bool is_swapped) 
   return is_swapped ? __builtin_bswap32(number) : number;
 }
 
+tl::unexpected<Status> CutOff(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
+  return Fault(name, "the file is cut off: the variable at byte " + std::to_string(at) + " has " +
+                         std::to_string(size) + " bytes, and " + std::to_string(left) +
+                         " are left; save or copy it again");
+}
+
+tl::unexpected<Status> NoVariable(const std::string& name, std::size_t at) {
+  return Fault(name,
+               "the file is damaged: at byte " + std::to_string(at) + " no variable begins; save or copy it again");
+}
+
+Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& name) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    const std::optional<std::size_t> size = SizeOfVersion4(bytes.substr(at));
+    if (!size) return NoVariable(name, at);
+    if (*size > left) return CutOff(name, at, *size, left);
+    at += *size;
+  }
+  return {};
+}
+
 /// The variables of version 5 follow each other, each with its size before it: matio itself does not say when the last
 /// one is cut off.
 Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kOrderAt = 126;
   constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
   if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
+  if (SizeOfVersion4(bytes)) return CheckSizesOfVersion4(bytes, name);
   const bool is_little = bytes.substr(kOrderAt, 2) == "IM";
   const bool is_swapped = is_little != (std::endian::native == std::endian::little);
   for (std::size_t at = kHeaderBytes; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
     const std::uint32_t type = left < kTagBytes ? 0 : NumberAt(bytes, at, is_swapped);
     const std::size_t size = left < kTagBytes ? 0 : NumberAt(bytes, at + 4, is_swapped);
-    const std::string place = "at byte " + std::to_string(at);
-    if (left < kTagBytes || size > left - kTagBytes) {
-      return Fault(name, "the file is cut off: the variable " + place + " has " + std::to_string(size) +
-                             " bytes, and " + std::to_string(left) + " are left; save or copy it again");
-    }
-    if (type != kMatrix && type != kCompressed) {
-      return Fault(name, "the file is damaged: " + place + " no variable begins; save or copy it again");
-    }
+    if (left < kTagBytes || size > left - kTagBytes) return CutOff(name, at, size, left);
+    if (type != kMatrix && type != kCompressed) return NoVariable(name, at);
     at += kTagBytes + size;
   }
   return {};
@@ -136,7 +156,7 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
                                             "); make room there, or name another folder in TMPDIR");
   }
   const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
-  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path())); }, limits);
+  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
   if (!packed) return NoTable(packed.error(), limits, name);
   MatTable table = UnpackMatTable(*packed);
   if (table.complaint.empty()) return table;
@@ -147,24 +167,45 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
+/// Of numbers, but not a vector of them.
+bool IsOfNumbers(const SkippedVariable& variable) {
+  const std::array kinds = {"a cell array", "complex", "sparse"};
+  return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
+}
+
+/// The variable that says why there is no column of angles; nullptr where the columns are to say it themselves.
+const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<csv::TableColumn>& columns,
+                                      const ReadOptions& options) {
+  const std::vector<SkippedVariable>& all = table.skipped;
+  const auto first = [&](const auto& is_it) {
+    const auto found = std::ranges::find_if(all, is_it);
+    return found == all.end() ? nullptr : &*found;
+  };
+  if (!options.value_column.empty()) {
+    return first([&](const SkippedVariable& each) { return each.name == options.value_column; });
+  }
+  if (!csv::CandidatesOf(columns, options.unit).empty()) return nullptr;
+  const auto tells_unit = [](const SkippedVariable& each) {
+    return IsOfNumbers(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
+  };
+  if (const SkippedVariable* const named = first(tells_unit); named != nullptr) return named;
+  const bool is_other = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
+  if (is_other && !options.unit.empty()) return nullptr;  // the only one may be it
+  if (const SkippedVariable* const object = first(&SkippedVariable::is_object); object != nullptr) return object;
+  return is_other || columns.empty() ? nullptr : first(IsOfNumbers);
+}
+
 /// What there is instead of a column of angles.
 Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                             const std::string& name, const ReadOptions& options) {
-  const std::string& asked = options.value_column;
-  const auto named = std::ranges::find(table.skipped, asked, &SkippedVariable::name);
-  const auto object = std::ranges::find(table.skipped, "an object", &SkippedVariable::kind);
-  const SkippedVariable* skipped = named != table.skipped.end() && !asked.empty() ? &*named : nullptr;
-  const bool has_candidate = !asked.empty() || !csv::CandidatesOf(columns, options.unit).empty();
-  if (skipped == nullptr && !has_candidate && object != table.skipped.end()) skipped = &*object;
-  if (skipped != nullptr && skipped->kind == "an object") {
-    const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
-    return Fault(name, which +
-                           " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: "
-                           "t = ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')");
-  }
+  const SkippedVariable* const skipped = WhatIsNoColumn(table, columns, options);
   if (skipped != nullptr) {
-    return Fault(name, "variable " + Quoted(skipped->name) + " is " + skipped->kind +
-                           "; a column is a vector of real numbers, or a matrix's or a structure's");
+    const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
+    return Fault(
+        name, which + " is " + skipped->kind +
+                  (skipped->is_object ? ", which only MATLAB can take apart; save its numbers, of a timeseries ts: t = "
+                                        "ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')"
+                                      : "; a column is a vector of real numbers, or a matrix's or a structure's"));
   }
   if (!columns.empty()) return {};
   std::string rest;

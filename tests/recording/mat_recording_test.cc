@@ -183,15 +183,51 @@ TEST(ReadMat, RefusesTwoCandidatesAndTwoTimes) {
               HasSubstr("could both be the time"));
 }
 
-TEST(ReadMat, ComplexAndSparseAreNoColumns) {
-  std::vector<double> zeros(8);
-  std::vector<double> values = Values();
+matvar_t* Complex(const char* name) {
+  std::vector<double> zeros(8), values = Values();
   mat_complex_split_t complex{values.data(), zeros.data()};
   std::size_t sizes[] = {8, 1};
-  EXPECT_THAT(FaultOf(MatOf({Matrix("t", 8, Times()),
-                             Mat_VarCreate("z_rad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX)}),
-                      Value("z_rad")),
-              HasSubstr("variable \"z_rad\" is complex"));
+  return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, &complex, MAT_F_COMPLEX);
+}
+
+matvar_t* CellArray(const char* name) {
+  std::size_t sizes[] = {1, 1};
+  matvar_t* cell = Matrix(nullptr, 8, Values());
+  return Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes, &cell, 0);
+}
+
+/// With one number, in the first row.
+matvar_t* Sparse(const char* name) {
+  double value = 1;
+  mat_uint32_t row = 0, begins[] = {0, 1};
+  mat_sparse_t sparse{1, &row, 1, begins, 2, 1, &value};
+  std::size_t sizes[] = {8, 1};
+  return Mat_VarCreate(name, MAT_C_SPARSE, MAT_T_DOUBLE, 2, sizes, &sparse, 0);
+}
+
+TEST_P(OfEveryVersion, CellsComplexAndSparseNumbersAreNoColumns) {
+  const auto sentence = [](const std::string& name, const std::string& kind) {
+    return "run.csv: variable \"" + name + "\" is " + kind +
+           "; a column is a vector of real numbers, or a matrix's or a structure's";
+  };
+  for (const ReadOptions& options : {ReadOptions(), Unit("rad"), Value("z_rad")}) {
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), Complex("z_rad")}, GetParam()), options),
+              sentence("z_rad", "complex"));
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), CellArray("z_rad")}, GetParam()), options),
+              sentence("z_rad", "a cell array"));
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), Sparse("z_rad")}, GetParam()), options),
+              sentence("z_rad", "sparse"));
+  }
+  EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), CellArray("phi")}, GetParam())), sentence("phi", "a cell array"));
+  EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), CellArray("phi"), Complex("z_rad")}, GetParam())),
+            sentence("z_rad", "complex"));
+}
+
+TEST_P(OfEveryVersion, CellsBesideAColumnAreNotInTheWay) {
+  ExpectTheRows(
+      RecordingOf(MatOf({Matrix("t", 8, Times()), CellArray("phi"), Matrix("y_rad", 8, Values())}, GetParam())));
+  ExpectTheRows(RecordingOf(MatOf({Matrix("t", 8, Times()), CellArray("phi"), Matrix("y", 8, Values())}, GetParam()),
+                            Unit("rad")));
 }
 
 /// A variable of class mxOPAQUE, by hand as MATLAB writes a timeseries; its elements are tag, size and bytes.
@@ -218,16 +254,19 @@ std::string Timeseries(const std::string& name) {
 
 TEST(ReadMat, SaysHowToSaveATimeseries) {
   const std::string advice =
-      " is an object, such as a timeseries, which only MATLAB can take apart; save its numbers: t = ts.Time; "
-      "angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')";
-  for (const char* const name : {"ts", "pendulum"}) {
-    EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), "run.csv: a variable" + advice);
-    EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), "run.csv: a variable" + advice);
+      ", which only MATLAB can take apart; save its numbers, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+      "save('run.mat', 't', 'angle_deg')";
+  for (const std::string name : {"ts", "pendulum"}) {
+    const std::string fault = "run.csv: variable \"" + name +
+                              "\" is a timeseries that is damaged, or from a version of MATLAB that is not known" +
+                              advice;  // as there are no objects in the file
+    EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), fault);
+    EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), fault);
   }
   std::string object = MatOf({Matrix("ts", 8, Values()), Matrix("t_s", 8, Times())}, MAT_FT_MAT5, false);
   object[kClassAt] = 3;  // mxOBJECT
-  EXPECT_EQ(FaultOf(object), "run.csv: variable \"ts\"" + advice);
-  EXPECT_EQ(FaultOf(object, Value("ts", "deg")), "run.csv: variable \"ts\"" + advice);
+  EXPECT_EQ(FaultOf(object), "run.csv: variable \"ts\" is an object" + advice);
+  EXPECT_EQ(FaultOf(object, Value("ts", "deg")), "run.csv: variable \"ts\" is an object" + advice);
 }
 
 TEST(ReadMat, AnObjectBesideVectorsIsNoDamage) {

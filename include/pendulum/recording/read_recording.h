@@ -28,7 +28,7 @@ struct ReadOptions {
 
 /// Reads a recording from a file; "-" is standard input. What it is its content tells: CSV, also as phyphox, Tracker,
 /// Logger Pro, Graphical Analysis, Capstone and ROS export it; a zip file with one of these in it (--value_column
-/// "FILE/COLUMN" names one); a MAT-file of version 5 to 7.3. Cost: one pass, 16 bytes a row and one block; zip and MAT
+/// "FILE/COLUMN" names one); a MAT-file of version 4 to 7.3. Cost: one pass, 16 bytes a row and one block; zip and MAT
 /// files are in memory as a whole, and a MAT-file is read in a process of its own.
 ///
 /// In CSV the first line names the columns: time `time_s`, `time_ms` or `time_us`, the quantity by its suffix `_rad`,

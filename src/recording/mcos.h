@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The table of objects that a MAT-file of MATLAB's keeps in its subsystem. The MathWorks do not describe it; what is
+/// known comes from files, so whatever does not fit makes the whole table unreadable.
+namespace pendulum {
+
+/// A property that was not left at its default.
+struct McosProperty {
+  enum class Kind { kEnumeration = 0, kCell = 1, kNumber = 2 };
+  std::size_t name = 0;
+  Kind kind = Kind::kCell;
+  std::size_t value = 0;  // kCell: the place among all cells, kEnumeration: a name, kNumber: that.
+};
+
+/// The table in cell 0. Names, classes and objects are numbered from 1 on; 0 is none.
+class Mcos {
+ public:
+  /// `cells` is the number of cells beside which the table stands. None where it contradicts itself.
+  static std::optional<Mcos> Read(std::string_view bytes, std::size_t cells);
+
+  std::size_t classes() const { return classes_.size(); }  // One more than there are.
+  std::size_t objects() const { return objects_.size(); }  // One more than there are.
+  std::string ClassName(std::size_t class_id) const;       // With its packages: tsdata.timemetadata.
+  /// 0 for what is no object.
+  std::size_t ClassOf(std::size_t object) const;
+  /// By its name; nullptr where it is at its default.
+  const McosProperty* Find(std::size_t object, std::string_view name) const;
+  const std::string& Name(std::size_t name) const { return names_[name]; }
+
+ private:
+  using Words = std::vector<std::uint32_t>;
+  using Properties = std::vector<McosProperty>;
+  struct Class {
+    std::size_t package = 0, name = 0;
+  };
+  struct Object {
+    std::size_t class_id = 0, saved = 0, normal = 0;
+  };
+
+  bool TakeNames(std::string_view bytes, std::size_t count);
+  bool TakeClasses(const Words& words);
+  bool TakeObjects(const Words& words);
+  bool TakeProperties(const Words& words, std::size_t end_of_cells, std::vector<Properties>& blocks) const;
+
+  std::vector<std::string> names_;
+  std::vector<Class> classes_;
+  std::vector<Object> objects_;
+  std::vector<Properties> saved_, normal_;  // Of objects of classes with a function saveobj, and of the others.
+};
+
+}  // namespace pendulum
