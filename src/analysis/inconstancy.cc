@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "pendulum/analysis/part_fit.h"
 #include "pendulum/analysis/random_effects.h"
 #include "pendulum/base/format.h"
 
@@ -45,11 +44,10 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
-/// Whether its halves or its windows say that this parameter by itself is no constant.
-bool Differs(const Constancy& constancy, std::string_view name) {
-  const auto half = std::ranges::find(constancy.halves, name, &HalvesRow::name);
-  const auto trend = std::ranges::find(constancy.trends, name, &AmplitudeTrend::name);
-  return (half != constancy.halves.end() && TwoSidedP(half->z) < kNotConstant) ||
+/// Whether these parts, or the trend with amplitude, say that this parameter by itself is no constant.
+bool Differs(const Constancy& constancy, const Estimates& parts) {
+  const auto trend = std::ranges::find(constancy.trends, parts.name, &AmplitudeTrend::name);
+  return ScatterP(parts.value, parts.std_error) < kNotConstant ||
          (trend != constancy.trends.end() && trend->p < kNotConstant);
 }
 
@@ -73,7 +71,7 @@ void CountInconstancy(const Constancy& constancy, FitReport& fit) {
   for (const Estimates& parts : EstimatesOfParts(constancy)) {
     const auto parameter = std::ranges::find(fit.parameters, parts.name,
                                              [](const ParameterEstimate& candidate) { return candidate.info.name; });
-    if (!Differs(constancy, parts.name) || parameter == fit.parameters.end()) continue;
+    if (!Differs(constancy, parts) || parameter == fit.parameters.end()) continue;
     const double about = ScatterAbout(parameter->estimate, parts.value, parts.std_error);
     if (!(about > 0) || !std::isfinite(about)) continue;
     AddSystematic(*parameter, about, fit);

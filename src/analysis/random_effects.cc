@@ -68,6 +68,11 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
   return effects;
 }
 
+double ScatterP(const VectorXd& value, const VectorXd& std_error) {
+  const boost::math::chi_squared distribution(static_cast<double>(value.size() - 1));
+  return boost::math::cdf(boost::math::complement(distribution, Scatter{value, std_error.cwiseAbs2()}.Statistic(0)));
+}
+
 double ScatterAbout(double center, const VectorXd& value, const VectorXd& std_error) {
   return std::sqrt(Scatter{value, std_error.cwiseAbs2(), center}.BetweenAt(static_cast<double>(value.size())));
 }

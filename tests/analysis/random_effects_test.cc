@@ -257,6 +257,14 @@ TEST(SummarizeScatter, CoversTheScatterBetweenRuns) {
   EXPECT_THAT(CoverageOf(kUnequalErrors, 0, 2000).between, AllOf(Gt(0.95), Le(0.99)));
 }
 
+// ---- By chance -----------------------------------------------------------------------------------------------------
+
+// χ² of two degrees of freedom is above x with probability exp(-x / 2); here x = 2 · 2.5².
+TEST(ScatterP, HasAClosedFormForThreeValues) {
+  const VectorXd value = Eigen::Vector3d(1 - 0.025, 1, 1 + 0.025), std_error = Eigen::Vector3d::Constant(0.01);
+  EXPECT_THAT(ScatterP(value, std_error), DoubleNear(std::exp(-2.5 * 2.5), 1e-12));
+}
+
 // ---- About a known centre -------------------------------------------------------------------------------------------
 
 // Equal errors: K variance = Σ (value - centre)² / (error² + τ²) has a closed form.

@@ -6,11 +6,11 @@
 
 namespace pendulum {
 
-/// Counts what is not constant: the standard error of a parameter that is no constant of its recording says how well one
-/// value for all of it is known, and not by how much the next window or run will differ. Where the parameter's own halves
-/// or its trend say so at kNotConstant, the standard deviation of the windows (of the halves, where there are no windows)
-/// about its estimate beyond their errors, as of MODEL.md eq. (60), is added in squares to its systematic error in
-/// `fit`, with the warning not_constant.
+/// Counts what is not constant: the standard error of a parameter that is no constant of its recording says how well
+/// one value for all of it is known, and not by how much the next window or run will differ. Where its windows (its
+/// halves, where there are no windows) scatter by more than their errors, or follow the amplitude, at kNotConstant,
+/// their standard deviation about its estimate beyond their errors, as of MODEL.md eq. (60), is added in squares to its
+/// systematic error in `fit`, with the warning not_constant.
 void CountInconstancy(const Constancy& constancy, FitReport& fit);
 
 }  // namespace pendulum

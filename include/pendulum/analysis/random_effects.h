@@ -20,6 +20,10 @@ struct RandomEffects {
 /// of freedom (MODEL.md eq. (60) and (61)).
 RandomEffects SummarizeScatter(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
 
+/// Probability that K >= 2 values scatter by as much through their errors alone (W. G. Cochran, Biometrics 10:101,
+/// 1954; MODEL.md eq. (58) for one parameter).
+double ScatterP(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
+
 /// The standard deviation about `center`, beyond their errors, of K >= 1 values: what makes the statistic of Paule and
 /// Mandel K with `center` in the mean's place; 0 where the errors explain all.
 double ScatterAbout(double center, const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
