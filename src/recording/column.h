@@ -51,6 +51,9 @@ constexpr std::array kUnits = {
     Unit{"m", Kind::kLength, "m"},
 };
 
+/// How the name of the column of a quantity may end.
+inline constexpr std::string_view kSuffixes = "_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm";
+
 /// Small letters, and what stands in ASCII for ° and for the two code points of µ.
 inline std::string PlainName(std::string_view name) {
   struct Spelling {

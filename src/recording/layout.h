@@ -16,9 +16,6 @@
 /// Which columns of a file are the time and the quantity, by its header and by what the user says.
 namespace pendulum::csv {
 
-/// How the name of a column may end.
-inline constexpr std::string_view kSuffixes = "_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm";
-
 struct Column {
   std::size_t index = 0;
   std::string name;  // As a message shows it.

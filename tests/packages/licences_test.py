@@ -16,7 +16,7 @@ import empty_root
 import packed
 
 SOURCES = empty_root.TOP / "src"
-PLACES = [pathlib.Path("/usr/include"), pathlib.Path("/usr/include/eigen3")]
+PLACES = [pathlib.Path("/usr/include" + folder) for folder in ("", "/eigen3", "/hdf5/serial")]
 # The compiler's, which every program has: their licences allow that without saying so (GCC Runtime Library Exception).
 COMPILERS = {"gcc-12", "glibc", "linux"}
 # What Ceres, a static library, brings along as shared ones: they are named in a sentence, and packages with licences of

@@ -69,8 +69,8 @@ TEST(ForeignFormats, TheUserChoosesAmongColumns) {
 TEST(ForeignFormats, NamesThatTellNoUnitNeedOne) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
   EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
-            "run.csv:1:3: column \"x\" does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts or "
-            "_volts, or give --unit");
+            "run.csv:1:3: column \"x\" does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
+            "_volts, _m_s2, _px, _m, _cm or _mm, or give --unit");
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "x", "deg")), kDegree);
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "", "deg")), kDegree);
   ExpectTheRows(RecordingOf("t_ms,x\n" + Rows("{t},{v}"), TimeAndValue("t_ms", "", "deg")), kDegree);

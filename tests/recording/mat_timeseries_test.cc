@@ -55,7 +55,7 @@ TEST_P(OfEveryWay, TheUnitIsThatOfTheDataOrOfAName) {
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "angle_deg"))), kDegree);
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "ts")), Unit("deg")), kDegree);
   EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "ts"))),
-              HasSubstr("none of the columns \"ts.Time\", \"ts.Data\" is an angle or a rate"));
+              HasSubstr("none of the columns \"ts.Time\", \"ts.Data\" is an angle, a rate or another"));
   series.name = "angle_deg";
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "ts"))), kDegree);
   for (const char* const unit : {"deg", "degrees"}) {
@@ -65,7 +65,7 @@ TEST_P(OfEveryWay, TheUnitIsThatOfTheDataOrOfAName) {
     EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("tells two units"));
   }
   series.data_unit = "N*m";
-  EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("is an angle or a rate"));
+  EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("is an angle, a rate or another"));
 }
 
 TEST_P(OfEveryWay, TimesAreListedOrUniformInTheirUnit) {
