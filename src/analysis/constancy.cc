@@ -119,7 +119,8 @@ std::string DescribeTrend(const AmplitudeTrend& trend) {
                               ? "the period depends on amplitude in another way than the model's"
                               : "friction depends on amplitude in another way than the model's, or on time";
   return trend.name + change + NumberText(100 * std::abs(trend.span), 2) +
-         " % from the largest to the smallest swings (p " + ProbabilityText(trend.p) + "): " + why;
+         " % from the largest to the smallest swings, by a line in amplitude² (p " + ProbabilityText(trend.p) +
+         "): " + why;
 }
 
 std::string Describe(const Constancy& result) {

@@ -21,40 +21,38 @@ using Eigen::VectorXd;
 struct Estimates {
   std::string_view name;
   VectorXd value, std_error;  // K
+  double p_of_trend = 1;      // With amplitude.
+  std::string_view parts = "windows";
 };
 
-/// Those of the windows; where there are none, of the halves.
-std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
-  std::vector<Estimates> all;
-  const auto count = static_cast<Index>(constancy.windows.size());
-  for (const AmplitudeTrend& trend : constancy.trends) {
-    const bool is_inertia = trend.name == kInertia.name;
-    Estimates& own = all.emplace_back(Estimates{trend.name, VectorXd(count), VectorXd(count)});
-    for (Index w = 0; w < count; ++w) {
-      const AmplitudeRow& row = constancy.windows[static_cast<std::size_t>(w)];
-      own.value[w] = is_inertia ? row.inertia : row.friction;
-      own.std_error[w] = is_inertia ? row.inertia_std_error : row.friction_std_error;
-    }
+Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>& windows) {
+  const auto count = static_cast<Index>(windows.size());
+  Estimates estimates{trend.name, VectorXd(count), VectorXd(count), trend.p};
+  const bool is_inertia = trend.name == kInertia.name;
+  for (Index w = 0; w < count; ++w) {
+    const AmplitudeRow& row = windows[static_cast<std::size_t>(w)];
+    estimates.value[w] = is_inertia ? row.inertia : row.friction;
+    estimates.std_error[w] = is_inertia ? row.inertia_std_error : row.friction_std_error;
   }
-  if (!all.empty()) return all;
-  for (const HalvesRow& row : constancy.halves) {
-    all.push_back(
-        {row.name, Eigen::Vector2d(row.first, row.second), Eigen::Vector2d(row.first_std_error, row.second_std_error)});
-  }
-  return all;
+  return estimates;
 }
 
-/// Whether these parts, or the trend with amplitude, say that this parameter by itself is no constant.
-bool Differs(const Constancy& constancy, const Estimates& parts) {
-  const auto trend = std::ranges::find(constancy.trends, parts.name, &AmplitudeTrend::name);
-  return ScatterP(parts.value, parts.std_error) < kNotConstant ||
-         (trend != constancy.trends.end() && trend->p < kNotConstant);
+/// Of each parameter the windows' estimates, and the halves' where windows have none.
+std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
+  std::vector<Estimates> all;
+  for (const AmplitudeTrend& trend : constancy.trends) all.push_back(OfWindows(trend, constancy.windows));
+  for (const HalvesRow& row : constancy.halves) {
+    if (std::ranges::find(all, row.name, &Estimates::name) != all.end()) continue;
+    all.push_back({row.name, Eigen::Vector2d(row.first, row.second),
+                   Eigen::Vector2d(row.first_std_error, row.second_std_error), 1, "halves"});
+  }
+  return all;
 }
 
 /// Adds a variance of the parameter that nothing else shares.
 void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
   parameter.systematic_std_error = std::hypot(parameter.systematic_std_error.value_or(0), std_dev);
-  auto place = std::ranges::find(fit.systematic_names, parameter.info.name);
+  const auto place = std::ranges::find(fit.systematic_names, parameter.info.name);
   const Index row = place - fit.systematic_names.begin();
   if (place == fit.systematic_names.end()) {
     fit.systematic_names.emplace_back(parameter.info.name);
@@ -66,24 +64,23 @@ void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit)
 }  // namespace
 
 void CountInconstancy(const Constancy& constancy, FitReport& fit) {
-  if (constancy.constant()) return;
   std::string scatter;
-  for (const Estimates& parts : EstimatesOfParts(constancy)) {
-    const auto parameter = std::ranges::find(fit.parameters, parts.name,
+  for (const Estimates& estimates : EstimatesOfParts(constancy)) {
+    const auto parameter = std::ranges::find(fit.parameters, estimates.name,
                                              [](const ParameterEstimate& candidate) { return candidate.info.name; });
-    if (!Differs(constancy, parts) || parameter == fit.parameters.end()) continue;
-    const double about = ScatterAbout(parameter->estimate, parts.value, parts.std_error);
+    const bool differs =
+        ScatterP(estimates.value, estimates.std_error) < kNotConstant || estimates.p_of_trend < kNotConstant;
+    if (!differs || parameter == fit.parameters.end()) continue;
+    const double about = ScatterAbout(parameter->estimate, estimates.value, estimates.std_error);
     if (!(about > 0) || !std::isfinite(about)) continue;
     AddSystematic(*parameter, about, fit);
-    scatter += (scatter.empty() ? "" : " and ") + std::string(parts.name) + " by " + NumberText(about, 2) +
-               (parameter->unit == "1" ? "" : " " + parameter->unit);
+    scatter += (scatter.empty() ? "" : ", ") + std::string(parameter->info.name) + " by " + NumberText(about, 2) +
+               (parameter->unit == "1" ? "" : " " + parameter->unit) + " between " + std::string(estimates.parts);
   }
   if (scatter.empty()) return;
-  const std::string parts = constancy.trends.empty() ? "halves" : "windows";
-  const std::string which = "beyond the errors " + parts + " differ from the whole in " + scatter;
-  fit.warnings.push_back({"not_constant", "not constant over this recording: " + which +
-                                              ", and runs of other amplitudes will by no less; the systematic errors "
-                                              "count that, standard errors and intervals do not"});
+  fit.warnings.push_back({"not_constant", "not constant over this recording, beyond the errors: " + scatter +
+                                              "; another run may differ by about as much, which the systematic errors "
+                                              "count and standard errors and intervals do not"});
 }
 
 }  // namespace pendulum

@@ -69,12 +69,14 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
 }
 
 double ScatterP(const VectorXd& value, const VectorXd& std_error) {
+  const double statistic = Scatter{value, std_error.cwiseAbs2()}.Statistic(0);
+  if (!std::isfinite(statistic)) return std::numeric_limits<double>::quiet_NaN();
   const boost::math::chi_squared distribution(static_cast<double>(value.size() - 1));
-  return boost::math::cdf(boost::math::complement(distribution, Scatter{value, std_error.cwiseAbs2()}.Statistic(0)));
+  return boost::math::cdf(boost::math::complement(distribution, statistic));
 }
 
 double ScatterAbout(double center, const VectorXd& value, const VectorXd& std_error) {
-  return std::sqrt(Scatter{value, std_error.cwiseAbs2(), center}.BetweenAt(static_cast<double>(value.size())));
+  return std::sqrt(Scatter{value, std_error.cwiseAbs2(), center}.BetweenAt(static_cast<double>(value.size() - 1)));
 }
 
 }  // namespace pendulum

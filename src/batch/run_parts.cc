@@ -72,6 +72,20 @@ void AddChecks(const Recording& used, RunReport& report) {
   }
 }
 
+namespace {
+
+/// The rig's geometry is rough, but not by so much.
+void WarnOfFrequency(const Sampling& sampling, RunReport& report) {
+  constexpr double kFar = 2;
+  const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
+  if (!(seen > 0) || (seen < kFar * expected && expected < kFar * seen)) return;
+  report.warnings.push_back({"rig_frequency", "it swings at " + NumberText(seen, 3) +
+                                                  " Hz, and the rig's inertia lets " + NumberText(expected, 3) +
+                                                  " Hz expect; check the unit of time, and the rig's units (SI)"});
+}
+
+}  // namespace
+
 void AddSampling(const FreeSwing& swing, const Recording& used, RunReport& report) {
   const double clock_scale = used.clock_scale;
   double half_period = swing.half_period;
@@ -84,6 +98,7 @@ void AddSampling(const FreeSwing& swing, const Recording& used, RunReport& repor
       swing.undersampled && !report.fits.empty() && ExitCode(report.fits[report.MainFit()].termination) == 0;
   if (expected && told) expected = 0.5 / swing.half_period;
   report.sampling = DescribeSampling(used, seen, expected);
+  WarnOfFrequency(*report.sampling, report);
   if (swing.undersampled || used.edge) return;  // events have no sampling rate
   std::ranges::move(SamplingWarnings(*report.sampling), std::back_inserter(report.warnings));
 }

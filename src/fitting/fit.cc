@@ -232,7 +232,6 @@ void ConcludeFromProfiles(const FitProblem& problem, FitReport& report) {
       "and has many; say what is known with --prior, as radius=r:std_dev";
 }
 
-/// The report, unless the fit is stopped: then it may be half made.
 /// Takes the recording to begin so, where that is better; where release_time is fixed it may not be possible.
 void TryStart(StartChoice start, const Recording& recording, FitOptions options, Attempt& attempt) {
   options.start = start;
@@ -241,6 +240,7 @@ void TryStart(StartChoice start, const Recording& recording, FitOptions options,
   }
 }
 
+/// The report, unless the fit is stopped: then it may be half made.
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = TrySensorStarts(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());

@@ -232,7 +232,7 @@ void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& resul
   const double length = swing.to - swing.from;
   for (int trial = 0; trial < kMostTrials && doubtful; ++trial) {
     shorter.to = std::min(std::nexttoward(*doubtful, swing.from), shorter.to - kStep * length);
-    shorter.ends = "counts that were lost behind it cannot be told";
+    shorter.ends = "behind it counts were lost, and how many cannot be told";
     if (shorter.to - swing.from < kLeast * length) return;
     Result<SwingFit> part = FitBetween(result.used, shorter, options);
     std::optional<ZeroJumps> found = part ? FindZeroJumps(part->used, options) : std::nullopt;

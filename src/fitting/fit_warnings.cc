@@ -117,7 +117,8 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
 }
 
 /// The prior against what the recording alone would say, which prior and estimate tell: with variances s² of the
-/// estimate and p² of the prior, the recording's own is 1 / (1/s² - 1/p²).
+/// estimate and p² of the prior, the recording's own is 1 / (1/s² - 1/p²). Where s is no less than p, for the law does
+/// not fit, that is no variance: then the estimate is compared with the prior alone.
 void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
                   std::vector<Warning>& warnings) {
   constexpr double kFar = 3;  // standard deviations of their difference
@@ -125,13 +126,13 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
     const ParameterEstimate& parameter = report.parameters[prior.parameter];
     if (!parameter.std_error) continue;
     const double error = *parameter.std_error / problem.si_per_internal[prior.parameter] * prior.weight;  // s / p
-    const double own = 1 / std::max(1 / (error * error) - 1, 1e-9);                                       // in p²
+    const double own = error < 1 ? 1 / (1 / (error * error) - 1) : 0;                                     // in p²
     const double distance =
         std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight * std::sqrt(1 + own);
     if (!(distance > kFar)) continue;
-    warnings.push_back({"prior_conflict", "the prior on " + std::string(parameter.info.name) +
-                                              " and the recording disagree by " + NumberText(distance, 3) +
-                                              " standard deviations of their difference; look at --prior"});
+    warnings.push_back({"prior_conflict", "what is known of " + std::string(parameter.info.name) +
+                                              " beforehand (--prior) and the recording disagree by " +
+                                              NumberText(distance, 3) + " standard deviations of their difference"});
   }
 }
 

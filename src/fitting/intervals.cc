@@ -255,7 +255,7 @@ void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& re
   switch (fitted.options.interval) {
     case IntervalMethod::kBootstrap: return SetBootstrapIntervals(fitted, report);
     case IntervalMethod::kProfile: return SetProfileIntervals(fitted, report);
-    case IntervalMethod::kNone: return;
+    case IntervalMethod::kNone:
     case IntervalMethod::kCovariance: break;
     case IntervalMethod::kAuto:
       if (IsNearBound(fitted.problem.solve, fitted.optimum, fitted.solution.parameters, errors.covariance)) {

@@ -243,7 +243,7 @@ std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOpti
   }
   jumps.corrected = std::move(settled->corrected);
   jumps.message +=
-      ": counts were lost; the readings after it are moved back by as much, in all that follows and in the series";
+      ": counts were lost; the readings after each are moved back by as much, in all that follows and in the series";
   return jumps;
 }
 

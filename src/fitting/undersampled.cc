@@ -213,15 +213,11 @@ std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector
 
 /// What rests on an assumption though it is told alone.
 std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed, double rate) {
-  constexpr double kSlowest = 0.05;  // Hz: a hundred metres of string
   const std::string chosen = ListOf({&aliases.front()});
   if (!allowed.bounded) {
-    const bool is_slow = aliases.front().frequency < kSlowest;
     return "sampled at " + Hz(rate) + " a pendulum faster than " + Hz(0.5 * rate) +
            " would look slower than it is; of those up to " + Hz(kFastestHz) + " none but " + chosen +
-           " explains the readings; " +
-           (is_slow ? "if the times are milliseconds, name their column time_ms"
-                    : "a rig file with masses and length would settle it");
+           " explains the readings; a rig file with masses and length would settle it";
   }
   return "samples at " + Hz(rate) + " tell frequencies to both sides of a multiple of " + Hz(0.5 * rate) +
          " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";
@@ -282,6 +278,19 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
+/// What makes a recording that shows each swing seem undersampled; empty where it may be.
+std::string AbsurdPeriod(const Recording& recording) {
+  constexpr double kLongest = 300;  // s: twenty kilometres of string
+  constexpr double kSeen = 20;      // samples a period, which a faster swing would hardly look like
+  const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
+  if (!swings || swings->empty()) return "";
+  const double period = 2 * swings->front().half_period * recording.clock_scale;
+  if (!(period > kLongest) || SampleRateOf(recording) * period < kSeen) return "";
+  return "the period is " + NumberText(period, 3) +
+         " s, which no pendulum has; if the times are milliseconds or microseconds, name their column time_ms or "
+         "time_us";
+}
+
 }  // namespace
 
 std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
@@ -318,6 +327,11 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   if (options.start == StartChoice::kRelease) {
     return Error(StatusCode::kFailedPrecondition,
                  "sampled too slowly to date a release; --start moving fits what follows it");
+  }
+  if (!ExpectedFrequency(options.rig)) {
+    if (const std::string absurd = AbsurdPeriod(recording); !absurd.empty()) {
+      return Error(StatusCode::kFailedPrecondition, absurd);
+    }
   }
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());

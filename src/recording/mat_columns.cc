@@ -118,9 +118,12 @@ std::string KindOf(const matvar_t& variable) {
 /// Puts the variables of a file into a table.
 class Collector {
  public:
-  /// Objects are not its business.
+  /// Variables that are objects are not its business.
   Collector(MatTable& table, const std::vector<MatReference>& objects) : table_(table) {
-    for (const MatReference& object : objects) objects_.insert(object.place.substr(0, object.place.find('(')));
+    for (const MatReference& object : objects) {
+      const bool is_within = object.place.find_first_of(".{") != std::string::npos;
+      if (!is_within) objects_.insert(object.place.substr(0, object.place.find('(')));
+    }
   }
 
   void Add(const matvar_t& variable) {
@@ -277,7 +280,9 @@ MatTable ReadMatTable(const std::string& path, std::string_view bytes) {
   std::function<MatSubsystem()> objects = [&] { return version == MAT_FT_MAT5 ? SubsystemOf(bytes) : MatSubsystem{}; };
   if (version == MAT_FT_MAT73) objects = OpenHdf5(path);
   OpenNoMore();
-  if (file == nullptr && table.complaint.empty()) table.complaint = "no MAT-file";
+  if (file == nullptr && (table.complaint.empty() || table.complaint == kOtherFile)) {
+    table.complaint = "no MAT-file, or cut off";
+  }
   const MatSubsystem subsystem = objects();
   Collector collector(table, subsystem.references);
   for (std::size_t i = 0; file != nullptr && i < subsystem.variables; ++i) {

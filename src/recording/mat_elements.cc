@@ -146,7 +146,8 @@ MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth) {
     value.kind = MatValue::Kind::kNumbers;
     is_whole = TakeNumbers(matrix, value);
   }
-  return is_whole ? value : MatValue{};
+  if (!is_whole) return {};
+  return value;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -93,7 +94,8 @@ hsize_t ChunksOf(hid_t dataset) {
   if (H5Pget_chunk(creation.id(), kMostSizes, chunk.data()) != rank) return 0;
   hsize_t chunks = 1;
   for (std::size_t i = 0; i < static_cast<std::size_t>(rank); ++i) {
-    chunks *= chunk[i] == 0 ? 0 : sizes[i] / chunk[i] + (sizes[i] % chunk[i] != 0 ? 1 : 0);
+    const hsize_t along = chunk[i] == 0 ? 0 : sizes[i] / chunk[i] + (sizes[i] % chunk[i] != 0 ? 1 : 0);
+    if (__builtin_mul_overflow(chunks, along, &chunks)) return std::numeric_limits<hsize_t>::max();
   }
   return chunks;
 }
@@ -221,8 +223,10 @@ class Reader {
     const std::string name = TextIn(id, "MATLAB_class");
     value.sizes = dataset.sizes;
     value.kind = NumberIn(id, "MATLAB_object_decode") == kOfClass ? Kind::kObject : KindOf(name);
+    if (value.kind == Kind::kObject) value.text = name;
     const bool is_whole = NumberIn(id, "MATLAB_empty") != 0 ? TakeEmpty(dataset, value) : Take(dataset, name, value);
-    return is_whole ? value : MatValue{};
+    if (!is_whole) return {};
+    return value;
   }
 
   /// What is empty has its sizes as numbers.
@@ -235,7 +239,6 @@ class Reader {
 
   bool Take(const Dataset& dataset, const std::string& name, MatValue& value) {
     if (value.kind == Kind::kObject) {
-      value.text = name;
       if (dataset.HasType(H5T_STD_U32LE)) value.numbers = dataset.Read<double>(H5T_NATIVE_DOUBLE);
       return true;
     }

@@ -77,7 +77,8 @@ Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
     const std::size_t left = bytes.size() - at;
     const std::uint32_t type = left < kTagBytes ? 0 : NumberAt(bytes, at, is_swapped);
     const std::size_t size = left < kTagBytes ? 0 : NumberAt(bytes, at + 4, is_swapped);
-    if (left < kTagBytes || size > left - kTagBytes) return CutOff(name, at, size, left);
+    const std::size_t whole = left < kTagBytes ? 0 : left - kTagBytes;
+    if (left < kTagBytes || size > whole) return CutOff(name, at, size, whole);
     if (type != kMatrix && type != kCompressed) return NoVariable(name, at);
     at += kTagBytes + size;
   }
@@ -201,21 +202,23 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
   const SkippedVariable* const skipped = WhatIsNoColumn(table, columns, options);
   if (skipped != nullptr) {
     const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
-    return Fault(
-        name, which + " is " + skipped->kind +
-                  (skipped->is_object ? ", which only MATLAB can take apart; save its numbers, of a timeseries ts: t = "
-                                        "ts.Time; angle_deg = ts.Data; save('run.mat', 't', 'angle_deg')"
-                                      : "; a column is a vector of real numbers, or a matrix's or a structure's"));
+    return Fault(name, which + " is " + skipped->kind +
+                           (skipped->is_object
+                                ? "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+                                  "save('run.mat', 't', 'angle_deg')"
+                                : "; a column is a vector of real numbers, or a matrix's or a structure's"));
   }
-  if (!columns.empty()) return {};
+  const bool has_more = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
+  if (has_more || (!columns.empty() && !options.value_column.empty())) return {};
   std::string rest;
   for (const SkippedVariable& variable :
        std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
     rest +=
         (rest.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " + variable.kind;
   }
-  return Fault(name, "no variable of this MAT-file is a vector or a matrix of real numbers" +
-                         (rest.empty() ? rest : rest + ")") + "; save the times as t and the angles as angle_deg");
+  return Fault(name, std::string("no variable of this MAT-file ") + (columns.empty() ? "" : "but the time ") +
+                         "is a vector or a matrix of real numbers" + (rest.empty() ? rest : rest + ")") +
+                         "; save the times as t and the angles as angle_deg");
 }
 
 /// The numbers of the columns that were chosen, without rows in which one of them is none.

@@ -19,7 +19,7 @@ struct MatColumn {
 /// A variable that holds no columns, and what it is.
 struct SkippedVariable {
   std::string name, kind;
-  bool is_object = false;  // What MATLAB alone can take apart.
+  bool is_object = false;  // Whose numbers MATLAB can save.
 };
 
 /// What a MAT-file holds that may be a recording.

@@ -217,16 +217,19 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
 /// Adds the objects of class timeseries one by one.
 class Adder {
  public:
-  Adder(const MatSubsystem& subsystem, MatTable& table)
-      : subsystem_(subsystem), table_(table), properties_(subsystem) {}
+  Adder(const MatSubsystem& subsystem, MatTable& table) : subsystem_(subsystem), table_(table), properties_(subsystem) {
+    for (const MatColumn& column : table.columns) names_.insert({column.name.run, column.name.written});
+  }
 
   /// True where there is one.
   bool Run() {
     constexpr std::size_t kMost = 1000;
     const Mcos& objects = properties_.objects();
-    for (std::size_t object = 1; object < objects.objects() && count_ < kMost; ++object) {
+    std::size_t object = 1;
+    for (; object < objects.objects() && count_ < kMost; ++object) {
       if (objects.ClassName(objects.ClassOf(object)) == kTimeseries) Add(object);
     }
+    if (object < objects.objects()) table_.skipped.push_back({"", "one of more than a thousand timeseries", true});
     return count_ > 0;
   }
 
@@ -252,7 +255,7 @@ class Adder {
     std::ranges::move(*columns, std::back_inserter(table_.columns));
   }
 
-  /// A name that no other has.
+  /// A name that no other has, nor a run or column of other variables.
   std::string Unique(const std::string& name) {
     if (!name.empty() && names_.insert(name).second) return name;
     for (std::size_t number = count_;; ++number) {

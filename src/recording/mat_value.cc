@@ -60,7 +60,7 @@ void AddReferences(const MatValue& value, const std::string& name, std::vector<M
   if (value.kind == MatValue::Kind::kObject) {
     const std::optional<MatObjects> found = ObjectsOf(value);
     const std::size_t count = found ? found->objects.size() : 0;
-    if (count == 0) references.push_back({name, value.text});
+    if (!found) references.push_back({name, value.text});
     for (std::size_t i = 0; i < std::min(count, kMost); ++i) {
       references.push_back({name + PlaceOf(i, count, "()"), value.text, found->objects[i]});
     }

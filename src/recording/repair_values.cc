@@ -285,8 +285,10 @@ void LeaveOutSpikes(double least_step, Recording& recording) {
     return;
   }
   recording = std::move(without);
-  recording.warnings.push_back(
-      {"spikes", std::to_string(left_out) + " readings far from their neighbours on both sides are left out"});
+  const std::string message =
+      left_out == 1 ? "1 reading far from its neighbours on both sides is left out"
+                    : std::to_string(left_out) + " readings far from their neighbours on both sides are left out";
+  recording.warnings.push_back({"spikes", message});
 }
 
 }  // namespace

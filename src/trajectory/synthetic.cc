@@ -107,7 +107,7 @@ Result<void> CheckModel(const SyntheticOptions& options) {
 
 Result<void> CheckLostCounts(const SyntheticOptions& options) {
   for (const LostCounts& lost : options.lost_counts) {
-    if (!(lost.time < options.start_time + options.duration)) {
+    if (!std::isfinite(lost.time) || lost.time >= options.start_time + options.duration) {
       return BadOption("the time of lost counts", lost.time, "before the recording ends");
     }
   }

@@ -265,14 +265,20 @@ TEST(ScatterP, HasAClosedFormForThreeValues) {
   EXPECT_THAT(ScatterP(value, std_error), DoubleNear(std::exp(-2.5 * 2.5), 1e-12));
 }
 
+TEST(ScatterP, IsNoNumberWithoutErrors) {
+  const VectorXd value = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(std::isnan(ScatterP(value, Eigen::Vector3d(0.1, NAN, 0.1))));
+  EXPECT_TRUE(std::isnan(ScatterP(value, Eigen::Vector3d(0.1, 0, 0.1))));
+}
+
 // ---- About a known centre -------------------------------------------------------------------------------------------
 
-// Equal errors: K variance = Σ (value - centre)² / (error² + τ²) has a closed form.
+// Equal errors: K - 1 = Σ (value - centre)² / (error² + τ²) has a closed form.
 TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
   const VectorXd value = Five({1.00, 1.07, 0.93, 1.12, 0.98});
   const VectorXd std_error = VectorXd::Constant(5, 0.01);
   const double squares = (value.array() - 0.95).square().sum();
-  EXPECT_THAT(ScatterAbout(0.95, value, std_error), DoubleNear(std::sqrt(squares / 5 - 1e-4), 1e-9));
+  EXPECT_THAT(ScatterAbout(0.95, value, std_error), DoubleNear(std::sqrt(squares / 4 - 1e-4), 1e-9));
 }
 
 TEST(ScatterAbout, IsZeroWhereErrorsExplainAll) {
@@ -282,11 +288,11 @@ TEST(ScatterAbout, IsZeroWhereErrorsExplainAll) {
 }
 
 // Its defining equation, with errors that differ.
-TEST(ScatterAbout, MakesTheStatisticTheNumberOfValues) {
+TEST(ScatterAbout, MakesTheStatisticOneLessThanTheNumberOfValues) {
   const Effects effects = Scattered();
   const double about = ScatterAbout(1.05, effects.value, effects.std_error);
   const ArrayXd weight = WeightsAt(effects, about * about);
-  EXPECT_THAT((weight * (effects.value.array() - 1.05).square()).sum(), DoubleNear(5, 1e-6));
+  EXPECT_THAT((weight * (effects.value.array() - 1.05).square()).sum(), DoubleNear(4, 1e-6));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/batch/fit_run.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,20 @@ RunOptions OptionsFor(const std::vector<std::string>& models) {
 std::vector<Result<FitRun>> FitTextbook(const RunOptions& options) {
   auto one = ReadOne(options, "datasets/textbook_rig.csv", Must(ReadRig("datasets/textbook_rig.json")));
   return FitRuns(options, Must(std::move(one)));
+}
+
+// Seconds that are called milliseconds make it swing a thousand times as fast as its masses and length let expect.
+TEST(FitRuns, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
+  const RunOptions options = OptionsFor({"viscous"});
+  const Rig rig = Must(ReadRig("datasets/textbook_rig.json"));
+  for (const double factor : {1e-3, 1.0}) {
+    Recording recording = Must(ReadRecording("datasets/textbook_rig.csv"));
+    recording.time *= factor;
+    const auto runs = FitRuns(options, Must(FindSwings(std::move(recording), options.swing, rig)));
+    ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+    const bool warns = std::ranges::count(runs[0]->report.warnings, "rig_frequency", &Warning::code) > 0;
+    EXPECT_EQ(warns, factor != 1);
+  }
 }
 
 /// Two recordings of 100 Hz one after the other, the second as if a hand had lifted the pendulum in 4 s.

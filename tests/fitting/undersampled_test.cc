@@ -205,16 +205,17 @@ TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
   EXPECT_FALSE(result.swing.undersampled);
 }
 
-// Six seconds at 50 Hz, a thousand times as long.
-TEST(FitUndersampled, AsksWhetherTimesAreMilliseconds) {
-  SyntheticOptions run = Swing(50, 0.423, 1);
-  run.duration = 6;
-  Recording recording = Must(SimulateRecording(run));
-  recording.time *= 1000;
-  const SwingFit result = FitAsTheToolDoes(recording, std::nullopt, ModelOptions("viscous"));
-  EXPECT_THAT(
-      result.fit.warnings,
-      Contains(Field(&Warning::message, HasSubstr("if the times are milliseconds, name their column time_ms"))));
+// Milliseconds and microseconds that are taken for seconds.
+TEST(FitUndersampled, RefusesAPeriodThatNoPendulumHas) {
+  for (const double factor : {1e3, 1e6}) {
+    Recording recording = Must(SimulateRecording(Swing(50, 0.423, 1)));
+    recording.time *= factor;
+    const ChosenSwings swings = Must(ChooseSwings(recording, {}, {}));
+    const Result<SwingFit> result = FitSwing(recording, swings.found.front(), ModelOptions("viscous"));
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, StatusCode::kFailedPrecondition);
+    EXPECT_THAT(result.error().message, HasSubstr("which no pendulum has; if the times are milliseconds or micro"));
+  }
 }
 
 TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {

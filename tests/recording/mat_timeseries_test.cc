@@ -17,6 +17,7 @@ namespace pendulum::mat_timeseries_test {
 namespace {
 
 using objects::AddSeries;
+using objects::Array;
 using objects::Classes;
 using objects::File;
 using objects::FileOf;
@@ -172,7 +173,7 @@ TEST_P(OfEveryWay, ItMayBeInAStructureAnArrayOrAnotherObject) {
 
 TEST_P(OfEveryWay, WhatCannotBeReadSaysWhy) {
   const std::string advice =
-      ", which only MATLAB can take apart; save its numbers, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+      "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
       "save('run.mat', 't', 'angle_deg')";
   const auto fault = [](const Series& series) { return FaultOf(BytesOf(FileOf(series))); };
   Series series = Angle();
@@ -211,7 +212,7 @@ TEST_P(OfEveryWay, OtherObjectsAreNamedByTheirClass) {
   File file;
   const std::size_t table = file.AddClass("", "timetable");
   file.AddVariable("angles", file.Reference({file.AddObject(table, {{"any", objects::Nothing()}})}, true));
-  const std::string sentence = "variable \"angles\" is an object of class timetable, which only MATLAB can take apart";
+  const std::string sentence = "variable \"angles\" is an object of class timetable; save its numbers in MATLAB";
   EXPECT_THAT(FaultOf(BytesOf(file)), HasSubstr(sentence));
   file.AddVariable("t", objects::Numbers({2, 1}, {1, 2}));
   EXPECT_THAT(FaultOf(BytesOf(file)), HasSubstr(sentence));
@@ -223,6 +224,38 @@ TEST_P(OfEveryWay, VectorsBesideItAreReadToo) {
   file.AddVariable("t_s", objects::Numbers({8, 1}, {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07}));
   file.AddVariable("angle_deg", objects::Numbers({8, 1}, {100, 101, 102, 103, 104, 105, 106, 107}));
   ExpectTheRows(RecordingOf(BytesOf(file), TimeAndValue("t_s", "angle_deg")), kDegree);
+}
+
+TEST_P(OfEveryWay, ANameThatOthersHaveIsNotTaken) {
+  Series series = Angle();
+  series.name = "run";
+  File file;
+  const Classes classes(file);
+  const std::size_t object = objects::AddSeries(file, classes, series);
+  file.AddVariable("cells", objects::Cells({objects::Cells({file.Reference({object})})}));  // no reference, but numbers
+  file.AddVariable("run", objects::Struct({{"t", objects::Numbers({8, 1}, {0, 1.5, 3, 4.5, 6, 7.5, 9, 10.5})},
+                                           {"angle_deg", objects::Numbers({8, 1}, {8, 7, 6, 5, 4, 3, 2, 1})}}));
+  EXPECT_DOUBLE_EQ(RecordingOf(BytesOf(file), Value("run.angle_deg")).time[1], 1.5);
+  ExpectTheRows(RecordingOf(BytesOf(file), Value("timeseries 1.Data")));
+}
+
+// Of an array of structures that has an object in it, the numbers are read as of one that has none.
+TEST(AddTimeseries, LeavesNumbersBesideOtherObjects) {
+  File file;
+  const std::size_t label = file.AddObject(file.AddClass("", "string"), {{"any", objects::Nothing()}});
+  Array runs = objects::Struct({{"label", file.Reference({label}, true)},
+                                {"t_s", objects::Numbers({8, 1}, {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07})},
+                                {"angle_deg", objects::Numbers({8, 1}, {100, 101, 102, 103, 104, 105, 106, 107})}});
+  runs.sizes = {1, 2};
+  const std::vector<Array> element = runs.parts;
+  runs.parts.insert(runs.parts.end(), element.begin(), element.end());
+  file.AddVariable("runs", runs);
+  for (const bool is_big : {false, true}) {
+    for (const bool is_packed : {false, true}) {
+      const std::string bytes = objects::Version5(file, {is_big, is_packed});
+      ExpectTheRows(RecordingOf(bytes, TimeAndValue("runs(2).t_s", "runs(2).angle_deg")), kDegree);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(AddTimeseries, OfEveryWay,

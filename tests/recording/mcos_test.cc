@@ -49,6 +49,7 @@ TEST(Mcos, OfMatlabsOwnFilesHasItsObjectsAndTheirProperties) {
 
 TEST(Mcos, OfMatlabsOwnFilesHasTheValuesOfProperties) {
   const MatSubsystem subsystem = SubsystemOf(FileOfMatlab("some_functions.mat"));
+  ASSERT_TRUE(subsystem.objects);
   const MatValue value = subsystem.cell(subsystem.objects->Find(2, "any")->value);
   ASSERT_EQ(value.parts.size(), 2);
   // The variables a, b, c are in the file itself, too, as SciPy's loadmat says: -3.9, 52 and 0.

@@ -21,11 +21,11 @@ struct RandomEffects {
 RandomEffects SummarizeScatter(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
 
 /// Probability that K >= 2 values scatter by as much through their errors alone (W. G. Cochran, Biometrics 10:101,
-/// 1954; MODEL.md eq. (58) for one parameter).
+/// 1954; MODEL.md eq. (58) for one parameter); NaN where a value or an error is no number, or an error 0.
 double ScatterP(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
 
-/// The standard deviation about `center`, beyond their errors, of K >= 1 values: what makes the statistic of Paule and
-/// Mandel K with `center` in the mean's place; 0 where the errors explain all.
+/// The standard deviation about `center`, beyond their errors, of K >= 2 values that it is an average of: as `between`,
+/// with `center` in the mean's place.
 double ScatterAbout(double center, const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
 
 }  // namespace pendulum

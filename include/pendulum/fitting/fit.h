@@ -35,8 +35,8 @@ enum class NoiseChoice { kAuto, kGaussian, kQuantized, kEdges };
 enum class Loss { kNone, kHuber, kStudent };
 
 /// Where intervals come from. kAuto: covariance, but profiles where any parameter is at a bound or within three
-/// standard errors of one, and the posterior where counts hardly scatter. kNone: there are neither intervals nor
-/// errors.
+/// standard errors of one, and the posterior where counts hardly scatter. kNone: neither intervals nor
+/// errors, nor what rests on them (weak identifiability, rival sensors, memory): for trials.
 enum class IntervalMethod { kAuto, kCovariance, kProfile, kBootstrap, kNone };
 
 /// What FitRecording is to do. Values by name: SI with a rig (N m, kg m^2); torques and inertia in units of G without.
@@ -89,7 +89,7 @@ struct ParameterEstimate {
   std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
   std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
   std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
-  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, CountInconstancy; absent without.
+  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent without.
   std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
   bool fixed = false;
   bool at_bound = false;
