@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/base/format.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
 #include "pendulum/fitting/edge_noise.h"
