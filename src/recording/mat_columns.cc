@@ -149,7 +149,6 @@ class Collector {
   /// A vector, or the columns (rows, where there are more columns) of a matrix. A first column that increases is time.
   void AddArray(const matvar_t& variable, const std::string& written, const std::string& meaning,
                 const std::string& run) {
-    constexpr std::size_t kMostColumns = 100;
     std::vector<double> numbers = NumbersOf(variable);
     const std::size_t rows = numbers.empty() ? 0 : LongestOf(variable);
     if (rows < 2) return;
@@ -159,7 +158,7 @@ class Collector {
       table_.columns.push_back({{written, sense, run}, std::move(numbers), TellsUnit(meaning, sense)});
       return;
     }
-    if (variable.rank != 2 || columns > kMostColumns) return;
+    if (variable.rank != 2 || columns > kMostMatColumns) return;
     const bool is_upright = variable.dims[0] == rows;
     const auto column = [&](std::size_t j) {
       std::vector<double> values(rows);
@@ -277,13 +276,13 @@ MatTable ReadMatTable(const std::string& path, std::string_view bytes) {
   Mat_LogInitFunc("matio", TakeComplaint);
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   const mat_ft version = file == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file.get());
-  std::function<MatSubsystem()> objects = [&] { return version == MAT_FT_MAT5 ? SubsystemOf(bytes) : MatSubsystem{}; };
-  if (version == MAT_FT_MAT73) objects = OpenHdf5(path);
+  std::function<MatSubsystem()> in_hdf5;
+  if (version == MAT_FT_MAT73) in_hdf5 = OpenHdf5(path);  // While files may still be opened.
   OpenNoMore();
   if (file == nullptr && (table.complaint.empty() || table.complaint == kOtherFile)) {
     table.complaint = "no MAT-file, or cut off";
   }
-  const MatSubsystem subsystem = objects();
+  const MatSubsystem subsystem = in_hdf5 ? in_hdf5() : version == MAT_FT_MAT5 ? SubsystemOf(bytes) : MatSubsystem{};
   Collector collector(table, subsystem.references);
   for (std::size_t i = 0; file != nullptr && i < subsystem.variables; ++i) {
     const std::unique_ptr<matvar_t, FreeVariable> variable(Mat_VarReadNext(file.get()));

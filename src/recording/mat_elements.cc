@@ -65,9 +65,6 @@ std::optional<std::string_view> TakeLetters(MatElements& elements) {
   return element->bytes;
 }
 
-/// How deep a value may be in others.
-constexpr int kDeepest = 16;
-
 MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth);
 
 /// The matrices within one, `count` of them; false where there are not so many or something is left.
@@ -105,12 +102,9 @@ bool TakeNumbers(MatMatrix& matrix, MatValue& value) {
 
 /// MATLAB writes letters in one byte or two.
 bool TakeText(MatMatrix& matrix, MatValue& value) {
-  constexpr double kAscii = 128;
   const std::optional<MatElement> element = matrix.contents.Next();
   if (!element) return false;
-  for (const double letter : NumbersIn(*element, matrix.contents.is_swapped())) {
-    value.text += letter > 0 && letter < kAscii ? static_cast<char>(letter) : '?';
-  }
+  for (const double letter : NumbersIn(*element, matrix.contents.is_swapped())) value.text += AsciiLetter(letter);
   return true;
 }
 
@@ -127,10 +121,10 @@ MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth) {
   MatValue value;
   value.sizes = matrix.sizes;
   bool is_whole = true;
-  if (matrix.kind == kCellClass && depth < kDeepest) {
+  if (matrix.kind == kCellClass && depth < kDeepestValue) {
     value.kind = MatValue::Kind::kCells;
     is_whole = TakeCells(matrix, with_numbers, depth, value);
-  } else if (matrix.kind == kStructureClass && depth < kDeepest) {
+  } else if (matrix.kind == kStructureClass && depth < kDeepestValue) {
     value.kind = MatValue::Kind::kStructure;
     is_whole = TakeStructure(matrix, with_numbers, depth, value);
   } else if (matrix.kind == kOpaqueClass) {

@@ -181,8 +181,8 @@ class Reader {
 
  private:
   MatValue ValueOf(hid_t object) {
-    constexpr int kDeepest = 16, kMost = 100'000;
-    if (depth_ == kDeepest || ++values_ > kMost) return {};
+    constexpr int kMost = 100'000;
+    if (depth_ == kDeepestValue || ++values_ > kMost) return {};
     ++depth_;
     const H5I_type_t type = H5Iget_type(object);
     MatValue value = type == H5I_DATASET ? OfDataset(object) : type == H5I_GROUP ? OfGroup(object) : MatValue{};
@@ -251,9 +251,7 @@ class Reader {
     if (!with_numbers_ || !dataset.HasType(TypeOf(name))) return false;
     if (value.kind == Kind::kNumbers) value.numbers = dataset.Read<double>(H5T_NATIVE_DOUBLE);
     if (value.kind != Kind::kText) return value.numbers.size() == dataset.count;
-    for (const std::uint16_t letter : dataset.Read<std::uint16_t>(H5T_NATIVE_UINT16)) {
-      value.text += letter > 0 && letter < 0x80 ? static_cast<char>(letter) : '?';
-    }
+    for (const std::uint16_t letter : dataset.Read<std::uint16_t>(H5T_NATIVE_UINT16)) value.text += AsciiLetter(letter);
     return value.text.size() == dataset.count;
   }
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -22,6 +21,7 @@
 
 #include "in_child.h"
 #include "mat_columns.h"
+#include "mat_elements.h"
 #include "mat_version_4.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
@@ -35,12 +35,6 @@ namespace pendulum {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 128, kTagBytes = 8;
-
-std::uint32_t NumberAt(std::string_view bytes, std::size_t at, bool is_swapped) {
-  std::uint32_t number = 0;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return is_swapped ? __builtin_bswap32(number) : number;
-}
 
 tl::unexpected<Status> CutOff(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
   return Fault(name, "the file is cut off: the variable at byte " + std::to_string(at) + " has " +
@@ -68,18 +62,18 @@ Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& nam
 /// one is cut off.
 Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kOrderAt = 126;
-  constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
   if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
   if (SizeOfVersion4(bytes)) return CheckSizesOfVersion4(bytes, name);
   const bool is_little = bytes.substr(kOrderAt, 2) == "IM";
   const bool is_swapped = is_little != (std::endian::native == std::endian::little);
   for (std::size_t at = kHeaderBytes; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
-    const std::uint32_t type = left < kTagBytes ? 0 : NumberAt(bytes, at, is_swapped);
-    const std::size_t size = left < kTagBytes ? 0 : NumberAt(bytes, at + 4, is_swapped);
-    const std::size_t whole = left < kTagBytes ? 0 : left - kTagBytes;
-    if (left < kTagBytes || size > whole) return CutOff(name, at, size, whole);
-    if (type != kMatrix && type != kCompressed) return NoVariable(name, at);
+    const auto tag = left < kTagBytes ? std::nullopt : WordsOf(bytes.substr(at, kTagBytes), is_swapped);
+    if (!tag) return CutOff(name, at, 0, 0);
+    const std::uint32_t type = tag->front();
+    const std::size_t size = tag->back();
+    if (size > left - kTagBytes) return CutOff(name, at, size, left - kTagBytes);
+    if (type != kMatrixElement && type != kPackedElement) return NoVariable(name, at);
     at += kTagBytes + size;
   }
   return {};
@@ -168,8 +162,8 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
-/// Of numbers, but not a vector of them.
-bool IsOfNumbers(const SkippedVariable& variable) {
+/// Of numbers, but not a vector of them, or an object, which may have some.
+bool MayHoldTheQuantity(const SkippedVariable& variable) {
   const std::array kinds = {"a cell array", "complex", "sparse"};
   return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
 }
@@ -187,13 +181,13 @@ const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<c
   }
   if (!csv::CandidatesOf(columns, options.unit).empty()) return nullptr;
   const auto tells_unit = [](const SkippedVariable& each) {
-    return IsOfNumbers(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
+    return MayHoldTheQuantity(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
   };
   if (const SkippedVariable* const named = first(tells_unit); named != nullptr) return named;
   const bool is_other = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
   if (is_other && !options.unit.empty()) return nullptr;  // the only one may be it
   if (const SkippedVariable* const object = first(&SkippedVariable::is_object); object != nullptr) return object;
-  return is_other || columns.empty() ? nullptr : first(IsOfNumbers);
+  return is_other || columns.empty() ? nullptr : first(MayHoldTheQuantity);
 }
 
 /// What there is instead of a column of angles.

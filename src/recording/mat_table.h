@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "table.h"
 
 namespace pendulum {
+
+/// Of one matrix: with more it is none of readings.
+inline constexpr std::size_t kMostMatColumns = 100;
 
 /// A column of numbers in a MAT-file, and what it is called there.
 struct MatColumn {

@@ -186,7 +186,6 @@ std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes,
 /// The columns of one object, the time first.
 Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::size_t object, const std::string& name,
                                            const std::string& meaning) {
-  constexpr std::size_t kMostColumns = 100;
   const std::optional<MatValue> storage = properties.Of(object, "Storage_");
   if (storage && !storage->IsEmpty()) return Refusal("a timeseries whose numbers are kept outside of it");
   const std::optional<MatValue> data = properties.Of(object, "Data_");
@@ -200,7 +199,7 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
   const std::size_t rows = times->size();
   const std::optional<Spread> spread = SpreadOf(data->sizes, rows);
   if (!spread) return Unknown();
-  if (spread->columns > kMostColumns) return Refusal("a timeseries of more than a hundred columns");
+  if (spread->columns > kMostMatColumns) return Refusal("a timeseries of more than a hundred columns");
   for (double& time : *times) time = time * unit->factor / unit->divisor;
   std::vector<MatColumn> columns;
   columns.push_back({{name + ".Time", std::string(unit->meaning), name}, *std::move(times), !unit->name.empty()});

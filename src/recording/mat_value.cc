@@ -27,6 +27,11 @@ const MatValue* MatValue::Field(std::string_view name) const {
   return &parts[static_cast<std::size_t>(found - names.begin())];
 }
 
+char AsciiLetter(double letter) {
+  constexpr double kAscii = 128;
+  return letter > 0 && letter < kAscii ? static_cast<char>(letter) : '?';
+}
+
 std::optional<std::size_t> CountIn(const std::vector<std::size_t>& sizes) {
   constexpr std::size_t kMost = std::size_t{1} << 40;
   if (std::ranges::find(sizes, std::size_t{0}) != sizes.end()) return 0;

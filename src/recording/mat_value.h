@@ -34,6 +34,12 @@ struct MatValue {
   const MatValue* Field(std::string_view name) const;
 };
 
+/// How deep values may be within each other.
+inline constexpr int kDeepestValue = 16;
+
+/// A letter as MATLAB numbers it, in ASCII, with ? for others.
+char AsciiLetter(double letter);
+
 /// Elements of an array of these sizes; none where there cannot be so many.
 std::optional<std::size_t> CountIn(const std::vector<std::size_t>& sizes);
 

@@ -88,16 +88,9 @@ TEST(LowerAlongShift, KeepsWithinBounds) {
 
 /// An accelerometer across the rod, with so much dry friction that its jumps stand out of the noise.
 Recording Swing(std::uint64_t seed) {
-  SyntheticOptions run;
+  SyntheticOptions run = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.02);
   run.parameters = {1 / 22.0, 0.0005, 0.01};
-  run.start = StartKind::kMoving;
-  run.initial_angle = 0.6;
   run.duration = 15;
-  run.quantity = Quantity::kAcceleration;
-  run.sensor.kind = SensorKind::kAcceleration;
-  run.sensor.gravity = kStandardGravity;
-  run.sensor_parameters = {0.1, 1.005, 0.02, 0.3};
-  run.noise = 0.02;
   run.seed = seed;
   return Must(SimulateRecording(run));
 }

@@ -90,6 +90,22 @@ inline SyntheticOptions MovingRun(std::string_view model) {
   return options;
 }
 
+/// A swing of 0.6 rad for 30 s at 100 Hz, seen by a sensor with some noise.
+inline SyntheticOptions Seen(Quantity quantity, SensorKind kind, std::vector<double> parameters, double noise) {
+  SyntheticOptions options;
+  options.parameters = {1 / 22.0, 0.05 / 22, 0.05 / 22};
+  options.start = StartKind::kMoving;
+  options.initial_angle = 0.6;
+  options.initial_rate = 0;
+  options.duration = 30;
+  options.quantity = quantity;
+  options.sensor.kind = kind;
+  if (kind == SensorKind::kAcceleration) options.sensor.gravity = kStandardGravity;
+  options.sensor_parameters = std::move(parameters);
+  options.noise = noise;
+  return options;
+}
+
 /// The parameters a fit of that recording should find, in FitParameters' order.
 inline std::vector<double> Truth(const SyntheticOptions& options) {
   std::vector<double> truth = options.parameters;

@@ -26,16 +26,8 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit) {
 
 /// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m looks the same but for friction, and here is little.
 SyntheticOptions WithLittleFriction(std::uint64_t seed) {
-  SyntheticOptions options;
+  SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
   options.model = FindMotionModel("viscous").value();
-  options.start = StartKind::kMoving;
-  options.initial_angle = 0.6;
-  options.initial_rate = 0;
-  options.quantity = Quantity::kAcceleration;
-  options.sensor.kind = SensorKind::kAcceleration;
-  options.sensor.gravity = kStandardGravity;
-  options.sensor_parameters = {0, 1, 0, 0.3};
-  options.noise = 0.05;
   options.parameters = {1 / 22.0, 0.0003};
   options.duration = 20;
   options.seed = seed;

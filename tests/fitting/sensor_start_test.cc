@@ -25,22 +25,6 @@ using testing::Ge;
 using testing::HasSubstr;
 using testing::Le;
 
-/// A swing of 0.6 rad for 30 s at 100 Hz, seen by a sensor with some noise.
-SyntheticOptions Seen(Quantity quantity, SensorKind kind, std::vector<double> parameters, double noise) {
-  SyntheticOptions options;
-  options.parameters = {1 / 22.0, 0.05 / 22, 0.05 / 22};
-  options.start = StartKind::kMoving;
-  options.initial_angle = 0.6;
-  options.initial_rate = 0;
-  options.duration = 30;
-  options.quantity = quantity;
-  options.sensor.kind = kind;
-  if (kind == SensorKind::kAcceleration) options.sensor.gravity = kStandardGravity;
-  options.sensor_parameters = std::move(parameters);
-  options.noise = noise;
-  return options;
-}
-
 FitReport Fit(const SyntheticOptions& options, const FitOptions& fit = {}) {
   const Result<Recording> recording = SimulateRecording(options);
   EXPECT_TRUE(recording) << recording.error().message;
