@@ -53,7 +53,7 @@ LIBRARY_FLOORS = {
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "packages"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages"}
 
 # What only the floors that talk to people may do.
 TALKING_FLOORS = {"tools"}
@@ -129,10 +129,13 @@ def check_words(root, path):
 def check_companions(root, path):
     """src/F/x.cc has include/pendulum/F/x.h, or src/F/x.h where it is private, which it includes before all others so
     that it is known to compile on its own. What is public, or a tool's, has tests/F/x_test.cc; what else is private is
-    tested through that."""
+    tested through that. src/F/x_part.cc has src/F/x.h, whose templates it makes the compiler emit."""
     if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
         return
     inner = path.relative_to("src").with_suffix("")
+    whole = inner.parent / (inner.name.rpartition("_")[0] or inner.name)
+    if not any((root / top / f"{inner}.h").exists() for top in ("include/pendulum", "src")) and (root / f"src/{whole}.h").exists():
+        inner = whole
     is_private = (root / f"src/{inner}.h").exists()
     headers = "src" if is_private or floor_of(path) in TALKING_FLOORS else "include/pendulum"
     needs_test = not is_private or floor_of(path) in TALKING_FLOORS
@@ -207,6 +210,8 @@ BAD_TREE = {
     "tests/benchmarks/b.cc": ('#include <ceres/ceres.h>\n#include "pendulum/report/text.h"\n', None),
     "src/base/private.h": ("", None),
     "tests/base/private_test.cc": ('#include "base/private.h"\n#include "tests/matchers.h"\n#include "good.h"\n', None),
+    "src/base/private_part.cc": ('#include "base/private.h"\n', "src/CMakeLists.txt does not name it"),
+    "src/base/private_late.cc": ('#include <string>\n#include "base/private.h"\n', "base/private.h must be included first"),
     "src/tools/flags.cc": ("#include <gflags/gflags.h>\n", "src/tools/flags.h is missing"),
     "src/tools/good_main.cc": ("#include <glog/logging.h>\nvoid f() { throw 1; }\n", None),
     "src/CMakeLists.txt": ("pendulum_add_floor(base HEADERS good.h SOURCES good.cc LINKS pendulum::model)\n"

@@ -9,6 +9,8 @@
 
 #include <boost/asio/buffer.hpp>
 
+#include "pendulum/service/media_type.h"
+
 namespace pendulum::wire {
 namespace {
 

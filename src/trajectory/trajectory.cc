@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/trajectory/trajectory.h"
 
+#include <algorithm>
 #include <string>
 
 #include "pendulum/base/format.h"

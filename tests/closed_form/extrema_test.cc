@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/closed_form/extrema.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/closed_form/free_swing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/covariance.h"
 
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 

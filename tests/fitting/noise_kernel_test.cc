@@ -2,6 +2,7 @@
 // What the likelihood of rounded readings must obey whatever it is computed with: over all readings a sensor can show,
 // by their true probabilities, scores are 0 in the mean and have the information as their variance (R. A. Fisher, Phil.
 // Trans. R. Soc. A 222:309, 1922). And the likeliest σ.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/clock.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/line_reader.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>

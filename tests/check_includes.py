@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Proves that each source file includes what it uses, itself or through the project's headers that it includes.
+
+  check_includes.py [ROOT]       prints one line for each name without its header, "path:line: name needs <header>"; exit 1 if any
+  check_includes.py --self_test  shows on a small tree that a missing header is found
+
+Files are compiled several in one unit, where the includes of one serve the next: the compiler does not see what is
+missing. Looked at are names of the standard library and of the project.
+"""
+
+import argparse
+import functools
+import pathlib
+import re
+import sys
+import tempfile
+
+import cpp_text
+
+# Headers of the standard library, and names that need one of them. A name that stands in several needs any one.
+STANDARD = {
+    "algorithm": "all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill fill_n find "
+                 "find_if find_if_not for_each generate inplace_merge is_sorted lower_bound max max_element merge min "
+                 "min_element minmax minmax_element nth_element none_of partial_sort partition partition_point remove "
+                 "remove_if replace reverse rotate shuffle sort stable_sort transform unique upper_bound",
+    "array": "array to_array",
+    "atomic": "atomic atomic_flag",
+    "bit": "bit_cast bit_ceil countr_zero endian popcount",
+    "charconv": "from_chars to_chars",
+    "chrono": "chrono",
+    "cmath": "abs acos asin atan atan2 cbrt ceil copysign cos cosh erf erfc exp expm1 fabs floor fma fmod frexp hypot "
+             "isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nextafter pow remainder round signbit "
+             "sin sinh sqrt tan tanh tgamma trunc",
+    "complex": "complex polar",
+    "concepts": "convertible_to floating_point integral invocable same_as",
+    "condition_variable": "condition_variable condition_variable_any",
+    "cstdlib": "abs exit getenv strtod _Exit",
+    "cstring": "memcmp memcpy memset strerror strlen",
+    "deque": "deque",
+    "exception": "current_exception exception exception_ptr rethrow_exception terminate",
+    "filesystem": "filesystem",
+    "fstream": "fstream ifstream ofstream",
+    "functional": "bind_front equal_to function greater hash identity invoke less minus multiplies plus reference_wrapper ref cref",
+    "future": "async future promise",
+    "iomanip": "setfill setprecision setw",
+    "iostream": "cerr cin clog cout",
+    "iterator": "back_inserter istreambuf_iterator make_move_iterator next prev",
+    "limits": "numeric_limits",
+    "map": "map multimap",
+    "memory": "make_shared make_unique shared_ptr unique_ptr weak_ptr",
+    "mutex": "lock_guard mutex once_flag call_once scoped_lock unique_lock",
+    "numbers": "numbers",
+    "numeric": "accumulate adjacent_difference gcd inner_product iota lcm midpoint partial_sum reduce transform_reduce",
+    "optional": "make_optional nullopt nullopt_t optional",
+    "random": "bernoulli_distribution mt19937 mt19937_64 normal_distribution poisson_distribution student_t_distribution "
+              "uniform_int_distribution uniform_real_distribution",
+    "regex": "regex regex_match regex_replace regex_search smatch",
+    "set": "multiset set",
+    "shared_mutex": "shared_lock shared_mutex",
+    "span": "as_bytes span",
+    "sstream": "istringstream ostringstream stringstream",
+    "stop_token": "stop_callback stop_source stop_token",
+    "string": "getline stod stoi stol string to_string",
+    "string_view": "string_view",
+    "system_error": "errc error_code make_error_code system_error",
+    "thread": "jthread this_thread thread",
+    "tuple": "apply forward_as_tuple make_tuple tie tuple",
+    "type_traits": "conditional_t decay_t enable_if_t is_base_of_v is_same_v is_trivially_copyable_v remove_cvref_t type_identity_t",
+    "unordered_map": "unordered_map",
+    "unordered_set": "unordered_set",
+    "utility": "as_const exchange forward in_place make_pair move pair swap unreachable",
+    "variant": "get_if holds_alternative monostate variant visit",
+    "vector": "vector",
+}
+# What a header is known to bring: the standard says so, or it stands for another.
+BRINGS = {
+    "algorithm": {"utility"}, "charconv": {"system_error"}, "cstring": {"string.h"}, "ios": {"string"}, "iostream": {"istream", "ostream"},
+    "map": {"utility"}, "string": {"string_view"}, "thread": {"stop_token"}, "tuple": {"utility"}, "unordered_map": {"utility"},
+    "fstream": {"istream", "ostream"}, "sstream": {"istream", "ostream"}, "array": {"utility"}, "vector": set(),
+    "memory": {"utility"}, "functional": {"utility"}, "optional": {"utility"}, "ranges": {"span"}, "filesystem": {"system_error", "string"},
+    "future": {"thread"}, "variant": {"utility"}, "shared_mutex": {"mutex"}, "condition_variable": {"mutex"}, "iterator": {"utility"},
+}
+HEADERS_OF = {}
+for _header, _names in STANDARD.items():
+    for _name in _names.split():
+        HEADERS_OF.setdefault(_name, set()).add(_header)
+
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)', re.MULTILINE)
+_STD_NAME = re.compile(r"(?<![\w:])std::(?:ranges::)?(\w+)")
+# Types, aliases, constants and functions that a header declares outside of classes, that is at the left edge.
+_DECLARED = re.compile(
+    r"^(?:(?:template <[^\n]*>\n)?(?:struct|class|enum class) (?:\[\[[^\]]*\]\] )?([A-Z]\w+)(?= (?:final )?[{:]|$)"
+    r"|(?:template <[^\n]*>\n)?using ([A-Z]\w+) ="
+    r"|(?:inline |extern )?const(?:expr)? [^\n=({]*?\b(k[A-Z]\w+)(?: =|\{|;)"
+    r"|(?!(?:return|using|namespace|template|static|TEST|struct|class|enum)\b)[\w:<>,&*\[\] ]*?[\w>&*] ([A-Z]\w+)\()", re.MULTILINE)
+# Whatever looks like a declaration, members, locals and enumerators too: such a name needs no header.
+_ANY_DECLARED = re.compile(
+    r"\b(?:struct|class|enum class|using|typename|concept) (?:\[\[[^\]]*\]\] )?(\w+)|(?<!\breturn)(?<!\bco_return)[\w>&*\]] [&*]?([A-Z]\w+)\("
+    r"|\b(k[A-Z]\w+)(?= =|\{|,|;|\))|^  (k[A-Z]\w+)$|\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+), \w+|[\w>&*] (k?[A-Z]\w+)(?:;|\[|\{| =)", re.MULTILINE)
+_QUALIFIED = re.compile(r"(?:\w::(?:template )?|\b(?:typename|class|auto|int|bool)(?:\.\.\.)? )(\w+)")
+_USED = re.compile(r"(?<![\w.:>~])(?:pendulum::)?(k?[A-Z]\w+)\b")
+
+
+def own_header(root, path, name):
+    """The file that an include of this name in `path` means, or None when it is not the project's."""
+    for folder in (path.parent, root / "include", root / "src", root, root / "firmware"):
+        if (folder / name).is_file():
+            return (folder / name).resolve()
+    return None
+
+
+class Tree:
+    """The sources below a folder and what they include."""
+
+    def __init__(self, root):
+        self.root = root.resolve()
+        self.paths = [path.resolve() for top in ("include", "src", "tests") for path in cpp_text.sources(self.root / top)]
+        self.text = functools.lru_cache(None)(lambda path: path.read_text())
+        self.code = functools.lru_cache(None)(lambda path: cpp_text.code_only(self.text(path)))
+        self.declaring = {}
+        for path in self.paths:
+            if self.stands_alone(path) and path.suffix == ".h":
+                for name in self.declared(path):
+                    self.declaring.setdefault(name, set()).add(path)
+
+    def stands_alone(self, path):
+        """Not a header that is a part of another, which includes it in the middle."""
+        return path.suffix == ".cc" or "#pragma once" in self.text(path)
+
+    def declared(self, path):
+        return {next(filter(None, match.groups())) for match in _DECLARED.finditer(self.code(path))}
+
+    @functools.lru_cache(None)
+    def any_declared(self, path):
+        code = self.code(path)
+        return {name for groups in _ANY_DECLARED.findall(code) for name in groups if name} | set(_QUALIFIED.findall(code))
+
+    @functools.lru_cache(None)
+    def includes(self, path):
+        """(own headers, others) that a file names."""
+        own, others = set(), set()
+        for _, name in _INCLUDE.findall(cpp_text.without_comments(self.text(path))):
+            header = own_header(self.root, path, name)
+            (own if header else others).add(header or name)
+        return own, others
+
+    def reached(self, path):
+        """What a file includes, through own headers: (own, others)."""
+        own, others, waiting = {path}, set(), [path]
+        while waiting:
+            more, named = self.includes(waiting.pop())
+            others |= named
+            waiting += more - own
+            own |= more
+        return own, others.union(*(BRINGS.get(header, set()) for header in others))
+
+    def complaints(self, path):
+        """The first use of each name whose header is not reached."""
+        own, others = self.reached(path)
+        code, seen = self.code(path), set()
+        for match in _STD_NAME.finditer(code):
+            needs = HEADERS_OF.get(match[1], set())
+            if needs and not needs & others and match[1] not in seen:
+                seen.add(match[1])
+                yield match, f"std::{match[1]} needs <{sorted(needs)[0]}>"
+        known = set().union(*map(self.any_declared, own))
+        for match in _USED.finditer(code):
+            needs = self.declaring.get(match[1], set())
+            if needs and not needs & own and match[1] not in seen and match[1] not in known:
+                seen.add(match[1])
+                yield match, f"{match[1]} needs {sorted(str(header.relative_to(self.root)) for header in needs)[0]}"
+
+
+def complaints(root):
+    tree = Tree(root)
+    for path in filter(tree.stands_alone, tree.paths):
+        for match, what in tree.complaints(path):
+            line = tree.code(path).count("\n", 0, match.start()) + 1
+            yield f"{path.relative_to(tree.root)}:{line}: {what}"
+
+
+def self_test():
+    """What is found wrongly in a small tree."""
+    files = {
+        "include/pendulum/a/x.h": "#pragma once\n#include <vector>\nstruct Point {\n  std::vector<double> at;\n};\nPoint MakePoint(int n);\n",
+        "src/a/good.cc": '#include <cmath>\n#include "pendulum/a/x.h"\nstd::vector<double> F() { return MakePoint(1).at; }\n'
+                         "double G() { return std::sqrt(2); }  // std::sort\n",
+        "src/a/bad.cc": "int F() {\n  Point p = MakePoint(2);\n  std::sort(p.at.begin(), p.at.end());\n}\n",
+    }
+    expected = ["src/a/bad.cc:2: MakePoint needs include/pendulum/a/x.h", "src/a/bad.cc:2: Point needs include/pendulum/a/x.h",
+                "src/a/bad.cc:3: std::sort needs <algorithm>"]
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        found = sorted(complaints(pathlib.Path(folder)))
+    return [] if found == expected else [f"expected {expected}, got {found}"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("--self_test", action="store_true")
+    arguments = parser.parse_args()
+    lines = self_test() if arguments.self_test else list(complaints(arguments.root))
+    print("\n".join(lines) if lines else "ok")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
