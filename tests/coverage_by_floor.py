@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""From `llvm-cov export --summary-only` on stdin: lines and branches that were run, by floor, then the ten files with the
+smallest share of lines."""
+
+import collections
+import json
+import pathlib
+import sys
+
+WORST = 10
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def floor_of(name):
+    """src/F/x.cc and include/pendulum/F/x.h are of floor F."""
+    parts = pathlib.Path(name).parts
+    return parts[2] if parts[0] == "include" else parts[1]
+
+
+def share(counts):
+    return f"{100 * counts['covered'] / counts['count']:5.1f} % of {counts['count']:6}" if counts["count"] else " " * 17
+
+
+def main():
+    files = {}
+    for file in json.load(sys.stdin)["data"][0]["files"]:
+        path = pathlib.Path(file["filename"])
+        name = str(path.relative_to(ROOT) if path.is_absolute() else path)
+        if name.startswith(("src/", "include/")):
+            files[name] = file["summary"]
+    floors = collections.defaultdict(lambda: {kind: collections.Counter() for kind in ("lines", "branches")})
+    for name, summary in files.items():
+        for floor in (floor_of(name), "all"):
+            for kind in ("lines", "branches"):
+                floors[floor][kind].update({key: summary[kind][key] for key in ("covered", "count")})
+    print(f"{'floor':12} {'lines':>17}   {'branches':>17}")
+    for floor, counts in floors.items():
+        print(f"{floor:12} {share(counts['lines'])}   {share(counts['branches'])}")
+    print(f"\nThe {WORST} files with the smallest share of lines:")
+    for name, summary in sorted(files.items(), key=lambda file: file[1]["lines"]["percent"])[:WORST]:
+        print(f"{share(summary['lines'])}   {share(summary['branches'])}  {name}")
+
+
+main()
