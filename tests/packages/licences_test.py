@@ -30,14 +30,18 @@ def debian_source(package):
     return packed.output("dpkg-query", "--show", "--showformat", "${source:Package}\n", package).splitlines()[0]
 
 
-@functools.cache
-def owner(path):
-    """The package that a file is of, by the name it has or had before /lib became a link to /usr/lib."""
-    for name in (path, pathlib.Path(re.sub(r"^/usr/lib/", "/lib/", str(path)))):
-        found = subprocess.run(["dpkg-query", "--search", name], capture_output=True, text=True).stdout
-        if found:
-            return found.split(":")[0]
-    raise FileNotFoundError(f"{path} is of no package")
+def owners(paths):
+    """The packages that files are of, by the names these have or had before /lib became a link to /usr/lib. All are looked
+    up at once: dpkg-query reads its whole data base each time."""
+    names = {str(path) for path in paths}
+    names |= {re.sub(r"^/usr/lib/", "/lib/", name) for name in names}
+    lines = subprocess.run(["dpkg-query", "--search", *sorted(names)], capture_output=True, text=True).stdout.splitlines()
+    package_of = {name: package.split(":")[0] for package, name in (line.split(": ", 1) for line in lines)}
+    found = {path: package_of.get(str(path)) or package_of.get(re.sub(r"^/usr/lib/", "/lib/", str(path))) for path in paths}
+    ownerless = [path for path, package in found.items() if package is None]
+    if ownerless:
+        raise FileNotFoundError(f"{ownerless} are of no package")
+    return found
 
 
 def libraries(program):
@@ -47,13 +51,14 @@ def libraries(program):
     return {pathlib.Path(resolved[name]).resolve() for name in needed}
 
 
-def headers():
-    """Paths of the headers of others that our sources include."""
+@functools.cache
+def packages_of_headers():
+    """The packages of the headers of others that our sources include."""
     sources = [path for folder in (SOURCES, empty_root.TOP / "include", empty_root.TOP / "firmware/pendulum_logger")
                for path in folder.rglob("*.[ch]*") if "node_modules" not in path.parts]
     names = {name for path in sources for name in re.findall(r"^#include <([^>]+)>", path.read_text(errors="replace"), re.MULTILINE)}
     found = {place / name for name in names for place in PLACES if (place / name).is_file()}
-    return {path.resolve() for path in found}
+    return set(owners({path.resolve() for path in found}).values())
 
 
 class LicencesTest(packed.DebianFilesTest):
@@ -66,18 +71,20 @@ class LicencesTest(packed.DebianFilesTest):
         cls.sources = {debian_source(name) for name in cls.named - {"boost", "uplot"}} | {"boost1.74"}
 
     def test_every_library_that_a_tool_is_linked_with_is_named(self):
-        for tool in (self.root / "usr/bin").iterdir():
-            for path in libraries(tool):
-                self.assertIn(debian_source(owner(path)), self.sources | COMPILERS | CERES, f"{tool.name} is linked with {path}")
+        linked = {tool.name: libraries(tool) for tool in (self.root / "usr/bin").iterdir()}
+        package_of = owners(set().union(*linked.values()))
+        for tool, paths in linked.items():
+            for path in paths:
+                self.assertIn(debian_source(package_of[path]), self.sources | COMPILERS | CERES, f"{tool} is linked with {path}")
 
     def test_every_header_that_is_compiled_in_is_of_a_package_that_is_named(self):
-        packages = {owner(path) for path in headers()}
+        packages = packages_of_headers()
         self.assertGreaterEqual(len(packages), 8)
         sources = {debian_source(package) for package in packages}
         self.assertEqual(sources - COMPILERS - self.sources, set())
 
     def test_nothing_is_named_that_is_not_in_them(self):
-        sources = {debian_source(owner(path)) for path in headers()}
+        sources = {debian_source(package) for package in packages_of_headers()}
         self.assertEqual(self.sources - sources, set())
 
     def test_what_the_pages_are_built_from_is_named(self):
