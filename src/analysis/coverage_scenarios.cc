@@ -232,7 +232,7 @@ std::vector<CoverageScenario> CoverageScenarios() {
 }
 
 Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& names) {
-  const std::vector<CoverageScenario> all = CoverageScenarios();
+  std::vector<CoverageScenario> all = CoverageScenarios();
   if (names == "all") return all;
   std::vector<CoverageScenario> found;
   for (std::size_t begin = 0; begin <= names.size();) {

@@ -208,7 +208,7 @@ std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vect
       test.statistic = 2 * (*rows[r].log_likelihood - *rows[s].log_likelihood);
       if (std::abs(test.statistic) < kRounding) test.statistic = 0;
       SetProbability(compared, s, r, *nesting, options, likelihood, test);
-      if (test.statistic < 0) test.statistic = 0;
+      test.statistic = std::max(test.statistic, 0.0);
       tests.push_back(std::move(test));
     }
   }

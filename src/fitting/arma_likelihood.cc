@@ -197,7 +197,7 @@ void AddMixed(const Autocorrelation& like, Places* places) {
   for (const auto [phi, theta] :
        {Pair{like.autoregressive[0], like.moving_average}, Pair{0.5, 0.3}, Pair{0.5, -0.2}, Pair{-0.5, 0.2},
         Pair{0.8, -0.4}, Pair{0.95, -0.6}, Pair{0.99, -0.8}, Pair{0.998, -0.95}}) {
-    places->push_back(Eigen::Vector3d(0, PlaceOf(phi), PlaceOf(theta)));
+    places->emplace_back(Eigen::Vector3d(0, PlaceOf(phi), PlaceOf(theta)));
   }
 }
 
@@ -209,7 +209,7 @@ void AddContinuous(const Autocorrelation& like, const Eigen::VectorXd& time, Pla
   for (const double intervals : {0.5, 3.0, 20.0, 150.0}) decay_times.push_back(intervals * interval);
   for (const double decay_time : decay_times) {
     if (!(decay_time > 0)) continue;
-    places->push_back(Eigen::Vector3d(0, std::log(decay_time), std::log(share / (1 - share))));
+    places->emplace_back(Eigen::Vector3d(0, std::log(decay_time), std::log(share / (1 - share))));
     if (!(like.white_share > 0)) places->back().conservativeResize(2);
   }
 }
