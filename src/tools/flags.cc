@@ -24,19 +24,13 @@ void ExitWithTwo() {
   if (gflags_is_parsing) std::_Exit(ExitCode(StatusCode::kInvalidArgument));
 }
 
-/// Of the tools' own code, not a library's.
-bool IsOwn(const gflags::CommandLineFlagInfo& flag, std::string_view main_file) {
-  namespace fs = std::filesystem;
-  return fs::path(flag.filename).parent_path() == fs::path(main_file).parent_path();
-}
-
 std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
   std::vector<gflags::CommandLineFlagInfo> registered;
   gflags::GetAllFlags(&registered);
   std::vector<FlagInfo> flags;
   for (const gflags::CommandLineFlagInfo& flag : registered) {
     if (flag.name == "help" || flag.name == "version") continue;
-    flags.push_back({flag.name, flag.description, flag.type, IsOwn(flag, main_file)});
+    flags.push_back({flag.name, flag.description, flag.type, IsOwnFlag(flag.filename, main_file)});
   }
   flags.push_back({"help", "Print this text.", "bool", true});
   flags.push_back({"version", "Print the version.", "bool", true});
@@ -44,6 +38,11 @@ std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
 }
 
 }  // namespace
+
+bool IsOwnFlag(std::string_view flag_file, std::string_view main_file) {
+  const auto folder = [](std::string_view file) { return std::filesystem::path(file).parent_path().filename(); };
+  return folder(flag_file) == folder(main_file);
+}
 
 Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file, std::string_view usage) {
   const std::vector<FlagInfo> flags = RegisteredFlags(main_file);

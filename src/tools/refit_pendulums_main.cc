@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Refits batches of recordings into a store of results, and tells what is in it: flags and exit codes.
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gflags/gflags.h>
 
+#include "tools/flags.h"
 #include "tools/refit_commands.h"
 #include "tools/refit_pendulums_options.h"
 #include "tools/run_flag_definitions.h"
@@ -66,10 +66,8 @@ std::vector<std::string> GivenFlags() {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::vector<std::string> given;
-  const auto folder = std::filesystem::path(__FILE__).parent_path();
   for (const gflags::CommandLineFlagInfo& flag : flags) {
-    const bool own = std::filesystem::path(flag.filename).parent_path() == folder;
-    if (own && !flag.is_default) given.push_back(flag.name);
+    if (IsOwnFlag(flag.filename, __FILE__) && !flag.is_default) given.push_back(flag.name);
   }
   return given;
 }

@@ -28,6 +28,13 @@ class FlagsTest : public testing::Test {
   gflags::FlagSaver saver_;  // puts all flags back after each test
 };
 
+TEST(IsOwnFlag, ComparesFoldersHoweverTheWayThereIsSpelled) {
+  EXPECT_TRUE(IsOwnFlag("src/tools/b.h", "src/tools/a_main.cc"));
+  EXPECT_TRUE(IsOwnFlag("../../src/tools/b.h", "/home/me/pendulum/src/tools/a_main.cc"));
+  EXPECT_FALSE(IsOwnFlag("./src/logging.cc", "src/tools/a_main.cc"));
+  EXPECT_FALSE(IsOwnFlag("gflags.cc", "src/tools/a_main.cc"));
+}
+
 TEST_F(FlagsTest, SetsFlagsAndLeavesOtherArguments) {
   const auto parsed = Parse({"--shape=flat", "--width", "-0.5", "bob"});
   ASSERT_TRUE(parsed);
