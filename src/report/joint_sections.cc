@@ -128,7 +128,7 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
       table.rows.push_back({name, "-", "", "", ""});
       continue;
     }
-    AddRow(name, *run.value, *run.std_error, run.z ? FixedText(*run.z, 1) : "",
+    AddRow(name, *run.value, run.std_error, run.z ? FixedText(*run.z, 1) : "",
            strip.Draw(*run.value, kTwoSided95 * *run.std_error, mark), table);
   }
   if (joint != nullptr) {

@@ -31,7 +31,7 @@ using TemporaryFile = std::unique_ptr<std::FILE, Close>;
 std::string Contents(std::FILE* file) {
   std::string text;
   std::array<char, 65536> block{};
-  std::rewind(file);
+  std::fseek(file, 0, SEEK_SET);
   while (const std::size_t got = std::fread(block.data(), 1, block.size(), file)) text.append(block.data(), got);
   return text;
 }
@@ -46,7 +46,7 @@ struct ChildFiles {
   bool Put(const std::string& input) {
     std::FILE* file = files[0].get();
     const bool written = std::fwrite(input.data(), 1, input.size(), file) == input.size() && std::fflush(file) == 0;
-    std::rewind(file);
+    std::fseek(file, 0, SEEK_SET);
     return written;
   }
 };

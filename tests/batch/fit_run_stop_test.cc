@@ -42,7 +42,7 @@ void ExpectStopped(const Result<FitRun>& run) {
 }
 
 /// Stops a run at `count` instants that are spread over about as long as it takes: it is either as if it had not been
-/// stopped, byte for byte, or the error.
+/// stopped, byte for byte, or the error. Each stage of a run is a tenth of it or more.
 void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
   const Clock::time_point begin = Clock::now();
   const std::string whole = ToJsonText(Must(FitFirst(options, swings)).report);
@@ -65,19 +65,19 @@ void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
 
 TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
   const RunOptions options = OptionsFor({"viscous", "coulomb", "drag", "stribeck", "asymmetric"});
-  StopEverywhere(options, Read("datasets/coulomb.csv", options), 20);
+  StopEverywhere(options, Read("datasets/coulomb.csv", options), 9);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingOnTheWayToRest) {
   const RunOptions options = OptionsFor({"coulomb"});
-  StopEverywhere(options, Read("datasets/to_rest.csv", options), 20);
+  StopEverywhere(options, Read("datasets/to_rest.csv", options), 9);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
   for (const IntervalMethod method : {IntervalMethod::kProfile, IntervalMethod::kBootstrap}) {
     RunOptions options = OptionsFor({"coulomb"});
     options.fit.interval = method;
-    StopEverywhere(options, Read("datasets/coulomb.csv", options), 10);
+    StopEverywhere(options, Read("datasets/coulomb.csv", options), 5);
   }
 }
 
@@ -85,7 +85,7 @@ TEST(StoppedFitRuns, AreAllOrNothingOnCoarseLevelsWithoutNoise) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
   const RunOptions options = OptionsFor({"coulomb"});
-  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 20);
+  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 9);
 }
 
 TEST(StoppedFitRuns, AreErrorsFromTheBeginning) {

@@ -16,7 +16,7 @@ import unittest
 from event_stream import EventParser, events
 from service import (DATASETS, IS_SANITIZED, RIG, TIMEOUT_S, Lab, Served, data_part, json_part, query_of, run_tool)
 
-MANY = 30 if IS_SANITIZED else 80  # runs, some of which are under way for a moment
+MANY = 30 if IS_SANITIZED else 40  # runs, some of which are under way for a moment
 SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds a run
 ENDLESS = {"model": "all", "interval": "bootstrap"}  # many seconds
 BAD = {"word.csv": b"time_s,angle_deg\n0,1\n0.1,x\n", "empty.csv": b"", "binary.csv": bytes(range(256)) * 50,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests serve_pendulum under load: service_load_test.py PATH_OF_THE_TOOL [--seconds 60] [--assert_throughput].
+"""Tests serve_pendulum under load: service_load_test.py PATH_OF_THE_TOOL [--seconds 20] [--assert_throughput].
 
 64 clients ask at once for so many seconds; then clients that misbehave stand beside others that do not.
 """
@@ -23,7 +23,7 @@ MIX = (("runs_1.csv", "coulomb"), ("coulomb.csv", "viscous"), ("runs_2.csv", "vi
        ("textbook_rig.csv", "coulomb"),
        ("runs_3.csv", "linear"), ("runs_4.csv", "coulomb"), ("still.csv", "viscous"))
 parser = argparse.ArgumentParser()
-parser.add_argument("--seconds", type=float, default=60)
+parser.add_argument("--seconds", type=float, default=20)
 parser.add_argument("--assert_throughput", action="store_true")
 ARGUMENTS, sys.argv[1:] = parser.parse_known_args()
 

@@ -7,6 +7,7 @@ published. The residuals are compared where both windows overlap. Prints the tab
 """
 
 import csv
+import functools
 import json
 import math
 import os
@@ -98,7 +99,15 @@ def rms_between(path: pathlib.Path, start: float, end: float) -> float:
     return math.sqrt(sum(squares) / len(squares))
 
 
-def fit(recording: pathlib.Path, model: str, reference: Reference, folder: pathlib.Path) -> Fit:
+@functools.cache
+def fit(name: str, model: str) -> Fit:
+    """Fits a recording, once however often it is asked for."""
+    recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
+    with tempfile.TemporaryDirectory() as folder:
+        return fit_in(pathlib.Path(folder), recording, model, REFERENCES[name])
+
+
+def fit_in(folder: pathlib.Path, recording: pathlib.Path, model: str, reference: Reference) -> Fit:
     command = [FIT_PENDULUM, "--data", recording, "--model", model]
     command += ["--json", folder / "fit.json", "--residuals", folder / "residuals.csv"]
     if recording.name.startswith("cubli"):
@@ -117,9 +126,7 @@ class Recordings(unittest.TestCase):
         """Checks one fit; gives its line of the table."""
         reference = REFERENCES[name]
         expected, rms = getattr(reference, model)
-        with tempfile.TemporaryDirectory() as folder:
-            recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
-            found = fit(recording, model, reference, pathlib.Path(folder))
+        found = fit(name, model)
         start, end = found.result["data"]["window_s"]
         warnings = {warning["code"] for warning in found.result["warnings"]}
         self.assertEqual(found.exit_code, 0, name)
@@ -154,10 +161,7 @@ class Recordings(unittest.TestCase):
         for pair in PAIRS:
             inertias = []
             for name in pair:
-                recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
-                with tempfile.TemporaryDirectory() as folder:
-                    found = fit(recording, "drag", REFERENCES[name], pathlib.Path(folder))
-                inertias.append(inertia_of(found.result))
+                inertias.append(inertia_of(fit(name, "drag").result))
             (first, first_error), (second, second_error) = inertias
             self.assertLess(abs(first - second), 3 * math.hypot(first_error, second_error), pair)
 
