@@ -15,8 +15,9 @@ struct ParsedFlags {
   std::vector<std::string> positional;  ///< What belongs to no flag.
 };
 
-/// Whether a flag is defined beside `main_file`, not in a library. Files are as __FILE__ gives them: the compiler may spell the
-/// way to one folder differently for a source file and for a header, so the name of the folder alone is compared.
+/// Whether a flag is defined beside `main_file`, not in a library. Files are as __FILE__ gives them: the compiler may
+/// spell the way to one folder differently for a source file and for a header, so the name of the folder alone is
+/// compared.
 bool IsOwnFlag(std::string_view flag_file, std::string_view main_file);
 
 /// Sets the flags that `main_file` (its __FILE__), what lies beside it and the libraries define. The process exits with

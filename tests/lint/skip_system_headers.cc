@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plugin of clang-tidy (--load): its checks see the project's own declarations alone. clang-tidy 19 matches those of all
-// headers and then drops what it found in the system's, which is 85 % of its time.
+// A plugin of clang-tidy (--load): its checks see the project's own declarations alone. clang-tidy 19 matches those of
+// all headers and then drops what it found in the system's, which is 85 % of its time.
 
 #include <memory>
 #include <string>

@@ -60,14 +60,15 @@ using SegmentVisitor = std::function<void(const Segment<T>&)>;
 /// The numbers that a trajectory of law F is traced with: doubles, or the duals of a fit, which carry derivatives by
 /// inertia, friction and the angle of a release, or by the angle and rate of a start in motion.
 template <typename T, typename F>
-concept TracedWith =
-    std::same_as<T, double> || std::same_as<T, Dual<kFrictionParameters<F> + 2>> ||
-    std::same_as<T, Dual<kFrictionParameters<F> + 3>>;
+concept TracedWith = std::same_as<T, double> || std::same_as < T,
+        Dual < kFrictionParameters<F>
++ 2 >> || std::same_as<T, Dual<kFrictionParameters<F> + 3>>;
 
 /// Traces a pendulum from its start to options.end and calls visit(segment) for each stretch in time order: the hold,
-/// the swings in as many steps as the tolerance asks for, the rest. Reversals are located exactly, so every segment is a
-/// true solution of one smooth equation; nothing is stored. MODEL.md section 4. Compiled for the laws in FrictionModels
-/// and no others (src/trajectory/tracer.h): a minute of compilation that users of this header are spared.
+/// the swings in as many steps as the tolerance asks for, the rest. Reversals are located exactly, so every segment is
+/// a true solution of one smooth equation; nothing is stored. MODEL.md section 4. Compiled for the laws in
+/// FrictionModels and no others (src/trajectory/tracer.h): a minute of compilation that users of this header are
+/// spared.
 template <FrictionModel F, TracedWith<F> T>
 TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& start, const TraceOptions& options,
                              const std::type_identity_t<SegmentVisitor<T>>& visit);
