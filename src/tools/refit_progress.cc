@@ -47,8 +47,7 @@ RefitProgress::RefitProgress(std::string name, int descriptor, std::chrono::mill
       is_terminal_(::isatty(descriptor) == 1),
       between_(is_terminal_ ? kRedraw : between) {}
 
-void RefitProgress::Show(const RefitCounts& counts) {
-  const Clock::time_point now = Clock::now();
+void RefitProgress::Show(const RefitCounts& counts, Clock::time_point now) {
   if (now - last_ < between_) return;
   last_ = now;
   const std::string text = ProgressText(counts, std::chrono::duration<double>(now - begin_).count());

@@ -18,18 +18,19 @@ std::string ProgressText(const RefitCounts& counts, double seconds);
 /// and then.
 class RefitProgress {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// `name`: of the tool, begins plain lines. `descriptor`: where to write, such as STDERR_FILENO. `between`: plain
   /// lines.
   RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between = std::chrono::seconds(10));
 
-  void Show(const RefitCounts& counts);
+  /// `now` is the clock's, but for tests.
+  void Show(const RefitCounts& counts, Clock::time_point now = Clock::now());
 
   /// Ends the bar's line.
   void Finish();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   std::string name_;
   int descriptor_;
   bool is_terminal_;

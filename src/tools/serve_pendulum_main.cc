@@ -170,7 +170,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!server) return tl::unexpected(server.error());
   (*service)->CountServer([&] { return (*server)->Count(); });
   const SignalWatch watch(**server, **service, flags.stop_seconds);
-  std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << std::endl;
+  std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << '\n' << std::flush;
   (*server)->Run();
   return 0;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/record_run.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -298,8 +299,11 @@ TEST(RecordRun, HasACopyOnTheDiskMeanwhile) {
   Laboratory laboratory(WithSawtooth());
   std::string meanwhile;
   std::thread user([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1700));
-    meanwhile = laboratory.folder.Text("run.csv.part");
+    constexpr int kMostTries = 2000;
+    for (int i = 0; i < kMostTries && std::ranges::count(meanwhile, '\n') < 250; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      meanwhile = laboratory.folder.Text("run.csv.part");
+    }
     laboratory.stop = true;
   });
   const RecordedRun recorded = laboratory.Recorded();

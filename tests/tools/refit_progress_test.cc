@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <string>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,6 +54,11 @@ std::string ReadFrom(int descriptor) {
   return {text.data(), static_cast<std::size_t>(got > 0 ? got : 0)};
 }
 
+/// So long from now.
+RefitProgress::Clock::time_point After(RefitProgress::Clock::duration wait) {
+  return RefitProgress::Clock::now() + wait;
+}
+
 TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
   int leader = -1, follower = -1;
   ASSERT_EQ(::openpty(&leader, &follower, nullptr, nullptr, nullptr), 0);
@@ -62,8 +66,7 @@ TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
   RefitCounts counts;
   counts.runs = 4;
   counts.refitted = 1;
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  progress.Show(counts);
+  progress.Show(counts, After(std::chrono::milliseconds(250)));
   EXPECT_THAT(ReadFrom(leader), AllOf(StartsWith("\r[#####...............] 1 of 4 runs (25 %)"), EndsWith("\x1b[K")));
   progress.Finish();
   EXPECT_EQ(ReadFrom(leader), "\r\x1b[K");
@@ -78,9 +81,9 @@ TEST(RefitProgress, WritesPlainLinesNowAndThenElsewhere) {
   RefitCounts counts;
   counts.runs = 4;
   for (counts.refitted = 1; counts.refitted <= 2; ++counts.refitted) {
-    progress.Show(counts);  // too soon
-    std::this_thread::sleep_for(std::chrono::milliseconds(120));
-    progress.Show(counts);
+    const auto begin = std::chrono::seconds(counts.refitted);
+    progress.Show(counts, After(begin));
+    progress.Show(counts, After(begin + std::chrono::milliseconds(90)));  // too soon
   }
   progress.Finish();
   ::close(ends[1]);
@@ -96,8 +99,7 @@ TEST(RefitProgress, DrawsNothingOnAPipeWithinSeconds) {
   RefitProgress progress("refit_pendulums", ends[1]);
   RefitCounts counts;
   counts.runs = 4;
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  progress.Show(counts);
+  progress.Show(counts, After(std::chrono::milliseconds(250)));
   progress.Finish();
   ::close(ends[1]);
   EXPECT_EQ(ReadFrom(ends[0]), "");
