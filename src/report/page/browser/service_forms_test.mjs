@@ -4,13 +4,13 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 
-import { openView, readDataset, shownFit, startService } from './service_server.mjs';
+import { kPasted, openView, readDataset, shownFit, startService } from './service_server.mjs';
 
 let service;
 before(async () => (service = await startService()));
 
-/** Time and angle of the data set in degrees, without its header and remarks. */
-const kBare = readDataset('coulomb.csv')
+/** Time and angle in degrees, without its header and remarks. */
+const kBare = kPasted
   .split('\n')
   .filter((line) => /^[-\d]/.test(line))
   .join('\n');
@@ -98,7 +98,7 @@ test('a mass that cannot be is told of its field, of a new fit and of one more',
     ['Length of the rod [m]', '-0.43'],
   ])
     await field(page, label).fill(value);
-  await pasteNumbers(page, readDataset('coulomb.csv'));
+  await pasteNumbers(page, kPasted);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   const words = '“Length of the rod” is -0.43; it must be positive';
   await assertMarked(page, await toldLike(page, words), ['Length of the rod [m]']);
@@ -113,7 +113,7 @@ test('a mass that cannot be is told of its field, of a new fit and of one more',
 
 test('two columns without names are fitted once their unit is chosen', async (t) => {
   const page = await openView(t, service, '/');
-  await pasteNumbers(page, readDataset('coulomb.csv'));
+  await pasteNumbers(page, kPasted);
   assert.equal(await page.locator('.paste select').isVisible(), false);
   await field(page, 'Numbers').fill(kBare);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();

@@ -25,6 +25,8 @@ after(async () => {
 
 export const dataset = (name) => path.join(kRoot, 'datasets', name);
 export const readDataset = (name) => fs.readFileSync(dataset(name), 'utf8');
+/** The first 9 s of coulomb.csv, to paste: a browser takes half a minute to lay out all of it in a field. */
+export const kPasted = readDataset('coulomb.csv').split('\n').slice(0, 900).join('\n');
 
 /** A file of the test's own. */
 export function write(name, content) {

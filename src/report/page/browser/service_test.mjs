@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import { before, test } from 'node:test';
 
-import { assertShown, drop, openView, readDataset, shownFit, startService, dataset } from './service_server.mjs';
+import { assertShown, drop, kPasted, openView, readDataset, shownFit, startService, dataset } from './service_server.mjs';
 
 let service;
 before(async () => (service = await startService()));
@@ -82,7 +82,7 @@ test('masses and length turn ratios into kg m²; what was chosen is what was ask
 test('numbers can be pasted', async (t) => {
   const page = await openView(t, service, '/');
   await page.getByText('Or paste numbers').click();
-  await page.getByLabel('Numbers', { exact: true }).fill(readDataset('coulomb.csv'));
+  await page.getByLabel('Numbers', { exact: true }).fill(kPasted);
   await page.getByLabel('Name of the recording').fill('from the notebook');
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   await assertParameters(page, await shownFit(page), 'coulomb');
