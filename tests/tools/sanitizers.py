@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the address sanitizer changes for a test of a tool: the tool is ten times as slow, and its memory has no bound."""
+"""What a sanitizer changes for a test of a tool: the tool is ten times as slow, and its memory has no bound."""
 
 import functools
 import pathlib
@@ -8,7 +8,8 @@ import resource
 
 @functools.cache
 def is_sanitized(tool):
-    return b"__asan_init" in pathlib.Path(tool).read_bytes()
+    program = pathlib.Path(tool).read_bytes()
+    return b"__asan_init" in program or b"__tsan_init" in program
 
 
 def memory_limit(tool, limit):
