@@ -16,7 +16,7 @@ import unittest
 from event_stream import EventParser, events
 from service import (DATASETS, IS_SANITIZED, RIG, TIMEOUT_S, Lab, Served, data_part, json_part, query_of, run_tool)
 
-MANY = 30 if IS_SANITIZED else 40  # runs, some of which are under way for a moment
+MANY = 12 if IS_SANITIZED else 24  # runs, some of which are under way for a moment
 SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds a run
 ENDLESS = {"model": "all", "interval": "bootstrap"}  # many seconds
 BAD = {"word.csv": b"time_s,angle_deg\n0,1\n0.1,x\n", "empty.csv": b"", "binary.csv": bytes(range(256)) * 50,
@@ -247,7 +247,7 @@ class Survival(Batched):
         try:
             for kill in range(5):
                 # Moments that differ: multiples of the golden ratio stand for chance.
-                batches.append(self.post_batch(server, names[kill * 5:kill * 5 + 20], "?model=viscous,coulomb"))
+                batches.append(self.post_batch(server, names[kill * MANY // 10:][:MANY // 2], "?model=viscous,coulomb"))
                 time.sleep(0.05 + 0.5 * ((0.618 * (kill + 1)) % 1))
                 server.kill()
                 server.start(server.port)
