@@ -5,11 +5,11 @@ smallest share of lines."""
 
 import collections
 import json
+import os
 import pathlib
 import sys
 
 WORST = 10
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def floor_of(name):
@@ -25,8 +25,8 @@ def share(counts):
 def main():
     files = {}
     for file in json.load(sys.stdin)["data"][0]["files"]:
-        path = pathlib.Path(file["filename"])
-        name = str(path.relative_to(ROOT) if path.is_absolute() else path)
+        # Of a header "build/coverage/../../src/F/x.h", of a source in a unity unit "build/coverage/src/F/x.cc".
+        name = os.path.normpath(file["filename"]).removeprefix("build/coverage/")
         if name.startswith(("src/", "include/")):
             files[name] = file["summary"]
     floors = collections.defaultdict(lambda: {kind: collections.Counter() for kind in ("lines", "branches")})
