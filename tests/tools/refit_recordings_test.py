@@ -21,7 +21,7 @@ class RealRecordings(Lab):
     def test_a_folder_gives_a_table(self):
         recordings = self.folder / "recordings"
         recordings.mkdir()
-        # The small ones, of all sources; recordings_test fits the others too, one by one.
+        # The smallest ones; recordings_test fits larger ones too, one by one.
         smallest = sorted(pathlib.Path(os.environ["PENDULUM_RECORDINGS"]).glob("*.csv"), key=lambda path: path.stat().st_size)
         for path in smallest[:MANY]:
             shutil.copy(path, recordings)
