@@ -191,10 +191,10 @@ TEST_F(ExportTest, WritesNumbersThatReadBackBitForBit) {
   const auto rows = RowsOf(store);
   ASSERT_EQ(rows.size(), 2);
   for (const Json& fit : RefittedOutcome().result["fits"]) {
-    const auto found = std::ranges::find_if(rows, [&](const Row& row) { return row.at("model") == fit["model"]; });
+    const auto found = std::ranges::find_if(rows, [&](const Row& row) { return fit["model"] == row.at("model"); });
     ASSERT_NE(found, rows.end());
-    EXPECT_EQ(found->at("status"), fit["status"]);
-    EXPECT_EQ(found->at("reason"), fit["reason"]);
+    EXPECT_EQ(fit["status"], found->at("status"));
+    EXPECT_EQ(fit["reason"], found->at("reason"));
     ExpectNumber(found->at("aicc"), fit["statistics"]["aicc"], "aicc");
     ExpectNumber(found->at("rms_residual"), fit["statistics"]["rms_residual_rad"], "rms_residual");
     ExpectNumber(found->at("sigma"), fit["noise"]["sigma_rad"], "sigma");
@@ -202,7 +202,7 @@ TEST_F(ExportTest, WritesNumbersThatReadBackBitForBit) {
       for (const auto& [name, value] : fit[kind].items()) {
         ExpectNumber(found->at(name), value["estimate"], name);
         ExpectNumber(found->at(name + "_std_error"), value["std_error"], name);
-        EXPECT_EQ(found->at(name + "_unit"), value["unit"]);
+        EXPECT_EQ(value["unit"], found->at(name + "_unit"));
         if (!value["interval95"].is_array()) continue;
         ExpectNumber(found->at(name + "_lower95"), value["interval95"][0], name);
         ExpectNumber(found->at(name + "_upper95"), value["interval95"][1], name);

@@ -64,7 +64,7 @@ void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
-  const RunOptions options = OptionsFor({"viscous", "coulomb", "drag", "stribeck", "asymmetric"});
+  const RunOptions options = OptionsFor({"viscous", "coulomb", "stribeck"});
   StopEverywhere(options, Read("datasets/coulomb.csv", options), 9);
 }
 

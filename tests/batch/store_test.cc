@@ -237,7 +237,7 @@ TEST_F(StoreTest, PutsWhatEachFitSaysAndTheResultAsItIs) {
                         "SELECT status, residual_unit, rms_residual, sigma, aicc, used_samples, evaluations, "
                         "recommended FROM results WHERE model = 'coulomb'");
   ASSERT_TRUE(row.executeStep());
-  EXPECT_EQ(row.getColumn(0).getString(), fit["status"]);
+  EXPECT_EQ(fit["status"], row.getColumn(0).getString());
   EXPECT_EQ(row.getColumn(1).getString(), "rad");
   EXPECT_EQ(row.getColumn(2).getDouble(), fit["statistics"]["rms_residual_rad"].get<double>());
   EXPECT_EQ(row.getColumn(3).getDouble(), fit["noise"]["sigma_rad"].get<double>());

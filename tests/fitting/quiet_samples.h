@@ -63,13 +63,15 @@ inline std::vector<Eigen::Index> QuietSamples(const MotionModel& model, StartKin
   EXPECT_THAT(instants, testing::Each(testing::SizeIs(instants[0].size())));
   if (instants[1].size() != instants[0].size() || instants[2].size() != instants[0].size()) return quiet;
   EXPECT_THAT(instants[0].size(), testing::Ge(31));
+  std::vector<bool> is_passed(data.time.size());
+  for (std::size_t k = 0; k < instants[0].size(); ++k) {
+    const auto [first, last] = std::minmax({instants[0][k], instants[1][k], instants[2][k]});
+    const auto from = std::ranges::lower_bound(data.time, first - 1e-9);
+    const auto to = std::upper_bound(from, data.time.end(), last + 1e-9);
+    std::fill_n(is_passed.begin() + (from - data.time.begin()), to - from, true);
+  }
   for (std::size_t i = 0; i < data.time.size(); ++i) {
-    bool is_passed = false;
-    for (std::size_t k = 0; k < instants[0].size(); ++k) {
-      const auto [first, last] = std::minmax({instants[0][k], instants[1][k], instants[2][k]});
-      is_passed |= data.time[i] >= first - 1e-9 && data.time[i] <= last + 1e-9;
-    }
-    if (!is_passed) quiet.push_back(static_cast<Eigen::Index>(i));
+    if (!is_passed[i]) quiet.push_back(static_cast<Eigen::Index>(i));
   }
   EXPECT_THAT(quiet.size(), testing::Ge(0.95 * static_cast<double>(data.time.size())));
   return quiet;

@@ -103,16 +103,14 @@ TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
 
 /// Without gravity, and on until the pendulum rests: k r ω² along the rod and k r α across it.
 TEST(FitRecording, FindsTheRadiusOfAnAccelerometerWhoseReadingsAreWithoutGravity) {
-  for (const double duration : {30.0, 150.0}) {
-    for (const double axis : {0.02, kPi / 2 + 0.02, -kPi / 2 - 0.02}) {
-      SCOPED_TRACE(std::to_string(axis) + " rad, " + std::to_string(duration) + " s");
-      SyntheticOptions options =
-          Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.05, 1.005, axis, 0.3}, 0.02);
-      options.sensor.gravity = 0;
-      options.duration = duration;
-      options.sample_rate = 50;
-      ExpectTruth(options, Fit(options));
-    }
+  for (const auto& [axis, duration] :
+       {std::pair(0.02, 150.0), std::pair(kPi / 2 + 0.02, 30.0), std::pair(-kPi / 2 - 0.02, 150.0)}) {
+    SCOPED_TRACE(std::to_string(axis) + " rad, " + std::to_string(duration) + " s");
+    SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.05, 1.005, axis, 0.3}, 0.02);
+    options.sensor.gravity = 0;
+    options.duration = duration;
+    options.sample_rate = 50;
+    ExpectTruth(options, Fit(options));
   }
 }
 

@@ -70,7 +70,7 @@ TEST(OpenHdf5, WithAByteChangedIsTheSameNumbersOrARefusal) {
   std::size_t numbers = 0;
   const std::size_t first = whole.find(objects::Bytes(0x4059000000000000, 8, false));  // 100, the first value
   ASSERT_NE(first, std::string::npos);
-  for (std::size_t at = 512; at < whole.size(); at += 1 + whole.size() / 200) {
+  for (std::size_t at = 512; at < whole.size(); at += 1 + whole.size() / 70) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ 0xFF);
     const Result<Recording> recording = ParseRecording(bytes, "run.csv");

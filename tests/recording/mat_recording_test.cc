@@ -314,7 +314,7 @@ TEST(ReadMat, SaysWhereItIsCutOff) {
 TEST(ReadMat, SurvivesBytesThatAreChanged) {
   for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
     const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, version, false);
-    for (std::size_t at = 128; at < whole.size(); at += 1 + whole.size() / 60) {
+    for (std::size_t at = 128; at < whole.size(); at += 1 + whole.size() / 30) {
       std::string bytes = whole;
       bytes[at] = static_cast<char>(bytes[at] ^ 0xFF);
       const Result<Recording> recording = ParseRecording(bytes, "run.csv");

@@ -266,7 +266,7 @@ class Survival(Batched):
         self.check_store(server)
 
     def test_a_disk_that_is_full_for_a_while_costs_no_run(self):
-        names = self.simulate(4 if IS_SANITIZED else 12)
+        names = self.simulate(2 if IS_SANITIZED else 12)
         server = self.serve()
         batch = self.post_batch(server, names, "?model=all")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))

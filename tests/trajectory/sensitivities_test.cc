@@ -167,7 +167,7 @@ void ExpectColumn(const Experiment<F>& experiment, const Curve<typename Experime
     instants[2].push_back(release - step);
   }
   std::array<ColumnError, 2> columns;
-  for (double time = 0.005; time < experiment.end; time += 0.01) {
+  for (double time = 0.005; time < experiment.end; time += 0.05) {
     if (IsPassed(time, instants)) continue;
     const auto motion = dual.At(time);
     const std::array<double, 3> above = plus.At(time), below = minus.At(time);

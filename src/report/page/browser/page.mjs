@@ -22,7 +22,7 @@ let browser;
 before(async () => {
   const root = process.getuid?.() === 0;
   browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
     timeout: kPatience,
     args: root ? ['--no-sandbox'] : [],
   });
