@@ -216,7 +216,7 @@ BAD_TREE = {
     "src/tools/good_main.cc": ("#include <glog/logging.h>\nvoid f() { throw 1; }\n", None),
     "src/CMakeLists.txt": ("pendulum_add_floor(base HEADERS good.h SOURCES good.cc LINKS pendulum::model)\n"
                            "add_library(pendulum_tools tools/flags.cc)\npendulum_add_tool(good)\n", "floor base does not stand on model"),
-    "tests/CMakeLists.txt": ("pendulum_add_tests(base TESTS good LONG_TESTS private)\n"
+    "tests/CMakeLists.txt": ("pendulum_add_tests(base TESTS good SLOW_TESTS private)\n"
                              "pendulum_add_tests(trajectory TESTS jet LINKS Ceres::ceres)\n"
                              "# pendulum_add_tests(model TESTS unlisted)\n", None),
     "tests/packages/CMakeLists.txt": ("pendulum_add_package_test(good)\n", None),

@@ -35,6 +35,8 @@ STANDARD = {
     "complex": "complex polar",
     "concepts": "convertible_to floating_point integral invocable same_as",
     "condition_variable": "condition_variable condition_variable_any",
+    "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintptr_t",
+    "cstdio": "fclose fopen fputs FILE printf putchar puts rename snprintf",
     "cstdlib": "abs exit getenv strtod _Exit",
     "cstring": "memcmp memcpy memset strerror strlen",
     "deque": "deque",
@@ -55,9 +57,12 @@ STANDARD = {
     "optional": "make_optional nullopt nullopt_t optional",
     "random": "bernoulli_distribution mt19937 mt19937_64 normal_distribution poisson_distribution student_t_distribution "
               "uniform_int_distribution uniform_real_distribution",
+    "queue": "priority_queue queue",
+    "ranges": "views",
     "regex": "regex regex_match regex_replace regex_search smatch",
     "set": "multiset set",
     "shared_mutex": "shared_lock shared_mutex",
+    "source_location": "source_location",
     "span": "as_bytes span",
     "sstream": "istringstream ostringstream stringstream",
     "stop_token": "stop_callback stop_source stop_token",
@@ -73,13 +78,20 @@ STANDARD = {
     "variant": "get_if holds_alternative monostate variant visit",
     "vector": "vector",
 }
-# What a header is known to bring: the standard says so, or it stands for another.
+# Names of other libraries, and the beginning of the headers that have them.
+LIBRARIES = [(re.compile(name), header) for name, header in (
+    (r"\bceres::", "ceres/"), (r"\bnlohmann::", "nlohmann/"), (r"\btl::", "tl/"), (r"\bEigen::", "Eigen/"),
+    (r"\bEigen::LD?LT\b|\.ld?lt\(", "Eigen/Cholesky"), (r"\bEigen::\w*EigenSolver\b", "Eigen/Eigenvalues"),
+    (r"\bEigen::\w*QR\b|\.\w*[hH]ouseholderQr\(|\.completeOrthogonalDecomposition\(", "Eigen/QR"),
+    (r"\bEigen::\w+SVD\b|\.(?:bdc|jacobi)Svd\(", "Eigen/SVD"))]
+# What a header brings as the standard or the library of g++ and clang has it, or because it stands for another.
 BRINGS = {
     "algorithm": {"utility"}, "charconv": {"system_error"}, "cstring": {"string.h"}, "ios": {"string"}, "iostream": {"istream", "ostream"},
     "map": {"utility"}, "string": {"string_view"}, "thread": {"stop_token"}, "tuple": {"utility"}, "unordered_map": {"utility"},
-    "fstream": {"istream", "ostream"}, "sstream": {"istream", "ostream"}, "array": {"utility"}, "vector": set(),
+    "fstream": {"istream", "ostream"}, "sstream": {"istream", "ostream"}, "array": {"utility"},
     "memory": {"utility"}, "functional": {"utility"}, "optional": {"utility"}, "ranges": {"span"}, "filesystem": {"system_error", "string"},
     "future": {"thread"}, "variant": {"utility"}, "shared_mutex": {"mutex"}, "condition_variable": {"mutex"}, "iterator": {"utility"},
+    "Eigen/Dense": {"Eigen/Cholesky", "Eigen/Eigenvalues", "Eigen/QR", "Eigen/SVD"},
 }
 HEADERS_OF = {}
 for _header, _names in STANDARD.items():
@@ -164,6 +176,10 @@ class Tree:
             if needs and not needs & others and match[1] not in seen:
                 seen.add(match[1])
                 yield match, f"std::{match[1]} needs <{sorted(needs)[0]}>"
+        for name, header in LIBRARIES:
+            match = name.search(code)
+            if match and not any(each.startswith(header) for each in others):
+                yield match, f"{match[0]} needs <{header}...>" if header.endswith("/") else f"{match[0]} needs <{header}>"
         known = set().union(*map(self.any_declared, own))
         for match in _USED.finditer(code):
             needs = self.declaring.get(match[1], set())
@@ -186,10 +202,10 @@ def self_test():
         "include/pendulum/a/x.h": "#pragma once\n#include <vector>\nstruct Point {\n  std::vector<double> at;\n};\nPoint MakePoint(int n);\n",
         "src/a/good.cc": '#include <cmath>\n#include "pendulum/a/x.h"\nstd::vector<double> F() { return MakePoint(1).at; }\n'
                          "double G() { return std::sqrt(2); }  // std::sort\n",
-        "src/a/bad.cc": "int F() {\n  Point p = MakePoint(2);\n  std::sort(p.at.begin(), p.at.end());\n}\n",
+        "src/a/bad.cc": "int F() {\n  Point p = MakePoint(2);\n  std::sort(p.at.begin(), p.at.end());\n  return ceres::kInfinity;\n}\n",
     }
     expected = ["src/a/bad.cc:2: MakePoint needs include/pendulum/a/x.h", "src/a/bad.cc:2: Point needs include/pendulum/a/x.h",
-                "src/a/bad.cc:3: std::sort needs <algorithm>"]
+                "src/a/bad.cc:3: std::sort needs <algorithm>", "src/a/bad.cc:4: ceres:: needs <ceres/...>"]
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files.items():
             path = pathlib.Path(folder, name)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the time of builds and tests goes: times.py BUILD_FOLDER... [--most 20]
 
-Of each folder: what ninja built last (.ninja_log) and what ctest ran last (tests.xml, which scripts/test has it write), the
+Of each folder: what ninja built since the folder was made (.ninja_log) and what ctest ran last (tests.xml, which scripts/test has it write), the
 longest first. Times are wall clock; several jobs run at once, so their sum is more than what one waits for.
 """
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <type_traits>
 
 #include "block_samples.h"
 #include "depth_table.h"
@@ -14,6 +15,7 @@
 #include "pendulum/fitting/trajectory_cost.h"
 #include "pendulum/model/dual.h"
 #include "pendulum/model/friction/friction_model.h"
+#include "pendulum/trajectory/trajectory.h"
 
 namespace pendulum {
 
@@ -27,12 +29,11 @@ template <FrictionModel F, StartKind kStart>
 class TrajectoryCostFor final : public TrajectoryCost {
   static constexpr int kFriction = kFrictionParameters<F>;
   static constexpr int kParameters = kFriction + 4;
-  /// Derivatives carried by the trajectory; those for release time and zero need no dual number.
-  static constexpr int kCarried = kStart == StartKind::kRelease ? kFriction + 2 : kFriction + 3;
   static constexpr int kZero = kParameters - 1;
   static_assert(kParameters + 1 <= kMostCompressed);
   static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
-  using Dual = pendulum::Dual<kCarried>;
+  /// Derivatives by release time and zero need no dual number.
+  using Dual = std::conditional_t<kStart == StartKind::kRelease, ReleaseDual<F>, MovingDual<F>>;
   template <typename T, int R, typename Sum>
   using Samples = BlockSamples<T, kStart == StartKind::kRelease, R, Sum>;
   static_assert(kSegmentRows<Dual, kStart == StartKind::kRelease> == kParameters);
@@ -131,9 +132,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     if (traced_.IsAt(Asking(p))) return traced_.value;
     ++traces_;
     TraceOptions options = Options();
-    const std::function<void(const Segment<double>&)> nothing = [&](const Segment<double>&) {
-      GiveUpIfStopped(options);
-    };
+    const SegmentVisitor<double> nothing = [&](const Segment<double>&) { GiveUpIfStopped(options); };
     traced_.SetAt(Asking(p), TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
     return traced_.value;
   }
@@ -297,8 +296,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
       take(segment);
     };
     ++traces_;
-    // One tracer for all visitors: it is by far the most code here.
-    const std::function<void(const Segment<T>&)> visitor = std::ref(visit);
+    const SegmentVisitor<T> visitor = std::ref(visit);
     const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
     if (summary.outcome != TraceSummary::Outcome::kComplete) return false;
     if constexpr (DualNumber<T>) traced_.SetAt(Asking(p), summary);

@@ -24,7 +24,7 @@ class RefitProgress {
   /// lines.
   RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between = std::chrono::seconds(10));
 
-  /// `now` is the clock's, but for tests.
+  /// Tests pass `now`; otherwise it is the current time.
   void Show(const RefitCounts& counts, Clock::time_point now = Clock::now());
 
   /// Ends the bar's line.

@@ -155,8 +155,8 @@ TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& sta
   return Tracer<F, T>(pendulum, options, visit).Run(start);
 }
 
-/// TraceTrajectory of every law with the number type TypeOf<F>: who defines a variable of it makes the compiler emit
-/// them. They are several times the code of all else on this floor, so each number type has a file of its own.
+/// Takes the address of TraceTrajectory of every law with the number type TypeOf<F>, so that the file that defines a
+/// variable of it compiles them all. Each number type has a file of its own, as these take the longest to compile.
 template <template <typename F> typename TypeOf, typename Models = FrictionModels>
 struct TracersOfAllLaws;
 

@@ -5,10 +5,7 @@
 namespace pendulum {
 namespace {
 
-template <typename F>
-using NumberOfMoving = Dual<kFrictionParameters<F> + 3>;
-
-[[gnu::used]] const TracersOfAllLaws<NumberOfMoving> kMovingTracers;
+[[gnu::used]] const TracersOfAllLaws<MovingDual> kMovingTracers;
 
 }  // namespace
 }  // namespace pendulum

@@ -5,10 +5,7 @@
 namespace pendulum {
 namespace {
 
-template <typename F>
-using NumberOfRelease = Dual<kFrictionParameters<F> + 2>;
-
-[[gnu::used]] const TracersOfAllLaws<NumberOfRelease> kReleaseTracers;
+[[gnu::used]] const TracersOfAllLaws<ReleaseDual> kReleaseTracers;
 
 }  // namespace
 }  // namespace pendulum

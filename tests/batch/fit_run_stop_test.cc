@@ -41,8 +41,8 @@ void ExpectStopped(const Result<FitRun>& run) {
   EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
 }
 
-/// Stops a run at `count` instants that are spread over about as long as it takes: it is either as if it had not been
-/// stopped, byte for byte, or the error. Each stage of a run is a tenth of it or more.
+/// Stops a run at `count` instants, evenly spread over about as long as it takes: the result is either that of a run
+/// which is not stopped, byte for byte, or the error.
 void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
   const Clock::time_point begin = Clock::now();
   const std::string whole = ToJsonText(Must(FitFirst(options, swings)).report);

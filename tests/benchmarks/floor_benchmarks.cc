@@ -57,7 +57,7 @@ FloorRun MakeFloorRun(int samples) {
   TraceOptions options;
   options.end = std::nextafter(data.time.back(), std::numeric_limits<double>::infinity());
   options.tolerance = run.tolerance;
-  const std::function<void(const Segment<Dual>&)> take = [&](const Segment<Dual>& segment) {
+  const SegmentVisitor<Dual> take = [&](const Segment<Dual>& segment) {
     const int first = run.segments.empty() ? 0 : run.segments.back().last;
     const FloorSegment floor = TakeDown(segment, data.time, first);
     if (floor.last > first) run.segments.push_back(floor);

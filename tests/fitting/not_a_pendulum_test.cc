@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -71,20 +72,18 @@ double NumberAfter(const std::string& sentence, const std::string& before) {
 }
 
 TEST(FitSwing, NamesALinearOscillatorWithNumbers) {
-  for (const double degrees : {40.0, 80.0}) {
-    for (const std::string_view friction : {"viscous", "coulomb", "drag"}) {
-      SCOPED_TRACE(std::to_string(degrees) + " deg, " + std::string(friction));
-      const FitReport fit = FitLongest(LinearOscillator(degrees, friction, 1), ModelOptions("coulomb")).fit;
-      ExpectWithdrawn(fit);
-      // A pendulum's period is longer by 2 / π K(sin(A / 2)).
-      const double longer = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg)) - 1;
-      EXPECT_THAT(NumberAfter(fit.reason, "which is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
-      EXPECT_THAT(NumberAfter(fit.reason, "longer at "),
-                  DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
-      EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
-      EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));
-      EXPECT_THAT(fit.reason, HasSubstr("; --model linear describes the former"));
-    }
+  for (const auto& [degrees, friction] :
+       {std::pair(40.0, "viscous"), std::pair(80.0, "coulomb"), std::pair(40.0, "drag")}) {
+    SCOPED_TRACE(std::to_string(degrees) + " deg, " + std::string(friction));
+    const FitReport fit = FitLongest(LinearOscillator(degrees, friction, 1), ModelOptions("coulomb")).fit;
+    ExpectWithdrawn(fit);
+    // A pendulum's period is longer by 2 / π K(sin(A / 2)).
+    const double longer = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg)) - 1;
+    EXPECT_THAT(NumberAfter(fit.reason, "which is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
+    EXPECT_THAT(NumberAfter(fit.reason, "longer at "), DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
+    EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
+    EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));
+    EXPECT_THAT(fit.reason, HasSubstr("; --model linear describes the former"));
   }
 }
 

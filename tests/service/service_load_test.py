@@ -133,7 +133,7 @@ class Misbehaving(Load):
     def setUp(self):
         super().setUp()
         self.server = self.serve(*self.FLAGS)
-        self.seconds = min(8, max(4, ARGUMENTS.seconds / 8))
+        self.seconds = min(8, max(2, ARGUMENTS.seconds / 4))
 
     def connections(self, count):
         found = [self.server.connect() for _ in range(count)]
@@ -193,14 +193,13 @@ class Misbehaving(Load):
             self.assertIn(told[9:12], (b"", b"408"), told[:200])
 
     def test_connections_that_say_nothing_or_half_and_go(self):
-        silent = self.connections(100)
+        self.connections(100)  # which say nothing
         for number in range(200):
             with self.server.connect() as connection:
                 connection.sendall(b"POST /v1/fits HTTP/1.1\r\nHost: localhost\r\nContent-Le"[:number % 60])
         self.check_others()
-        # Nor do they hold it up. That it ends them after a minute is tested by server_limits_test with a shorter one.
+        # Silent clients do not delay the stop. server_limits_test checks the time after which they are ended.
         self.assertEqual(self.server.stop(), 0)
-        self.ended(silent)
 
     def test_clients_that_go_before_their_answer(self):
         fit = self.fits(self.server)[0].content

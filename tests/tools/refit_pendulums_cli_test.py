@@ -272,7 +272,7 @@ class HostileManifests(Lab):
         self.assertIn("there is no such file", self.refit("nowhere.csv", "a.sqlite", code=3)[1])
 
     def test_a_million_lines_are_read_in_bounded_memory(self):
-        lines = 10**5 if is_sanitized(TOOL) else 10**6  # a sanitized tool takes half a minute for a million, without a bound
+        lines = 10**5 if is_sanitized(TOOL) else 10**6  # a sanitized tool takes half a minute for a million, and its memory is not limited
         with open(self.folder / "million.csv", "w", encoding="utf-8") as file:
             file.write("path,id,operator\n")
             file.writelines(f'nowhere/run_{i}.csv,run {i},"O""Neil, A"\n' for i in range(lines))

@@ -107,7 +107,7 @@ TEST(SimulateRecording, QuantizesAfterTheNoise) {
 }
 
 // The first numbers of boost::random::normal_distribution on mt19937_64 seeded with 1, as Boost 1.74 gives them with
-// g++ 12 and clang 14. datasets/ changes when they do.
+// g++ 12 and clang 19. datasets/ changes when they do.
 TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
   SyntheticOptions options = TextbookRig();
   options.release_angle = 0.25;

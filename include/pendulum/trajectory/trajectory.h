@@ -57,12 +57,18 @@ struct TraceSummary {
 template <typename T>
 using SegmentVisitor = std::function<void(const Segment<T>&)>;
 
-/// The numbers that a trajectory of law F is traced with: doubles, or the duals of a fit, which carry derivatives by
-/// inertia, friction and the angle of a release, or by the angle and rate of a start in motion.
+/// What a fit of law F traces a released pendulum with: derivatives by inertia, friction and the angle.
+template <typename F>
+using ReleaseDual = Dual<kFrictionParameters<F> + 2>;
+
+/// What a fit of law F traces a pendulum in motion with: derivatives by inertia, friction, and the angle and rate at
+/// the start.
+template <typename F>
+using MovingDual = Dual<kFrictionParameters<F> + 3>;
+
+/// The number types that trajectories of law F are compiled for.
 template <typename T, typename F>
-concept TracedWith = std::same_as<T, double> || std::same_as < T,
-        Dual < kFrictionParameters<F>
-+ 2 >> || std::same_as<T, Dual<kFrictionParameters<F> + 3>>;
+concept TracedWith = std::same_as<T, double> || std::same_as<T, ReleaseDual<F>> || std::same_as<T, MovingDual<F>>;
 
 /// Traces a pendulum from its start to options.end and calls visit(segment) for each stretch in time order: the hold,
 /// the swings in as many steps as the tolerance asks for, the rest. Reversals are located exactly, so every segment is

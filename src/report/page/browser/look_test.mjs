@@ -5,21 +5,16 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { makeResult, makeSeries } from './fixture.mjs';
-import { assertAccessible, ink, kPlot, open } from './page.mjs';
+import { assertAccessible, ink, kLooks, kPlot, open } from './page.mjs';
 
-for (const colorScheme of ['light', 'dark']) {
-  for (const [name, width] of [
-    ['desktop', 1280],
-    ['phone', 360],
-  ]) {
-    test(`${colorScheme}, ${name}: accessible, and the page is not wider than the window`, async (t) => {
-      const page = await open(t, makeResult(), makeSeries(), {
-        context: { colorScheme, viewport: { width, height: 800 } },
-      });
-      assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-      await assertAccessible(page);
+for (const [colorScheme, name, width] of kLooks) {
+  test(`${colorScheme}, ${name}: accessible, and the page is not wider than the window`, async (t) => {
+    const page = await open(t, makeResult(), makeSeries(), {
+      context: { colorScheme, viewport: { width, height: 800 } },
     });
-  }
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+    await assertAccessible(page);
+  });
 }
 
 test('the theme changes by its button, with the plots', async (t) => {

@@ -87,6 +87,12 @@ export async function openFile(t, url, options = {}) {
   return page;
 }
 
+/** [theme, device, width in px]: contrast depends on the theme and layout on the width, so two pages show both of each. */
+export const kLooks = [
+  ['light', 'desktop', 1280],
+  ['dark', 'phone', 360],
+];
+
 const axeSource = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 /** The page is not wider than the window, and axe has nothing against it. */

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import { before, test } from 'node:test';
 
-import { assertAccessible, ink } from './page.mjs';
+import { assertAccessible, ink, kLooks } from './page.mjs';
 import { assertShown, drop, openView, readDataset, shownFit, startService } from './service_server.mjs';
 
 let service;
@@ -92,29 +92,26 @@ const views = () => [
   ['a fit that is not there', '/fits/nothing', (page) => page.locator('.problem').waitFor()],
 ];
 
-for (const colorScheme of ['light', 'dark']) {
-  for (const [device, context] of [
-    ['desktop', { viewport: { width: 1280, height: 900 } }],
-    ['phone', { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true }],
-  ]) {
-    test(`${colorScheme}, ${device}: each view is accessible and not wider than the window`, async (t) => {
-      for (const [name, address, act] of views()) {
-        await t.test(name, async (part) => {
-          const refused = ['status of 404', 'status of 422']; // the two views that are about them
-          const page = await openView(part, service, address, { context: { colorScheme, ...context }, refused });
-          await act(page);
-          assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-          await assertAccessible(page);
-          if (device === 'phone') await assertTouchable(page);
-          if (process.env.SHOTS)
-            await page.screenshot({
-              path: `${process.env.SHOTS}/${name}, ${device}, ${colorScheme}.png`,
-              fullPage: true,
-            });
-        });
-      }
-    });
-  }
+for (const [colorScheme, device, width] of kLooks) {
+  const touch = device === 'phone' ? { hasTouch: true, isMobile: true } : {};
+  const context = { colorScheme, viewport: { width, height: 740 }, ...touch };
+  test(`${colorScheme}, ${device}: each view is accessible and not wider than the window`, async (t) => {
+    for (const [name, address, act] of views()) {
+      await t.test(name, async (part) => {
+        const refused = ['status of 404', 'status of 422']; // the two views that are about them
+        const page = await openView(part, service, address, { context, refused });
+        await act(page);
+        assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+        await assertAccessible(page);
+        if (device === 'phone') await assertTouchable(page);
+        if (process.env.SHOTS)
+          await page.screenshot({
+            path: `${process.env.SHOTS}/${name}, ${device}, ${colorScheme}.png`,
+            fullPage: true,
+          });
+      });
+    }
+  });
 }
 
 /** Buttons, fields and links that stand by themselves are at least 40 px high (WCAG 2.5.8 asks for 24). */

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { kHostile, makeFailures, makeHostile, makeLarge, makeSummary, makeTiny } from './fixture_summary.mjs';
-import { assertAccessible, assertRange, ink, openSummary, shownRange, summaryTemplate } from './page.mjs';
+import { assertAccessible, assertRange, ink, kLooks, openSummary, shownRange, summaryTemplate } from './page.mjs';
 
 const kTrend = '#trend .plot';
 const ids = (page) => page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
@@ -206,20 +206,15 @@ test('names are shown as text, whatever they are', async (t) => {
   await assertAccessible(page);
 });
 
-for (const colorScheme of ['light', 'dark']) {
-  for (const [name, width] of [
-    ['desktop', 1280],
-    ['phone', 390],
-  ]) {
-    test(`${colorScheme}, ${name}: accessible, and not wider than the window`, async (t) => {
-      const options = { context: { colorScheme, viewport: { width, height: 800 } } };
-      for (const make of [() => makeSummary({ scatter: 1.4 }), makeFailures, makeLarge]) {
-        const page = await openSummary(t, make(), options);
-        assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-        await assertAccessible(page);
-      }
-    });
-  }
+for (const [colorScheme, name, width] of kLooks) {
+  test(`${colorScheme}, ${name}: accessible, and not wider than the window`, async (t) => {
+    const options = { context: { colorScheme, viewport: { width, height: 800 } } };
+    for (const make of [() => makeSummary({ scatter: 1.4 }), makeFailures, makeLarge]) {
+      const page = await openSummary(t, make(), options);
+      assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+      await assertAccessible(page);
+    }
+  });
 }
 
 test('paper is light, without controls, and no plot is wider than the page', async (t) => {
