@@ -33,7 +33,7 @@ STANDS_ON = {
 
 # The only floors that may include a library's headers. Libraries not listed are free.
 LIBRARY_FLOORS = {
-    "boost": {"recording", "trajectory", "closed_form", "fitting", "analysis", "batch", "service"},
+    "boost": {"base", "trajectory", "closed_form", "fitting", "analysis", "service"},
     "ceres": {"fitting"},
     "csv.h": {"batch"},
     "gflags": {"tools"},

@@ -6,10 +6,9 @@
 #include <limits>
 
 #include <Eigen/LU>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 
 #include "pendulum/analysis/part_fit.h"
+#include "pendulum/base/distributions.h"
 
 namespace pendulum {
 namespace {
@@ -150,12 +149,12 @@ std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<Run
   dependence.slope = fit.slope;
   dependence.slope_std_error = std::sqrt(fit.slope_variance * excess);
   const double f = std::max(fit.left_by_constant - rest, 0.0) / excess;
-  dependence.p = boost::math::cdf(boost::math::complement(boost::math::fisher_f(1, freedom), f));
+  dependence.p = FisherTail(f, 1, freedom);
   dependence.span = fit.slope * (squares.highest - squares.lowest) / parameter.mean;
   const double between = fit.left.head(static_cast<Index>(line.estimates)).squaredNorm();
   const double between_freedom =
       std::max(static_cast<double>(line.estimates) - (numbers > line.estimates ? 1 : 2), 1.0);
-  dependence.rest_p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(between_freedom), between));
+  dependence.rest_p = ChiSquareTail(between, between_freedom);
   return dependence;
 }
 

@@ -8,10 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "pendulum/analysis/amplitude_trend.h"
 #include "pendulum/analysis/part_fit.h"
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
 #include "pendulum/fitting/undersampled.h"
@@ -65,7 +64,7 @@ void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& s
   const double statistic = SquaredLength(difference, covariance);
   if (!std::isfinite(statistic)) return;
   result.halves_statistic = statistic;
-  result.halves_p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(result.halves_dof), statistic));
+  result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
 /// Why there is no test; empty when there is.

@@ -6,10 +6,9 @@
 #include <mutex>
 #include <utility>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "pendulum/analysis/cramer_rao.h"
 #include "pendulum/analysis/fit_models.h"
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/fitting/edge_noise.h"
 #include "pendulum/fitting/fit.h"
@@ -191,10 +190,8 @@ CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutco
 
 /// Each end errs at most 2.5 % of the time (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 BinomialInterval BinomialInterval95(int successes, int trials) {
-  using Binomial = boost::math::binomial_distribution<double>;
   constexpr double kTail = 0.025;
-  return {Binomial::find_lower_bound_on_p(trials, successes, kTail),
-          Binomial::find_upper_bound_on_p(trials, successes, kTail)};
+  return {BinomialLowerLimit(successes, trials, kTail), BinomialUpperLimit(successes, trials, kTail)};
 }
 
 Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const CoverageOptions& options) {

@@ -7,12 +7,11 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include "pendulum/analysis/amplitude_dependence.h"
 #include "pendulum/analysis/homogeneity_words.h"
 #include "pendulum/analysis/part_fit.h"
+#include "pendulum/base/distributions.h"
 
 namespace pendulum {
 namespace {
@@ -23,7 +22,7 @@ using Eigen::VectorXd;
 
 double Tail(double statistic, double dof) {
   if (!(dof > 0)) return 1;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), std::max(statistic, 0.0)));
+  return ChiSquareTail(std::max(statistic, 0.0), dof);
 }
 
 // ---- What each recording alone says ---------------------------------------------------------------------------------
@@ -229,9 +228,8 @@ double DistanceFromScatter(const std::vector<Told>& told, std::size_t k, Index j
   const RandomEffects others = SummarizeScatter(value, error);
   const double variance =
       told[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
-  const boost::math::students_t distribution(static_cast<double>(value.size() - 1));
   const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
-  return 2 * boost::math::cdf(boost::math::complement(distribution, t));
+  return 2 * StudentTail(t, static_cast<double>(value.size() - 1));
 }
 
 /// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 
@@ -38,8 +37,7 @@ double ChiBarTail(const ChiBarWeights& weights, double statistic) {
   double tail = 0;
   for (std::size_t freedom = 1; freedom < weights.size(); ++freedom) {
     if (weights[freedom] == 0) continue;
-    const boost::math::chi_squared_distribution<double> law(static_cast<double>(freedom));
-    tail += weights[freedom] * boost::math::cdf(boost::math::complement(law, statistic));
+    tail += weights[freedom] * ChiSquareTail(statistic, static_cast<double>(freedom));
   }
   return tail;
 }

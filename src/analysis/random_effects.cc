@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
+
+#include "pendulum/base/distributions.h"
 
 namespace pendulum {
 namespace {
@@ -58,12 +58,11 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
   effects.between = std::sqrt(between);
   const double ratio = std::max(scatter.Statistic(between) / freedom, 1.0);
   effects.std_error = std::sqrt(ratio / scatter.Weights(between).sum());
-  const double length = effects.std_error * boost::math::quantile(boost::math::students_t(freedom), 0.975);
+  const double length = effects.std_error * StudentQuantile(0.975, freedom);
   effects.lower95 = effects.mean - length;
   effects.upper95 = effects.mean + length;
-  const boost::math::chi_squared distribution(freedom);
-  effects.between_lower95 = std::sqrt(scatter.BetweenAt(boost::math::quantile(distribution, 0.975)));
-  const double upper = scatter.BetweenAt(boost::math::quantile(distribution, 0.025));
+  effects.between_lower95 = std::sqrt(scatter.BetweenAt(ChiSquareQuantile(0.975, freedom)));
+  const double upper = scatter.BetweenAt(ChiSquareQuantile(0.025, freedom));
   effects.between_upper95 = upper > 0 ? std::sqrt(upper) : std::numeric_limits<double>::quiet_NaN();
   return effects;
 }
@@ -71,8 +70,7 @@ RandomEffects SummarizeScatter(const VectorXd& value, const VectorXd& std_error)
 double ScatterP(const VectorXd& value, const VectorXd& std_error) {
   const double statistic = Scatter{value, std_error.cwiseAbs2()}.Statistic(0);
   if (!std::isfinite(statistic)) return std::numeric_limits<double>::quiet_NaN();
-  const boost::math::chi_squared distribution(static_cast<double>(value.size() - 1));
-  return boost::math::cdf(boost::math::complement(distribution, statistic));
+  return ChiSquareTail(statistic, static_cast<double>(value.size() - 1));
 }
 
 double ScatterAbout(double center, const VectorXd& value, const VectorXd& std_error) {

@@ -13,11 +13,9 @@
 #include <system_error>
 
 #include <Eigen/Core>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include "pendulum/analysis/random_effects.h"
+#include "pendulum/base/distributions.h"
 
 namespace pendulum {
 namespace {
@@ -104,7 +102,7 @@ double MeanOf(const std::vector<double>& values, const std::vector<std::size_t>&
 
 double UpperP(double chi2, std::size_t dof) {
   if (!std::isfinite(chi2)) return 0;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(static_cast<double>(dof)), chi2));
+  return ChiSquareTail(chi2, static_cast<double>(dof));
 }
 
 }  // namespace
@@ -133,7 +131,7 @@ std::vector<Outlier> FindOutliers(const RunValues& values) {
   std::vector<Outlier> outliers;
   if (values.size() < kFewest) return outliers;
   const double each = -std::expm1(std::log1p(-kFalseAlarms) / static_cast<double>(values.size()));
-  const double limit = boost::math::quantile(boost::math::complement(boost::math::normal(), each / 2));
+  const double limit = -NormalQuantile(each / 2);
   for (const auto& [group, runs] : Groups(values)) {
     if (runs.size() >= kFewest) AddOutliersOf(values, runs, limit, outliers);
   }
@@ -199,7 +197,7 @@ std::optional<Trend> FitTrend(const RunValues& values, const std::vector<Outlier
   trend.std_error = std::sqrt(std::max(syy - sxy * sxy / sxx, 0.0) / freedom / sxx);
   if (!(trend.std_error > 0)) return trend;
   const double t = std::abs(trend.slope / trend.std_error);
-  trend.p = 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t));
+  trend.p = 2 * StudentTail(t, freedom);
   return trend;
 }
 

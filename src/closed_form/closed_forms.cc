@@ -5,8 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <boost/math/distributions/fisher_f.hpp>
-
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/turns_view.h"
 #include "pendulum/recording/window.h"
@@ -50,8 +49,7 @@ std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeCompariso
   if (richest > kMost * own) return "";
   const double f = std::max(0.0, decrement.chi_square - laws.richest_chi_square) / more / richest;
   if (!std::isfinite(f)) return "";
-  const boost::math::fisher_f_distribution<double> law(more, laws.richest_freedom);
-  if (boost::math::cdf(boost::math::complement(law, f)) >= kSurely) return "";
+  if (FisherTail(f, more, laws.richest_freedom) >= kSurely) return "";
   return "chi2/dof of the turning points is " + NumberText(own, 3) + " with " + std::string(decrement.model.friction) +
          " friction and " + NumberText(richest, 3) + " with viscous, dry and quadratic";
 }

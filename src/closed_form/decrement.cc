@@ -8,8 +8,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <boost/math/distributions/chi_squared.hpp>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/half_swing_map.h"
 #include "pendulum/closed_form/period.h"
@@ -252,8 +252,7 @@ std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, c
 
 double ProbabilityBeyond(double chi_square, int freedom) {
   if (!std::isfinite(chi_square)) return 0;
-  const boost::math::chi_squared_distribution<double> law(freedom);
-  return boost::math::cdf(boost::math::complement(law, chi_square));
+  return ChiSquareTail(chi_square, freedom);
 }
 
 /// Unknowns of the fit to the quantities of Decrement: ω0 becomes I = 1/ω0², and errors follow.

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
-
 #include "level_likelihoods.h"
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
 
 namespace pendulum {
@@ -194,9 +192,8 @@ struct Tail {
 
 Tail StudentBelow(double u) {
   constexpr double kFreedom = NoiseModel::kStudentFreedom;
-  const boost::math::students_t student(kFreedom);
-  const double density = boost::math::pdf(student, u);
-  return {boost::math::cdf(student, u), density, -(kFreedom + 1) * u / (kFreedom + u * u) * density};
+  const double density = StudentDensity(u, kFreedom);
+  return {StudentProbability(u, kFreedom), density, -(kFreedom + 1) * u / (kFreedom + u * u) * density};
 }
 
 Tail HuberBelow(double u) {

@@ -8,9 +8,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/students_t.hpp>
 
 #include "level_likelihoods.h"
+#include "pendulum/base/distributions.h"
 
 namespace pendulum {
 namespace {
@@ -232,7 +232,7 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   for (Index i = 0; i < t95.size(); ++i) {
     const double share = white ? 1.0 : std::min(optimum.inverse.matrix(i, i) / covariance(i, i), 1.0);
     const double freedom = std::isfinite(share) ? std::max(share * samples[i] - free, 1.0) : 1.0;
-    t95[i] = boost::math::quantile(boost::math::students_t(freedom), 0.975);
+    t95[i] = StudentQuantile(0.975, freedom);
   }
   return t95;
 }

@@ -7,10 +7,9 @@
 #include <random>
 #include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/random/uniform_01.hpp>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
 
 namespace pendulum {
@@ -75,7 +74,7 @@ std::vector<PeriodError> PeriodErrors(const Eigen::VectorXd& time, const Eigen::
 
 bool Exceeds(double sum, double freedom) {
   constexpr double kLevel = 1e-4;
-  return sum > boost::math::quantile(boost::math::complement(boost::math::chi_squared(freedom), kLevel));
+  return sum > ChiSquareQuantile(1 - kLevel, freedom);
 }
 
 }  // namespace
@@ -107,13 +106,12 @@ Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<cons
   constexpr double kFarthest = 1e-15;  // from 0 and 1: eight standard deviations
   std::mt19937_64 generator(1);
   boost::random::uniform_01<double> uniform;
-  const boost::math::normal normal;
   Eigen::VectorXd residuals(value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const NoiseModel::Distribution u = noise.ForSample(i).DistributionAt(value[i], readings[i]);
     const double place = u.below + uniform(generator) * (u.at - u.below);
     const double within = std::isfinite(place) ? std::clamp(place, kFarthest, 1 - kFarthest) : 0.5;
-    residuals[i] = boost::math::quantile(normal, within);
+    residuals[i] = NormalQuantile(within);
   }
   return residuals;
 }
@@ -130,7 +128,7 @@ double LjungBoxP(const Eigen::VectorXd& residual) {
     portmanteau += correlation * correlation / static_cast<double>(n - lag);
   }
   portmanteau *= static_cast<double>(n) * static_cast<double>(n + 2);
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(static_cast<double>(lags)), portmanteau));
+  return ChiSquareTail(portmanteau, static_cast<double>(lags));
 }
 
 double RunsP(const Eigen::VectorXd& residual) {

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include <Eigen/QR>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 
@@ -97,14 +96,14 @@ std::optional<OrderTest> TestOrder(const CalibrationTable& table, const LeastSqu
   if (freedom < 1 || !shorter.is_determined || !longer.is_determined || shorter.Rss() <= smallest) return std::nullopt;
   if (longer.Rss() <= smallest) return OrderTest{order, std::numeric_limits<double>::infinity(), freedom, 0};
   const double f = std::max(0.0, shorter.Rss() - longer.Rss()) / (longer.Rss() / freedom);
-  return OrderTest{order, f, freedom, cdf(complement(boost::math::fisher_f(1, freedom), f))};
+  return OrderTest{order, f, freedom, FisherTail(f, 1, freedom)};
 }
 
 std::optional<RoundingTest> TestRounding(double resolution, double rss, Index freedom) {
   if (resolution == 0 || freedom < 1) return std::nullopt;
   const double std_dev = resolution / std::sqrt(12.0);
   const double chi_squared = std::min(rss / (std_dev * std_dev), std::numeric_limits<double>::max());
-  return RoundingTest{std_dev, cdf(complement(boost::math::chi_squared(static_cast<double>(freedom)), chi_squared))};
+  return RoundingTest{std_dev, ChiSquareTail(chi_squared, static_cast<double>(freedom))};
 }
 
 double RmsSlope(const CalibrationTable& table, const Calibration& calibration) {
