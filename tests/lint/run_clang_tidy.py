@@ -65,7 +65,7 @@ def main():
     tree = check_includes.Tree(ROOT)
     commands = {pathlib.Path(entry["file"]): entry["command"].replace(str(ROOT), "")
                 for entry in json.loads((BUILD / "compile_commands.json").read_text())}
-    reached = {path: tree.reached(path)[0] for path in sorted(commands)}
+    reached = {path: tree.reached(path)[0] for path in tree.paths if path in commands}  # not what the build writes
     if sys.argv[1] != "--all":
         changed = differing(sys.argv[1])
         reached = {path: headers for path, headers in reached.items() if headers & changed}
