@@ -39,6 +39,8 @@ def main():
     parser.add_argument("--most", type=int, default=20)
     arguments = parser.parse_args()
     for folder in arguments.folders:
+        if not (folder / ".ninja_log").exists() and not (folder / "tests.xml").exists():
+            parser.error(f"{folder} has neither .ninja_log nor tests.xml: build and test it first.")
         for what, name, rows in (("built", ".ninja_log", built), ("tested", "tests.xml", tested)):
             if (folder / name).exists():
                 print_table(f"{folder}, {what}", rows(folder), arguments.most)

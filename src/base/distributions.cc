@@ -33,7 +33,9 @@ double StudentTail(double t, double freedom) { return cdf(complement(students_t(
 
 double StudentQuantile(double probability, double freedom) { return quantile(students_t(freedom), probability); }
 
-double FisherTail(double f, double above, double below) { return cdf(complement(fisher_f(above, below), f)); }
+double FisherTail(double f, double numerator_freedom, double denominator_freedom) {
+  return cdf(complement(fisher_f(numerator_freedom, denominator_freedom), f));
+}
 
 double BinomialLowerLimit(int successes, int trials, double tail) {
   return Binomial::find_lower_bound_on_p(trials, successes, tail);

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/base/distributions.h"
 
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 namespace pendulum::distributions_test {
 namespace {
 
 // NIST/SEMATECH e-Handbook of Statistical Methods, sections 1.3.6.7.1 to 1.3.6.7.4, as it prints them.
-TEST(Distributions, AreThoseOfThePrintedTables) {
-  EXPECT_NEAR(NormalQuantile(0.5 + 0.47500), 1.96, 5e-3);
+TEST(Distributions, MatchPrintedTables) {
+  EXPECT_NEAR(NormalQuantile(0.5 + 0.47500), 1.96, 5e-5);
+  EXPECT_NEAR(NormalQuantile(0.5 - 0.47500), -1.96, 5e-5);
   EXPECT_NEAR(ChiSquareQuantile(0.95, 1), 3.841, 5e-4);
   EXPECT_NEAR(ChiSquareQuantile(0.999, 10), 29.588, 5e-4);
   EXPECT_NEAR(ChiSquareTail(18.307, 10), 0.05, 5e-6);
@@ -19,7 +24,7 @@ TEST(Distributions, AreThoseOfThePrintedTables) {
 }
 
 // With one degree of freedom Student's law is Cauchy's, with two chi-square's tail is exp(-x/2).
-TEST(Distributions, AreClosedFormsWhereThereAreAny) {
+TEST(Distributions, MatchClosedForms) {
   EXPECT_DOUBLE_EQ(StudentProbability(1, 1), 0.75);
   EXPECT_DOUBLE_EQ(StudentTail(1, 1), 0.25);
   EXPECT_DOUBLE_EQ(StudentDensity(0, 1), 0.31830988618379067);
@@ -27,11 +32,19 @@ TEST(Distributions, AreClosedFormsWhereThereAreAny) {
   EXPECT_DOUBLE_EQ(NormalQuantile(0.5), 0);
 }
 
-// No success in 10 trials: (1 - p)^10 = 0.025. One failure is its mirror image.
+// No success in 10 trials: (1 - p)^10 = 0.025; no failure: p^10 = 0.025.
 TEST(Distributions, HaveTheLimitsOfClopperAndPearson) {
   EXPECT_EQ(BinomialLowerLimit(0, 10, 0.025), 0);
-  EXPECT_NEAR(BinomialUpperLimit(0, 10, 0.025), 0.30849710781876077, 1e-12);
-  EXPECT_NEAR(BinomialLowerLimit(9, 10, 0.025), 1 - BinomialUpperLimit(1, 10, 0.025), 1e-12);
+  EXPECT_NEAR(BinomialUpperLimit(0, 10, 0.025), 1 - std::pow(0.025, 0.1), 1e-12);
+  EXPECT_NEAR(BinomialLowerLimit(10, 10, 0.025), std::pow(0.025, 0.1), 1e-12);
+  EXPECT_EQ(BinomialUpperLimit(10, 10, 0.025), 1);
+}
+
+TEST(Distributions, ThrowOnWhatHasNone) {
+  EXPECT_THROW(ChiSquareTail(std::numeric_limits<double>::infinity(), 1), std::domain_error);
+  EXPECT_THROW(StudentTail(std::numeric_limits<double>::quiet_NaN(), 1), std::domain_error);
+  EXPECT_THROW(ChiSquareTail(1, 0), std::domain_error);
+  EXPECT_THROW(StudentQuantile(1, 5), std::overflow_error);
 }
 
 }  // namespace

@@ -2,100 +2,217 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs clang-tidy on source files of the libraries and the tools, each compiled by itself, for scripts/lint.
 
-  run_clang_tidy.py --all   all of them
-  run_clang_tidy.py BASE    those that differ from a revision of git, or include a header that does, through others too
+  run_clang_tidy.py --all        all of them
+  run_clang_tidy.py BASE         those that differ from a revision of git, or include a header that does, through others
+                                 too; all of them when the checks or the build differ
+  run_clang_tidy.py --self_test  shows on a small tree what is remembered
 
-A file that clang-tidy had nothing to say about is not looked at again until its text, a header that it reaches, the
-checks, how it is compiled or a package changes. What is known is kept in ~/.cache/pendulum_lint (XDG_CACHE_HOME).
-Exit 1 if there is a finding.
+A file without findings is remembered in ~/.cache/pendulum_lint (or XDG_CACHE_HOME), and not read again until it, a
+header that it includes, the checks, its compile command or a Debian package with headers changes. Needs the preset lint.
+Exit 0: no finding. Exit 1: a finding. Exit 2: it could not be run.
 """
 
+import argparse
 import concurrent.futures
+import contextlib
 import hashlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
+import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build" / "lint"
-MEMORY = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "pendulum_lint")
-DAYS_IN_MEMORY = 30
+CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "pendulum_lint")
+DAYS_IN_CACHE = 30
+# A change of one of these may change what is found in every file.
+CONCERNS_ALL = re.compile(r"(^|/)(\.clang-tidy|CMakeLists\.txt|CMakePresets\.json)$|^tests/lint/|^scripts/lint$")
 sys.path.insert(0, str(ROOT / "tests"))
 
 import check_includes  # noqa: E402
 
 
+def fail(sentence):
+    print(f"run_clang_tidy: {sentence}", file=sys.stderr)
+    sys.exit(2)
+
+
 def output(*command):
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if run.returncode != 0:
-        sys.exit(f"run_clang_tidy: {' '.join(command)}: {run.stderr.strip()}")
+        fail(f"{' '.join(map(str, command))}: {run.stderr.strip()}")
     return run.stdout
 
 
-def differing(base):
-    """The files that differ from a revision, those that git does not know yet too."""
-    names = output("git", "diff", "--name-only", base) + output("git", "ls-files", "--others", "--exclude-standard")
-    return {ROOT / name for name in names.splitlines()}
+def changed_since(base):
+    """The paths that differ from a revision, from the top folder; files that git does not know yet too."""
+    names = output("git", "diff", "--name-only", "--relative", "-z", base, "--")
+    return (names + output("git", "ls-files", "--others", "--exclude-standard", "-z")).split("\0")
 
 
-def what_all_share():
-    """A digest of what each finding hangs on besides the sources: checks, their program and other people's headers."""
+def shared_digest():
+    """Of what the findings in all files depend on besides the sources: checks, this program, other people's headers."""
     digest = hashlib.sha256(output("dpkg-query", "--show", "clang-tidy-19", "*-dev").encode())
-    for path in [ROOT / ".clang-tidy", *sorted(pathlib.Path(__file__).parent.glob("*.*"))]:
-        digest.update(path.read_bytes())
-    return digest.digest()
+    checks = output("git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", ".clang-tidy", "**/.clang-tidy", "tests/lint")
+    for name in sorted(filter(None, checks.split("\0"))):
+        digest.update(f"{name}\n{(ROOT / name).read_text()}".encode())
+    return digest.hexdigest()
 
 
-def look(path):
-    """What clang-tidy says about a file, empty if nothing."""
-    run = subprocess.run(
-        ["clang-tidy-19", "-p", BUILD, "--quiet", "--warnings-as-errors=*", f"--load={BUILD}/skip_system_headers.so",
-         "--extra-arg=-Xclang", "--extra-arg=-fno-validate-pch", "--extra-arg=-include-pch",
-         f"--extra-arg={BUILD}/precompiled.pch", path],
-        cwd=ROOT, capture_output=True, text=True)
-    return "" if run.returncode == 0 else run.stdout + run.stderr
+def build_once(path, *command):
+    """Has a command write a file that is not there; two runs at once do no harm."""
+    if not path.exists():
+        part = path.with_name(f"{path.name}.{os.getpid()}")
+        output(*command, "-o", part)
+        for old in path.parent.glob(f"{path.stem.rpartition('_')[0]}_*{path.suffix}"):
+            old.unlink(missing_ok=True)
+        part.rename(path)
+    return path
+
+
+def tidy_command(digest):
+    """clang-tidy with its plugin and the precompiled header, which are built where they are missing."""
+    include = output("llvm-config-19", "--includedir").strip()
+    plugin = build_once(BUILD / f"skip_system_headers_{digest[:16]}.so", "clang++-19", "-std=c++17", "-fPIC", "-shared", "-fno-rtti",
+                        f"-I{include}", "tests/lint/skip_system_headers.cc")
+    # With the templates it instantiates, which takes half of the time off each file.
+    header = build_once(BUILD / f"precompiled_{digest[:16]}.pch", "clang++-19", "-fpch-instantiate-templates", "-std=c++20",
+                        "-DGFLAGS_IS_A_DLL=0", "-isystem", "/usr/include/eigen3", "-x", "c++-header", "tests/lint/precompiled.h")
+    return ["clang-tidy-19", "-p", BUILD, "--quiet", "--warnings-as-errors=*", f"--load={plugin}", "--extra-arg=-Xclang",
+            "--extra-arg=-fno-validate-pch", "--extra-arg=-include-pch", f"--extra-arg={header}"]
+
+
+def compile_commands():
+    """{source file: how it is compiled, the same in every checkout}"""
+    commands = {}
+    for entry in json.loads((BUILD / "compile_commands.json").read_text()):
+        root = str(pathlib.Path(entry["directory"]).parent.parent)  # as cmake was told it, through links or not
+        commands[pathlib.Path(entry["file"]).resolve()] = entry["command"].replace(root, "")
+    return commands
+
+
+class Lint:
+    """Files of a tree, and which of them are known to be clean: `command` and a path says what is wrong with one."""
+
+    def __init__(self, tree, commands, digest, command, cache):
+        self.tree, self.commands, self.digest, self.command, self.cache = tree, commands, digest, command, cache
+        cache.mkdir(parents=True, exist_ok=True)
+
+    def mark(self, path, text):
+        """The file that is there when `path` is clean, of the text of what it includes."""
+        digest = hashlib.sha256((self.digest + self.commands[path]).encode())
+        for file in sorted(self.tree.reached(path)[0]):
+            digest.update(f"{file.relative_to(self.tree.root)}\n{text(file)}".encode())
+        return self.cache / digest.hexdigest()
+
+    def is_clean(self, path):
+        with contextlib.suppress(FileNotFoundError):
+            os.utime(self.mark(path, self.tree.text))
+            return True
+        return False
+
+    def check(self, path):
+        """What clang-tidy says of a file, or None; remembers that it is nothing unless the file has changed meanwhile."""
+        run = subprocess.run([*self.command, path], cwd=ROOT, capture_output=True, text=True)
+        if run.returncode != 0:
+            return (run.stdout + run.stderr) or f"run_clang_tidy: {self.command[0]} ended with {run.returncode} on {path}."
+        mark = self.mark(path, self.tree.text)
+        if mark == self.mark(path, pathlib.Path.read_text):
+            mark.touch()
+        return None
+
+    def forget_old(self):
+        for mark in self.cache.iterdir():
+            with contextlib.suppress(FileNotFoundError):
+                if mark.stat().st_mtime < time.time() - DAYS_IN_CACHE * 86400:
+                    mark.unlink()
+
+
+def sources_to_check(tree, commands, base):
+    """The source files to look at; all of them where there is no base."""
+    sources = [path for path in tree.paths if path.suffix == ".cc" and path.is_relative_to(tree.root / "src")]
+    for path in sources:
+        if path not in commands:
+            fail(f"{path.relative_to(tree.root)} is not compiled: name it in src/CMakeLists.txt.")
+    changed = [] if base is None else changed_since(base)
+    if base is None or any(CONCERNS_ALL.search(name) for name in changed):
+        return sources
+    changed = {tree.root / name for name in changed}
+    return [path for path in sources if tree.reached(path)[0] & changed]
+
+
+def run(base):
+    digest = shared_digest()
+    tree, commands = check_includes.Tree(ROOT), compile_commands()
+    sources = sources_to_check(tree, commands, base)
+    lint = Lint(tree, commands, digest, tidy_command(digest), CACHE)
+    unknown = [path for path in sources if not lint.is_clean(path)]
+    print(f"lint: clang-tidy on {len(unknown)} files; {len(sources) - len(unknown)} are known to be clean", flush=True)
+    findings = 0
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for finding in filter(None, pool.map(lint.check, unknown)):
+            findings += 1
+            print(finding, flush=True)
+    lint.forget_old()
+    return 1 if findings else 0
+
+
+def self_test():
+    """What is wrong with what is remembered of a small tree."""
+    failures = []
+
+    def expect(is_clean, why, **changed):
+        options = {"commands": commands, "digest": "checks", "command": ["true"], **changed}
+        if Lint(check_includes.Tree(root), options["commands"], options["digest"], options["command"], cache).is_clean(source) != is_clean:
+            failures.append(why)
+
+    def check(command):
+        return Lint(check_includes.Tree(root), commands, "checks", command, cache).check(source)
+
+    with tempfile.TemporaryDirectory() as folder:
+        root, cache = pathlib.Path(folder).resolve(), pathlib.Path(folder, "cache")
+        files = {"src/a/x.cc": '#include "pendulum/a/x.h"\n', "include/pendulum/a/x.h": '#pragma once\n#include "pendulum/a/y.h"\n',
+                 "include/pendulum/a/y.h": "#pragma once\n", "include/pendulum/a/other.h": "#pragma once\n"}
+        for name, text in files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text)
+        source = root / "src/a/x.cc"
+        commands = {source: "c++ x.cc"}
+        expect(False, "a file that was never looked at is clean")
+        if check(["sh", "-c", "echo wrong; exit 1"]) != "wrong\n":
+            failures.append("a finding is not told")
+        if check(["sh", "-c", "kill -9 $$"]) is None:
+            failures.append("a program that was killed finds nothing")
+        expect(False, "a finding is remembered as none")
+        check(["sh", "-c", f"echo >> {root}/include/pendulum/a/x.h"])
+        expect(False, "a header that changed meanwhile is clean")
+        check(["true"])
+        expect(True, "a clean file is not remembered")
+        (root / "include/pendulum/a/other.h").write_text("int i;\n")
+        expect(True, "a header that is not included matters")
+        expect(False, "other checks do not matter", digest="other checks")
+        expect(False, "another compile command does not matter", commands={source: "c++ -O2 x.cc"})
+        (root / "include/pendulum/a/y.h").write_text("#pragma once\nint i;\n")
+        expect(False, "a header that a header includes does not matter")
+    return failures
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit("run_clang_tidy: usage: run_clang_tidy.py --all | BASE")
-    tree = check_includes.Tree(ROOT)
-    commands = {pathlib.Path(entry["file"]): entry["command"].replace(str(ROOT), "")
-                for entry in json.loads((BUILD / "compile_commands.json").read_text())}
-    reached = {path: tree.reached(path)[0] for path in tree.paths if path in commands}  # not what the build writes
-    if sys.argv[1] != "--all":
-        changed = differing(sys.argv[1])
-        reached = {path: headers for path, headers in reached.items() if headers & changed}
-
-    shared = what_all_share()
-
-    def mark(path):
-        digest = hashlib.sha256(shared + commands[path].encode())
-        for header in sorted(reached[path]):
-            digest.update(f"{header.relative_to(ROOT)}\n{tree.text(header)}".encode())
-        return MEMORY / digest.hexdigest()
-
-    MEMORY.mkdir(parents=True, exist_ok=True)
-    marks = {path: mark(path) for path in reached}
-    new = [path for path in reached if not marks[path].exists()]
-    print(f"lint: clang-tidy on {len(new)} files; {len(reached) - len(new)} have not changed since it found nothing", flush=True)
-    findings = 0
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for path, said in zip(new, pool.map(look, new)):
-            if said:
-                findings += 1
-                print(said, flush=True)
-            else:
-                marks[path].touch()
-    for path in set(reached) - set(new):
-        marks[path].touch()
-    for path in MEMORY.iterdir():
-        if path.stat().st_mtime < time.time() - DAYS_IN_MEMORY * 86400:
-            path.unlink(missing_ok=True)
-    return 1 if findings else 0
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("base", nargs="?")
+    what.add_argument("--all", action="store_true")
+    what.add_argument("--self_test", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.self_test:
+        failures = self_test()
+        print("\n".join(failures) or "ok")
+        return 1 if failures else 0
+    return run(arguments.base)
 
 
 if __name__ == "__main__":

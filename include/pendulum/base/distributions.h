@@ -3,28 +3,37 @@
 
 namespace pendulum {
 
-/// Distributions of statistics, by Boost.Math. Its headers are read here alone, for they take seconds to compile.
-/// Degrees of freedom are above 0 and need not be whole; a probability is within (0, 1), a sum of squares at least 0;
-/// anything else, not a number too, is Boost's std::domain_error.
+// Distributions of statistics, by Boost.Math, which takes seconds to compile: in the libraries distributions.cc alone
+// includes it. All numbers are dimensionless. Callers see to it that x and f are finite and at least 0, t is a number,
+// degrees of freedom above 0, whole or not, and probabilities strictly between 0 and 1: otherwise Boost throws
+// std::domain_error or std::overflow_error.
 
-/// x below which a standard normal value lies with this probability.
+/// The x below which a standard normal value lies with this probability.
 double NormalQuantile(double probability);
 
-/// P(X > x) of a sum of squares of `freedom` standard normal values.
+/// P(X > x) of a sum X of squares of `freedom` independent standard normal values.
 double ChiSquareTail(double x, double freedom);
+
+/// The x with P(X < x) = `probability`.
 double ChiSquareQuantile(double probability, double freedom);
 
-/// Of Student's t.
+/// The density of Student's t.
 double StudentDensity(double t, double freedom);
-double StudentProbability(double t, double freedom);  // P(T < t)
-double StudentTail(double t, double freedom);         // P(T > t)
+
+/// P(T < t).
+double StudentProbability(double t, double freedom);
+
+/// P(T > t).
+double StudentTail(double t, double freedom);
+
+/// The t with P(T < t) = `probability`.
 double StudentQuantile(double probability, double freedom);
 
-/// P(F > f) of a ratio of mean squares with `above` and `below` degrees of freedom.
-double FisherTail(double f, double above, double below);
+/// P(F > f) of a ratio F of two mean squares.
+double FisherTail(double f, double numerator_freedom, double denominator_freedom);
 
-/// The limits of the probability of a success, each of which errs with probability `tail` at most, after so many
-/// successes (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
+/// Limits of the probability of a success after 0 <= `successes` <= `trials`: the truth lies beyond each with
+/// probability `tail` at most (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 double BinomialLowerLimit(int successes, int trials, double tail);
 double BinomialUpperLimit(int successes, int trials, double tail);
 
