@@ -65,19 +65,19 @@ void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
 
 TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
   const RunOptions options = OptionsFor({"viscous", "coulomb", "stribeck"});
-  StopEverywhere(options, Read("datasets/coulomb.csv", options), 9);
+  StopEverywhere(options, Read("datasets/coulomb.csv", options), 6);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingOnTheWayToRest) {
   const RunOptions options = OptionsFor({"coulomb"});
-  StopEverywhere(options, Read("datasets/to_rest.csv", options), 9);
+  StopEverywhere(options, Read("datasets/to_rest.csv", options), 6);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
   for (const IntervalMethod method : {IntervalMethod::kProfile, IntervalMethod::kBootstrap}) {
     RunOptions options = OptionsFor({"coulomb"});
     options.fit.interval = method;
-    StopEverywhere(options, Read("datasets/coulomb.csv", options), 5);
+    StopEverywhere(options, Read("datasets/coulomb.csv", options), 4);
   }
 }
 
@@ -85,7 +85,7 @@ TEST(StoppedFitRuns, AreAllOrNothingOnCoarseLevelsWithoutNoise) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
   const RunOptions options = OptionsFor({"coulomb"});
-  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 9);
+  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 6);
 }
 
 TEST(StoppedFitRuns, AreErrorsFromTheBeginning) {
