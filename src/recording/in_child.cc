@@ -23,6 +23,15 @@
 #include "write_all.h"
 
 namespace pendulum {
+
+#if defined(__SANITIZE_ADDRESS__)
+const bool kMemoryIsLimited = false;
+#elif defined(__has_feature)
+const bool kMemoryIsLimited = !__has_feature(address_sanitizer);
+#else
+const bool kMemoryIsLimited = true;
+#endif
+
 namespace {
 
 using Clock = std::chrono::steady_clock;

@@ -10,13 +10,8 @@
 
 namespace pendulum {
 
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kMemoryIsLimited = false;
-#elif defined(__has_feature)
-inline constexpr bool kMemoryIsLimited = !__has_feature(address_sanitizer);
-#else
-inline constexpr bool kMemoryIsLimited = true;  ///< A sanitizer of addresses maps all that there are.
-#endif
+/// Not under an address sanitizer, which maps all addresses that there are and keeps what is freed.
+extern const bool kMemoryIsLimited;
 
 /// What a process may use.
 struct ChildLimits {
