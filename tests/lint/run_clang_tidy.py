@@ -57,7 +57,7 @@ def changed_since(base):
 def shared_digest():
     """Of what the findings in all files depend on besides the sources: checks, this program, other people's headers."""
     digest = hashlib.sha256(output("dpkg-query", "--show", "clang-tidy-19", "*-dev").encode())
-    checks = output("git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", ".clang-tidy", "**/.clang-tidy", "tests/lint")
+    checks = output("git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", "*.clang-tidy", "tests/lint")
     for name in sorted(filter(None, checks.split("\0"))):
         digest.update(f"{name}\n{(ROOT / name).read_text()}".encode())
     return digest.hexdigest()
@@ -165,13 +165,15 @@ def self_test():
     """What is wrong with what is remembered of a small tree."""
     failures = []
 
+    def lint(command=("true",), digest="checks", how="c++ x.cc"):
+        return Lint(check_includes.Tree(root), {source: how}, digest, command, cache)
+
     def expect(is_clean, why, **changed):
-        options = {"commands": commands, "digest": "checks", "command": ["true"], **changed}
-        if Lint(check_includes.Tree(root), options["commands"], options["digest"], options["command"], cache).is_clean(source) != is_clean:
+        if lint(**changed).is_clean(source) != is_clean:
             failures.append(why)
 
-    def check(command):
-        return Lint(check_includes.Tree(root), commands, "checks", command, cache).check(source)
+    def check(*command):
+        return lint(command).check(source)
 
     with tempfile.TemporaryDirectory() as folder:
         root, cache = pathlib.Path(folder).resolve(), pathlib.Path(folder, "cache")
@@ -181,21 +183,20 @@ def self_test():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text)
         source = root / "src/a/x.cc"
-        commands = {source: "c++ x.cc"}
         expect(False, "a file that was never looked at is clean")
-        if check(["sh", "-c", "echo wrong; exit 1"]) != "wrong\n":
+        if check("sh", "-c", "echo wrong; exit 1") != "wrong\n":
             failures.append("a finding is not told")
-        if check(["sh", "-c", "kill -9 $$"]) is None:
+        if check("sh", "-c", "kill -9 $$") is None:
             failures.append("a program that was killed finds nothing")
         expect(False, "a finding is remembered as none")
-        check(["sh", "-c", f"echo >> {root}/include/pendulum/a/x.h"])
+        check("sh", "-c", f"echo >> {root}/include/pendulum/a/x.h")
         expect(False, "a header that changed meanwhile is clean")
-        check(["true"])
+        check("true")
         expect(True, "a clean file is not remembered")
         (root / "include/pendulum/a/other.h").write_text("int i;\n")
         expect(True, "a header that is not included matters")
         expect(False, "other checks do not matter", digest="other checks")
-        expect(False, "another compile command does not matter", commands={source: "c++ -O2 x.cc"})
+        expect(False, "another compile command does not matter", how="c++ -O2 x.cc")
         (root / "include/pendulum/a/y.h").write_text("#pragma once\nint i;\n")
         expect(False, "a header that a header includes does not matter")
     return failures
