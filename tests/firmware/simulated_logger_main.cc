@@ -148,13 +148,17 @@ class PseudoTerminal {
     return bytes;
   }
 
-  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal.
+  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal. The kernel passes on
+  /// in its own time what was written, so nothing has to be there for a while.
   void Close() {
-    constexpr int kMostWaits = 2000;
+    constexpr int kMostLooks = 2000, kQuietLooks = 20;
     if (host_side_ < 0) return;
-    for (int waits = 0, unread = 1; unread > 0 && waits < kMostWaits; ++waits) {
-      if (::ioctl(board_side_, FIONREAD, &unread) != 0) break;
+    for (int looks = 0, quiet = 0; looks < kMostLooks && quiet < kQuietLooks; ++looks) {
+      Write({});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      int queued = 0;
+      if (::ioctl(board_side_, FIONREAD, &queued) != 0) break;
+      quiet = queued > 0 || !unread_.empty() ? 0 : quiet + 1;
     }
     ::close(host_side_);
     ::close(board_side_);
