@@ -148,11 +148,11 @@ class PseudoTerminal {
     return bytes;
   }
 
-  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal. The kernel passes on
-  /// in its own time what was written, so nothing has to be there for a while.
-  void Close() {
-    constexpr int kMostLooks = 2000, kQuietLooks = 20;
-    if (host_side_ < 0) return;
+  /// Waits until all is read that was written: what a reader has not fetched yet is lost with the terminal. The reader
+  /// may be suspended, and the kernel passes on in its own time what was written, so nothing has to be there for a
+  /// while.
+  void Drain() {
+    constexpr int kMostLooks = 20'000, kQuietLooks = 20;
     for (int looks = 0, quiet = 0; looks < kMostLooks && quiet < kQuietLooks; ++looks) {
       Write({});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -160,6 +160,10 @@ class PseudoTerminal {
       if (::ioctl(board_side_, FIONREAD, &queued) != 0) break;
       quiet = queued > 0 || !unread_.empty() ? 0 : quiet + 1;
     }
+  }
+
+  void Close() {
+    if (host_side_ < 0) return;
     ::close(host_side_);
     ::close(board_side_);
     std::filesystem::remove(link_);
@@ -255,7 +259,10 @@ void Run(SimulatedBoard& board, PseudoTerminal& terminal) {
     board.RunUntil(due);
     terminal.Write(line.Carry(board.TakeBytes()));
     const auto& start = board.start();
-    if (FLAGS_unplug_after > 0 && start && board.time() - *start > FLAGS_unplug_after) terminal.Close();
+    if (FLAGS_unplug_after > 0 && start && board.time() - *start > FLAGS_unplug_after) {
+      terminal.Drain();
+      terminal.Close();
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
