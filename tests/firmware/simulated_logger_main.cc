@@ -148,12 +148,12 @@ class PseudoTerminal {
     return bytes;
   }
 
-  /// Waits until all is read that was written: what a reader has not fetched yet is lost with the terminal. The reader
-  /// may be suspended, and the kernel passes on in its own time what was written, so nothing has to be there for a
-  /// while.
+  /// Waits until all is read that was written, or this program is to end: what a reader has not fetched yet is lost
+  /// with the terminal. A reader may wait long for its disk, and the kernel passes on in its own time what was written,
+  /// so nothing has to be there for a while.
   void Drain() {
-    constexpr int kMostLooks = 20'000, kQuietLooks = 20;
-    for (int looks = 0, quiet = 0; looks < kMostLooks && quiet < kQuietLooks; ++looks) {
+    constexpr int kQuietLooks = 200;
+    for (int quiet = 0; quiet < kQuietLooks && is_stopped == 0;) {
       Write({});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       int queued = 0;
