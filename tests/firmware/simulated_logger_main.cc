@@ -148,10 +148,11 @@ class PseudoTerminal {
     return bytes;
   }
 
-  /// Waits until all is read that was written, or this program is to end: what a reader has not fetched yet is lost
+  /// Closes it once all is read that was written, or this program is to end: what a reader has not fetched yet is lost
   /// with the terminal. A reader may wait long for its disk, and the kernel passes on in its own time what was written,
   /// so nothing has to be there for a while.
-  void Drain() {
+  void Unplug() {
+    if (host_side_ < 0) return;
     constexpr int kQuietLooks = 200;
     for (int quiet = 0; quiet < kQuietLooks && is_stopped == 0;) {
       Write({});
@@ -160,6 +161,7 @@ class PseudoTerminal {
       if (::ioctl(board_side_, FIONREAD, &queued) != 0) break;
       quiet = queued > 0 || !unread_.empty() ? 0 : quiet + 1;
     }
+    Close();
   }
 
   void Close() {
@@ -259,10 +261,7 @@ void Run(SimulatedBoard& board, PseudoTerminal& terminal) {
     board.RunUntil(due);
     terminal.Write(line.Carry(board.TakeBytes()));
     const auto& start = board.start();
-    if (FLAGS_unplug_after > 0 && start && board.time() - *start > FLAGS_unplug_after) {
-      terminal.Drain();
-      terminal.Close();
-    }
+    if (FLAGS_unplug_after > 0 && start && board.time() - *start > FLAGS_unplug_after) terminal.Unplug();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
