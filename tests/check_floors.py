@@ -62,7 +62,7 @@ FORBIDDEN_BELOW = {
     "printf": r"\b(?:f|v|vf)?printf\s*\(",
     "exit": r"\b(?:_|_E|quick_)?exit\s*\(",
     "throw": r"\bthrow\b",
-    "a naked new": r"\bnew\b",
+    "a naked new": r"\bnew\b(?!>)",  # but for #include <new>
     "logging": r"\b[DPSV]*LOG(?:_[A-Z_]+)?\s*\(",
     "a flag": r"\bDEFINE_\w+",
 }

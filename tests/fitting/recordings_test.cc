@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>

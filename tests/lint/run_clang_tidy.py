@@ -132,6 +132,19 @@ class Lint:
                     mark.unlink()
 
 
+def finds_what_is_planted(command):
+    """Whether clang-tidy complains of a C array in a source file and of one in a header that it includes."""
+    with tempfile.TemporaryDirectory(dir=BUILD) as folder:
+        source, header = pathlib.Path(folder, "src/planted.cc"), pathlib.Path(folder, "src/planted.h")
+        source.parent.mkdir()
+        header.write_text("#pragma once\n\ninline int in_header[3] = {};\n")
+        source.write_text('#include "planted.h"\n\nint in_source[3] = {};\n')
+        run = subprocess.run([*command, source, "--", "-std=c++20", "-isystem", "/usr/include/eigen3", "-DGFLAGS_IS_A_DLL=0"],
+                             cwd=ROOT, capture_output=True, text=True)
+    found = re.findall(r"planted\.(\w+):3:.*\[modernize-avoid-c-arrays", run.stdout)
+    return sorted(set(found)) == ["cc", "h"]
+
+
 def sources_to_check(tree, commands, base):
     """The source files to look at; all of them where there is no base."""
     sources = [path for path in tree.paths if path.suffix == ".cc" and path.is_relative_to(tree.root / "src")]
@@ -152,6 +165,8 @@ def run(base):
     lint = Lint(tree, commands, digest, tidy_command(digest), CACHE)
     unknown = [path for path in sources if not lint.is_clean(path)]
     print(f"lint: clang-tidy on {len(unknown)} files; {len(sources) - len(unknown)} are known to be clean", flush=True)
+    if unknown and not finds_what_is_planted(lint.command):
+        fail("clang-tidy does not find the C arrays that were planted for it: its plugin or its checks are at fault.")
     findings = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for finding in filter(None, pool.map(lint.check, unknown)):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/content.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
