@@ -278,6 +278,8 @@ def main():
     parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
     parser.add_argument("--self_test", action="store_true")
     arguments = parser.parse_args()
+    if not (arguments.root / "src").is_dir():
+        parser.error(f"there is no folder {arguments.root / 'src'}.")
     lines = self_test() if arguments.self_test else complaints(arguments.root)
     print("\n".join(lines) if lines else "ok")
     return 1 if lines else 0

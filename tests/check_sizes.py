@@ -141,6 +141,8 @@ def main():
     parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
     parser.add_argument("--self_test", action="store_true")
     arguments = parser.parse_args()
+    if not (arguments.root / "src").is_dir():
+        parser.error(f"there is no folder {arguments.root / 'src'}.")
     if not arguments.self_test:
         print("\n".join(report(arguments.root)))
         return 0

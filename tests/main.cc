@@ -30,13 +30,15 @@ std::string TestsIn(std::string_view file) {
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
   if (argc > 2) {
-    std::cerr << "one file, or none for all\n";
+    std::cerr << argv[0] << ": name one file, or none for all\n";
     return 1;
   }
   if (argc == 2) {
-    const std::string filter = TestsIn(argv[1]);
+    const std::string_view file = argv[1];
+    const std::string filter = file.ends_with(".cc") ? TestsIn(file) : "";
     if (filter.empty()) {
-      std::cerr << "there are no tests in a file " << argv[1] << "\n";
+      std::cerr << argv[0] << ": no test in this build is in a file whose path ends in '" << file
+                << "'; a file is named like /fitting/judge_test.cc\n";
       return 1;
     }
     GTEST_FLAG_SET(filter, filter);
