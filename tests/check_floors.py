@@ -6,12 +6,12 @@
   check_floors.py --self_test  shows on a small tree that each rule complains when it is broken
 """
 
-import argparse
 import pathlib
 import re
 import sys
 import tempfile
 
+import check_main
 import cpp_text
 
 # The floors and what each stands on. A file may include its own floor and all those below.
@@ -274,15 +274,8 @@ def self_test():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self_test", action="store_true")
-    arguments = parser.parse_args()
-    if not (arguments.root / "src").is_dir():
-        parser.error(f"there is no folder {arguments.root / 'src'}.")
-    lines = self_test() if arguments.self_test else complaints(arguments.root)
-    print("\n".join(lines) if lines else "ok")
-    return 1 if lines else 0
+    arguments = check_main.parse_arguments(__doc__)
+    return check_main.finish(self_test() if arguments.self_test else complaints(arguments.root))
 
 
 if __name__ == "__main__":

@@ -9,13 +9,13 @@ Files are compiled several in one unit, where the includes of one serve the next
 missing. Looked at are names of the project, of the standard library and, by their namespaces or macros, of some others.
 """
 
-import argparse
 import functools
 import pathlib
 import re
 import sys
 import tempfile
 
+import check_main
 import cpp_text
 
 # Headers of the standard library, and names that need one of them. A name that stands in several needs any one.
@@ -189,10 +189,10 @@ class Tree:
     def complaints(self, path):
         """The first use of each name whose header is not reached."""
         own, others = self.reached(path)
-        code, seen = self.code(path), set()
+        code, seen = self.code(path), set(_EVERYWHERE)
         for match in _STD_NAME.finditer(code):
             needs = HEADERS_OF.get(match[1])
-            if match[1] in seen | _EVERYWHERE or needs and needs & others:
+            if match[1] in seen or needs and needs & others:
                 continue
             seen.add(match[1])
             if needs:
@@ -241,15 +241,8 @@ def self_test():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self_test", action="store_true")
-    arguments = parser.parse_args()
-    if not (arguments.root / "src").is_dir():
-        parser.error(f"there is no folder {arguments.root / 'src'}.")
-    lines = self_test() if arguments.self_test else list(complaints(arguments.root))
-    print("\n".join(lines) if lines else "ok")
-    return 1 if lines else 0
+    arguments = check_main.parse_arguments(__doc__)
+    return check_main.finish(self_test() if arguments.self_test else list(complaints(arguments.root)))
 
 
 if __name__ == "__main__":

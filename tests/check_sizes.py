@@ -10,12 +10,11 @@ It refuses nothing: a limit makes people split what is one thought, and delete s
 A function's length is that from its opening to its closing brace, in lines.
 """
 
-import argparse
 import math
-import pathlib
 import re
 import sys
 
+import check_main
 import cpp_text
 
 LARGEST = 20
@@ -137,18 +136,11 @@ def self_test():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self_test", action="store_true")
-    arguments = parser.parse_args()
-    if not (arguments.root / "src").is_dir():
-        parser.error(f"there is no folder {arguments.root / 'src'}.")
+    arguments = check_main.parse_arguments(__doc__)
     if not arguments.self_test:
         print("\n".join(report(arguments.root)))
         return 0
-    lines = self_test()
-    print("\n".join(lines) if lines else "ok")
-    return 1 if lines else 0
+    return check_main.finish(self_test())
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 """Where the time of builds and tests goes: times.py BUILD_FOLDER... [--most 20]
 
 Of each folder: what ninja built since the folder was made (.ninja_log) and what ctest ran last (tests.xml, which
-scripts/test has it write), the longest first. Times are wall clock; several jobs run at once, so their sum is more than what one waits for.
+scripts/test has it write), the longest first. Times are wall clock; several jobs run at once, so their sum is more than
+what one waits for.
 """
 
 import argparse
@@ -15,7 +16,7 @@ def built(folder):
     """(seconds, output) of each edge in ninja's log; the last build of an output counts."""
     seconds = {}
     for line in (folder / ".ninja_log").read_text().splitlines():
-        if not line.startswith("#") and line.count("\t") == 4:  # a line of a ninja that was killed may be shorter
+        if line.count("\t") == 4:  # neither the head nor what a killed ninja left of a line
             start, end, _, output, _ = line.split("\t")
             seconds[output] = (int(end) - int(start)) / 1000
     return [(time, output) for output, time in seconds.items()]

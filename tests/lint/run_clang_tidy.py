@@ -31,6 +31,8 @@ CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / "
 DAYS_IN_CACHE = 30
 # A change of one of these may change what is found in every file.
 CONCERNS_ALL = re.compile(r"(^|/)(\.clang-tidy|CMakeLists\.txt|CMakePresets\.json)$|^tests/lint/|^scripts/lint$")
+# How the precompiled header is compiled, and what has no compile command of its own.
+COMPILE_OPTIONS = ["-std=c++20", "-DGFLAGS_IS_A_DLL=0", "-isystem", "/usr/include/eigen3"]
 sys.path.insert(0, str(ROOT / "tests"))
 
 import check_includes  # noqa: E402
@@ -80,8 +82,8 @@ def tidy_command(digest):
     plugin = build_once(BUILD / f"skip_system_headers_{digest[:16]}.so", "clang++-19", "-std=c++17", "-fPIC", "-shared", "-fno-rtti",
                         f"-I{include}", "tests/lint/skip_system_headers.cc")
     # With the templates it instantiates, which takes half of the time off each file.
-    header = build_once(BUILD / f"precompiled_{digest[:16]}.pch", "clang++-19", "-fpch-instantiate-templates", "-std=c++20",
-                        "-DGFLAGS_IS_A_DLL=0", "-isystem", "/usr/include/eigen3", "-x", "c++-header", "tests/lint/precompiled.h")
+    header = build_once(BUILD / f"precompiled_{digest[:16]}.pch", "clang++-19", "-fpch-instantiate-templates",
+                        *COMPILE_OPTIONS, "-x", "c++-header", "tests/lint/precompiled.h")
     return ["clang-tidy-19", "-p", BUILD, "--quiet", "--warnings-as-errors=*", f"--load={plugin}", "--extra-arg=-Xclang",
             "--extra-arg=-fno-validate-pch", "--extra-arg=-include-pch", f"--extra-arg={header}"]
 
@@ -139,8 +141,7 @@ def finds_what_is_planted(command):
         source.parent.mkdir()
         header.write_text("#pragma once\n\ninline int in_header[3] = {};\n")
         source.write_text('#include "planted.h"\n\nint in_source[3] = {};\n')
-        run = subprocess.run([*command, source, "--", "-std=c++20", "-isystem", "/usr/include/eigen3", "-DGFLAGS_IS_A_DLL=0"],
-                             cwd=ROOT, capture_output=True, text=True)
+        run = subprocess.run([*command, source, "--", *COMPILE_OPTIONS], cwd=ROOT, capture_output=True, text=True)
     found = re.findall(r"planted\.(\w+):3:.*\[modernize-avoid-c-arrays", run.stdout)
     return sorted(set(found)) == ["cc", "h"]
 
