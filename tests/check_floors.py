@@ -31,6 +31,13 @@ STANDS_ON = {
     "tools": ["acquisition", "service"],
 }
 
+# The rooms of a floor that has several: subfolders, lowest first; "" is the floor's own folder. A file may include its own
+# room and those before it.
+ROOMS = {
+    "recording": ["", "readers/columns", "readers/text", "readers/mat", "readers", "calibration"],
+    "fitting": ["likelihood", "start", "residuals", "solve", "uncertainty", "fit", "swing", "joint"],
+}
+
 # The only floors that may include a library's headers. Libraries not listed are free.
 LIBRARY_FLOORS = {
     "boost": {"base", "trajectory", "closed_form", "fitting", "analysis", "service"},
@@ -79,6 +86,25 @@ def floor_of(path):
     return parts[0] if len(parts) > 1 else "base"
 
 
+def room_of(floor, inner):
+    """Rank of the room of a file, given by its path within the floor; None where the room is unknown."""
+    room = str(pathlib.PurePath(inner).parent).removeprefix(".")
+    return ROOMS[floor].index(room) if room in ROOMS[floor] else None
+
+
+def check_room(path, header):
+    """What is wrong with this file including this header of its own floor, or None."""
+    floor = floor_of(path)
+    top = "include/pendulum" if path.parts[0] == "include" else path.parts[0]
+    if floor not in ROOMS or top == "tests":
+        return None
+    own = room_of(floor, path.relative_to(f"{top}/{floor}"))
+    other = room_of(floor, header.removeprefix("pendulum/").removeprefix(f"{floor}/"))
+    if own is None or other is None:
+        return f"floor {floor} has no such room; it has {', '.join(ROOMS[floor])}"
+    return f"room {ROOMS[floor][own]} is below {ROOMS[floor][other]}" if other > own else None
+
+
 def check_include(root, path, header, quoted):
     """What is wrong with this file including this header, or None."""
     floor = floor_of(path)
@@ -90,10 +116,14 @@ def check_include(root, path, header, quoted):
     if ours:
         if ours[1] not in reach(floor):
             return f"floor {floor} does not stand on {ours[1]}"
+        if ours[1] == floor and header.startswith("pendulum/"):
+            return check_room(path, header)
     elif quoted:
         is_own = private and private[1] == floor or in_tests and re.fullmatch(r"tests/\w+\.h", header)
         if not is_own and not (root / path.parent / header).resolve().parent == (root / path.parent).resolve():
             return f'"{header}" is neither public ("pendulum/FLOOR/x.h") nor private to {floor} ("{floor}/x.h")'
+        if private and private[1] == floor:
+            return check_room(path, header)
     else:
         library = header.split("/")[0]
         if in_tests and any(header.startswith(start) and floor in floors for start, floors in TEST_HEADERS.items()):
@@ -234,8 +264,13 @@ BAD_TREE = {
     "include/pendulum/report/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to report"),
     "tests/trajectory/solver.h": ("#include <ceres/ceres.h>\n", "ceres belongs to fitting, not to trajectory"),
     "tests/closed_form/jet.h": ("#include <ceres/jet.h>\n", "ceres belongs to fitting, not to closed_form"),
-    "include/pendulum/fitting/log.h": ("#include <glog/logging.h>\n", "glog belongs to tools"),
+    "include/pendulum/fitting/fit/log.h": ("#include <glog/logging.h>\n", "glog belongs to tools"),
     "tests/fitting/flag.h": ("#include <gflags/gflags.h>\n", "gflags belongs to tools"),
+    "include/pendulum/fitting/solve/down.h": ('#include "pendulum/fitting/likelihood/cost.h"\n', "does not name it"),
+    "include/pendulum/fitting/solve/up.h": ('#include "pendulum/fitting/fit/fit.h"\n', "room solve is below fit"),
+    "src/fitting/start/up.h": ('#include "fitting/joint/private.h"\n', "room start is below joint"),
+    "src/recording/room.h": ('#include "recording/readers/text/csv.h"\n', "room  is below readers/text"),
+    "include/pendulum/fitting/attic/x.h": ('#include "pendulum/fitting/fit/fit.h"\n', "has no such room"),
     "include/pendulum/base/cout.h": ("auto& s = std::cout;\n", "a stream of the process has no place"),
     "include/pendulum/base/cerr.h": ("auto& s = std::cerr;\n", "a stream of the process has no place"),
     "include/pendulum/base/printf.h": ('void f() { fprintf(stderr, "x"); }\n', "printf has no place"),

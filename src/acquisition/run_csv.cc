@@ -8,7 +8,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/recording/calibrate.h"
+#include "pendulum/recording/calibration/calibrate.h"
 
 namespace pendulum {
 namespace {

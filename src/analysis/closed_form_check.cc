@@ -11,7 +11,7 @@
 #include "pendulum/analysis/difference_causes.h"
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/base/format.h"
-#include "pendulum/fitting/autocorrelation.h"
+#include "pendulum/fitting/residuals/autocorrelation.h"
 #include "pendulum/model/friction/viscous.h"
 #include "pendulum/model/geometric_inertia.h"
 

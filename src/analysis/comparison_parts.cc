@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pendulum/analysis/fitted_motion.h"
-#include "pendulum/fitting/residual_diagnostics.h"
+#include "pendulum/fitting/residuals/residual_diagnostics.h"
 
 namespace pendulum {
 namespace {

@@ -13,7 +13,7 @@
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
-#include "pendulum/fitting/undersampled.h"
+#include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {

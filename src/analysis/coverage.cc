@@ -10,9 +10,9 @@
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/parallel.h"
-#include "pendulum/fitting/edge_noise.h"
-#include "pendulum/fitting/fit.h"
-#include "pendulum/fitting/fit_jointly.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
 
 namespace pendulum {
 namespace {
@@ -87,7 +87,7 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
     Result<Recording> recording = SimulateRecording(run);
     if (!recording) return tl::unexpected(recording.error());
     simulated.push_back({std::move(run), recording->time});
-    recordings.push_back(WithEdges(*std::move(recording), scenario.fit));
+    recordings.push_back(WithEdges(*std::move(recording), scenario.fit.noise));
     if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
   }
   const std::vector<double> truth = TrueParameters(simulated.front().truth);
@@ -104,7 +104,7 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   const SyntheticOptions run = ScenarioRun(scenario, seed);
   const Result<Recording> recording = SimulateRecording(run);
   if (!recording) return tl::unexpected(recording.error());
-  const Result<FitReport> report = FitRecording(WithEdges(*recording, scenario.fit), scenario.fit);
+  const Result<FitReport> report = FitRecording(WithEdges(*recording, scenario.fit.noise), scenario.fit);
   return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
 }
 

@@ -11,7 +11,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/sensor_start.h"
+#include "pendulum/fitting/start/sensor_start.h"
 
 namespace pendulum {
 namespace {
@@ -176,7 +176,7 @@ CoverageScenario HeavyTails() {
   CoverageScenario scenario =
       Fine("student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
   scenario.run.noise_freedom = 3;
-  scenario.fit.loss = Loss::kStudent;
+  scenario.fit.noise = NoiseFamily::kStudent;
   return scenario;
 }
 

@@ -8,8 +8,8 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/reading_information.h"
-#include "pendulum/fitting/edge_noise.h"
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
 
 namespace pendulum {
 namespace {

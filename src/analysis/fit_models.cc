@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/nesting.h"
 
 namespace pendulum {
@@ -65,7 +65,7 @@ class SharedFits {
  public:
   SharedFits(SwingFit lead, std::size_t lead_index, FitOptions options, const std::vector<std::string>& models)
       : options_(std::move(options)), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
-    options_.start = AskAlike(lead.fit, options_).start;
+    options_.start = OptionsLike(lead.fit, options_).start;
     result_.fits.resize(models.size());
     result_.fits[lead_index] = std::move(lead.fit);
     for (std::size_t i = 0; i < models.size(); ++i) {
@@ -90,7 +90,7 @@ class SharedFits {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
     });
     const NoiseFamily family = best->noise.family;
-    options_.noise = AskAlike(*best, options_).noise;
+    options_.noise = OptionsLike(*best, options_).noise;
     const FitReport lead = result_.fits[lead_index];
     for (std::size_t i = 0; i < models_.size(); ++i) {
       FitReport& fit = result_.fits[i];
@@ -127,7 +127,7 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
   if (!*best) return tl::unexpected(fits.front().error());
   const FitReport like = (*best)->fit;
   FitOptions shared = options;
-  shared.noise = AskAlike(like, options).noise;
+  shared.noise = OptionsLike(like, options).noise;
   FittedModels fitted{(*best)->used, (*best)->swing, {}};
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (fits[i] && fits[i]->fit.noise.family != like.noise.family) {

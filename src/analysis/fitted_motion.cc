@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/edge_noise.h"
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
 
 namespace pendulum {
 

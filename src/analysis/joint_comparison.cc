@@ -12,8 +12,8 @@
 #include "pendulum/analysis/comparison_parts.h"
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
-#include "pendulum/fitting/box_least_squares.h"
-#include "pendulum/fitting/fit_jointly.h"
+#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/residuals/box_least_squares.h"
 
 namespace pendulum {
 namespace {

@@ -9,9 +9,9 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/fitted_motion.h"
-#include "pendulum/fitting/covariance.h"
-#include "pendulum/fitting/estimate_autocorrelation.h"
-#include "pendulum/fitting/fit_problem.h"
+#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
+#include "pendulum/fitting/solve/covariance.h"
+#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -33,16 +33,16 @@ constexpr int kMostTraces = 200;
 
 /// What was asked of the whole, without what belongs to its start alone and what both halves would share.
 FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
-  options = AskAlike(fit, std::move(options));
-  options.start = StartChoice::kMoving;
-  options.start_values.reset();
+  options = OptionsLike(fit, std::move(options));
+  options.start = StartKind::kMoving;
+  options.search.start_values.reset();
   options.initial.clear();
   options.priors.clear();
   std::erase_if(options.fixed, [](const auto& entry) { return IsStart(entry.first); });
   std::erase_if(options.bounds, [](const auto& entry) { return IsStart(entry.first); });
   options.interval = IntervalMethod::kCovariance;
   options.progress = nullptr;
-  options.max_traces = std::min(options.max_traces, kMostTraces);
+  options.search.max_traces = std::min(options.search.max_traces, kMostTraces);
   return options;
 }
 

@@ -9,7 +9,7 @@
 
 #include "pendulum/analysis/cramer_rao.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {

@@ -11,8 +11,8 @@
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/fit_problem.h"
-#include "pendulum/fitting/undersampled.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/swing/undersampled.h"
 
 namespace pendulum {
 namespace {
@@ -56,8 +56,8 @@ StartValues StartAtEstimates(const FitProblem& problem, const FitReport& fit) {
 }
 
 FitOptions OptionsAtEstimates(const FitProblem& problem, const FitReport& fit, FitOptions options) {
-  options = AskAlike(fit, std::move(options));
-  options.start_values = StartAtEstimates(problem, fit);
+  options = OptionsLike(fit, std::move(options));
+  options.search.start_values = StartAtEstimates(problem, fit);
   options.initial.clear();
   if (problem.zero_motion != ZeroMotion::kNone)
     options.initial[std::string(problem.infos.back().name)] = fit.parameters.back().estimate;
@@ -70,13 +70,13 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
   if (IsUndersampled(used, options.rig)) {
     return Error(StatusCode::kFailedPrecondition, "the samples are too far apart to leave some of them out");
   }
-  options = AskAlike(fit, std::move(options));
+  options = OptionsLike(fit, std::move(options));
   const Result<FitProblem> problem = MakeFitProblem(used, options);
   if (!problem) return tl::unexpected(problem.error());
   options = OptionsAtEstimates(*problem, fit, std::move(options));
   const FittedMotion motion(used, fit, options.rig, options.stop);
   const int release = problem->solve.release_time;
-  const double begin = release < 0 ? 0.0 : options.start_values->parameters[static_cast<std::size_t>(release)];
+  const double begin = release < 0 ? 0.0 : options.search.start_values->parameters[static_cast<std::size_t>(release)];
   const double end = motion.instants()[used.size() - 1];
   const double period = motion.small_angle_period();
   if (!(end - begin >= kFewestPeriods * period)) {
@@ -146,7 +146,7 @@ void AddPart(const Task& task, const Part& part, const Eigen::VectorXd& predicte
 Result<void> PredictPart(const Task& task, const Part& part, Sums& sums) {
   if (part.first == part.last) return {};
   const Recording rest = Without(task.used, part);
-  const auto parameters = static_cast<Index>(task.options.start_values->parameters.size());
+  const auto parameters = static_cast<Index>(task.options.search.start_values->parameters.size());
   if (rest.size() < std::max<Index>(kMinimumSamples, 2 * parameters)) {
     return Error(StatusCode::kFailedPrecondition, "too few samples are left");
   }

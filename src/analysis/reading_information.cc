@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/noise.h"
+#include "pendulum/fitting/likelihood/noise.h"
 
 namespace pendulum {
 namespace {

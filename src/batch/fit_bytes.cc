@@ -5,7 +5,7 @@
 
 #include "pendulum/batch/run_parts.h"
 #include "pendulum/model/rig.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/sensor.h"
 
 namespace pendulum {

@@ -19,7 +19,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/model/motion_model.h"
-#include "pendulum/recording/line_reader.h"
+#include "pendulum/recording/readers/columns/line_reader.h"
 
 namespace pendulum {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/instruction_set.h"
 #include "pendulum/base/json.h"
+#include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -41,18 +42,17 @@ Json ReadJson(const ReadOptions& read) {
 /// Enumerations by their number: a new one is appended, or the result changes anyway.
 Json FitJson(const FitOptions& fit) {
   return {{"gravity", fit.gravity ? Json(static_cast<int>(*fit.gravity)) : Json(nullptr)},
-          {"start", static_cast<int>(fit.start)},
+          {"start", fit.start ? Json(static_cast<int>(*fit.start)) : Json(nullptr)},
           {"fix", fit.fixed},
           {"init", fit.initial},
           {"bounds", RangesJson(fit.bounds)},
           {"prior", PriorsJson(fit.priors)},
-          {"noise", static_cast<int>(fit.noise)},
-          {"loss", static_cast<int>(fit.loss)},
+          {"noise", fit.noise ? Json(NoiseFamilyName(*fit.noise)) : Json(nullptr)},
           {"interval", static_cast<int>(fit.interval)},
           {"seed", fit.seed},
-          {"max_trace_error", fit.max_trace_error},
-          {"max_iterations", fit.max_iterations},
-          {"max_traces", fit.max_traces}};
+          {"max_trace_error", fit.search.max_trace_error},
+          {"max_iterations", fit.search.max_iterations},
+          {"max_traces", fit.search.max_traces}};
 }
 
 std::string ProcessorName() {

@@ -9,9 +9,10 @@
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
-#include "pendulum/fitting/edge_noise.h"
-#include "pendulum/fitting/undersampled.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/undersampled.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 
 namespace pendulum {
@@ -26,7 +27,7 @@ Result<ReadSwings> FindSwings(Recording read, const SwingChoice& choice, std::op
   ReadSwings one;
   one.samples = read.size();
   // Readings far apart in time do not resemble their neighbours, which repairs rest on.
-  one.recording = IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), fit);
+  one.recording = IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), fit.noise);
   one.samples = std::max(one.samples, one.recording.size());  // silences between events
   auto swings = ChooseSwings(one.recording, choice, rig);
   if (!swings) return tl::unexpected(swings.error());

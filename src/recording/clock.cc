@@ -8,8 +8,8 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
-#include "tangle.h"
-#include "uniform_clock.h"
+#include "recording/stamp_order.h"
+#include "recording/uniform_clock.h"
 
 namespace pendulum {
 namespace {
@@ -313,7 +313,7 @@ Check ClockRepair::LeaveOutBackward() {
     if (first == 0 && time()[i] <= latest) first = i;
     latest = std::max(latest, time()[i]);
   }
-  for (const Tangle& tangle : FindTangles(time())) gone += LeaveOutFewest(time(), tangle, keep);
+  for (const UnorderedRows& rows : FindUnorderedRows(time())) gone += DropFewest(time(), rows, keep);
   if (gone == 0) return {};
   const std::string sentence = "time " + TimeText(time()[first]) + " does not follow " + TimeText(time()[first - 1]) +
                                " of line " + std::to_string(samples_.lines.LineOf(first - 1));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendulum/fitting/swing/choose_swings.h"
+
 namespace pendulum {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/recording/adc.h"
+#include "pendulum/recording/calibration/adc.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/request/flag_values.h"
 
@@ -23,10 +24,10 @@ Result<int> ParseRelease(const RunFlags& flags) {
   return BadFlag("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
-Result<StartChoice> ParseStart(const std::string& start) {
-  if (start == "auto") return StartChoice::kAuto;
-  if (start == "release") return StartChoice::kRelease;
-  if (start == "moving") return StartChoice::kMoving;
+Result<std::optional<StartKind>> ParseStart(const std::string& start) {
+  if (start == "auto") return std::nullopt;
+  if (start == "release") return StartKind::kRelease;
+  if (start == "moving") return StartKind::kMoving;
   return BadFlag("--start is '" + start + "'; it must be auto, release or moving");
 }
 
@@ -48,12 +49,13 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
   return BadFlag(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
 }
 
-constexpr std::array<Word<NoiseChoice>, 4> kNoises = {{{"auto", NoiseChoice::kAuto},
-                                                       {"gaussian", NoiseChoice::kGaussian},
-                                                       {"quantized", NoiseChoice::kQuantized},
-                                                       {"edges", NoiseChoice::kEdges}}};
-constexpr std::array<Word<Loss>, 3> kLosses = {
-    {{"none", Loss::kNone}, {"huber", Loss::kHuber}, {"student", Loss::kStudent}}};
+using NoiseWord = Word<std::optional<NoiseFamily>>;
+constexpr std::array<NoiseWord, 4> kNoises = {{{"auto", std::nullopt},
+                                               {"gaussian", NoiseFamily::kGaussian},
+                                               {"quantized", NoiseFamily::kQuantized},
+                                               {"edges", NoiseFamily::kEdges}}};
+constexpr std::array<NoiseWord, 3> kLosses = {
+    {{"none", std::nullopt}, {"huber", NoiseFamily::kHuber}, {"student", NoiseFamily::kStudent}}};
 constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMethod::kAuto},
                                                              {"covariance", IntervalMethod::kCovariance},
                                                              {"profile", IntervalMethod::kProfile},
@@ -73,7 +75,7 @@ Result<void> ParseWhole(std::string_view flag, const std::string& value, double 
   return {};
 }
 
-/// How the noise is taken, and where intervals come from.
+/// Noise family, confidence intervals, seed and threads.
 Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   const auto noise = ParseWord("--noise", flags.noise, kNoises);
   if (!noise) return tl::unexpected(noise.error());
@@ -81,7 +83,7 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   if (!loss) return tl::unexpected(loss.error());
   const auto interval = ParseWord("--interval", flags.interval, kIntervals);
   if (!interval) return tl::unexpected(interval.error());
-  if (*loss != Loss::kNone && *noise != NoiseChoice::kAuto) {
+  if (*loss && *noise) {
     return BadFlag("--loss " + flags.loss + " and --noise " + flags.noise + " exclude each other; give one of them");
   }
   auto seed = static_cast<double>(options.seed);
@@ -89,8 +91,7 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   if (auto parsed = ParseWhole("--seed", flags.seed, 0, seed); !parsed) return parsed;
   if (auto parsed = ParseWhole("--threads", flags.threads, 0, threads); !parsed) return parsed;
   constexpr double kMostThreads = 1024;
-  options.noise = *noise;
-  options.loss = *loss;
+  options.noise = *loss ? *loss : *noise;
   options.interval = *interval;
   options.seed = static_cast<std::uint64_t>(seed);
   options.threads = static_cast<int>(std::min(threads, kMostThreads));

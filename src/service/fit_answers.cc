@@ -13,7 +13,7 @@
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/page.h"

@@ -12,6 +12,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/batch/source.h"
+#include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/service/form_data.h"

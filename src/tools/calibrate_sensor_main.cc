@@ -6,7 +6,7 @@
 
 #include <gflags/gflags.h>
 
-#include "pendulum/recording/calibrate.h"
+#include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/report/adc_plan_text.h"
 #include "pendulum/report/calibration_plot.h"
 #include "pendulum/report/calibration_text.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/recording/adc.h"
+#include "pendulum/recording/calibration/adc.h"
 #include "pendulum/request/calibration_flags.h"
 #include "tools/output.h"
 

@@ -9,7 +9,7 @@
 #include <gflags/gflags.h>
 #include <unistd.h>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/page.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pendulum/batch/run_parts.h"
-#include "pendulum/recording/data_list.h"
+#include "pendulum/recording/readers/data_list.h"
 #include "pendulum/recording/sensor.h"
 #include "tools/fit_joint_run.h"
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 
 namespace pendulum::run_csv_test {
 namespace {

@@ -155,7 +155,7 @@ TEST(StudyCoverage, DoesNotCompareErrorsWithABoundWhereTheTruthIsAtItsOwn) {
 TEST(StudyCoverage, TakesAParameterThatIsNotReportedForNotCovered) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.release_time = 0;
-  scenario.fit.start = StartChoice::kMoving;
+  scenario.fit.start = StartKind::kMoving;
   const CoverageStudy study = Study(scenario, Options(5));
   const CoverageRow row = Row(study, "release_angle");
   EXPECT_EQ(row.without_interval, 5);

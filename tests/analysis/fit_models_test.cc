@@ -9,7 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
 #include "tests/analysis/whole_swing.h"
 #include "tests/fitting/fit_support.h"
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/closed_form/period.h"
+#include "pendulum/fitting/likelihood/fit_parameters.h"
 #include "tests/analysis/fitted_run.h"
 
 namespace pendulum::fitted_motion_test {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/fitting/likelihood/fit_parameters.h"
 #include "pendulum/recording/window.h"
 #include "tests/analysis/fitted_run.h"
 
@@ -122,7 +123,7 @@ TEST(Prediction, CountsTheRoundingOnceForBothFamilies) {
 // Gaussian noise asked for where the rounding is half of it, and the other way round: σ has the rounding, or has not.
 TEST(Prediction, KnowsWhatSigmaOfTheFamilyAskedForHolds) {
   for (const auto& [counts, noise] :
-       {std::pair(0.3, NoiseChoice::kGaussian), std::pair(1.5, NoiseChoice::kQuantized)}) {
+       {std::pair(0.3, NoiseFamily::kGaussian), std::pair(1.5, NoiseFamily::kQuantized)}) {
     SyntheticOptions run = Noisy(TextbookRun("coulomb"), counts * kCount);
     run.resolution = kCount;
     FitOptions options = ModelOptions("coulomb");
@@ -140,7 +141,7 @@ TEST(Prediction, KeepsTheFamilyOfTheFit) {
     const Predictions chosen = Predict(run, "coulomb");
     FitOptions options = ModelOptions("coulomb");
     const bool quantized = chosen.run.fit.noise.family == NoiseFamily::kQuantized;
-    options.noise = quantized ? NoiseChoice::kQuantized : NoiseChoice::kGaussian;
+    options.noise = quantized ? NoiseFamily::kQuantized : NoiseFamily::kGaussian;
     EXPECT_THAT(chosen.across.rms, DoubleNear(Predict(run, options).across.rms, 1e-10)) << seed;
   }
 }
@@ -149,9 +150,9 @@ TEST(Prediction, KeepsTheFamilyOfTheFit) {
 TEST(Prediction, ComparesWithTheWholeScatterOfARobustFamily) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   run.noise_freedom = 4;
-  for (const Loss loss : {Loss::kStudent, Loss::kHuber}) {
+  for (const NoiseFamily family : {NoiseFamily::kStudent, NoiseFamily::kHuber}) {
     FitOptions options = ModelOptions("coulomb");
-    options.loss = loss;
+    options.noise = family;
     const Predictions predictions = Predict(run, options);
     EXPECT_THAT(predictions.across.standardized, kAboutOne);
     EXPECT_THAT(predictions.across.rms / (kSigma * std::sqrt(2.0)), kAboutOne);

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/swing/choose_swings.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::fit_run_test {

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "pendulum/fitting/swing/choose_swings.h"
+
 namespace pendulum::provenance_test {
 namespace {
 
@@ -69,8 +71,8 @@ std::vector<Change> ChangesOfTheFit() {
   return {
       {"gravity sine", [](RunOptions& o) { o.fit.gravity = Gravity::kSine; }},
       {"gravity linear", [](RunOptions& o) { o.fit.gravity = Gravity::kLinear; }},
-      {"start release", [](RunOptions& o) { o.fit.start = StartChoice::kRelease; }},
-      {"start moving", [](RunOptions& o) { o.fit.start = StartChoice::kMoving; }},
+      {"start release", [](RunOptions& o) { o.fit.start = StartKind::kRelease; }},
+      {"start moving", [](RunOptions& o) { o.fit.start = StartKind::kMoving; }},
       {"fix", [](RunOptions& o) { o.fit.fixed["viscous"] = 0.1; }},
       {"fix another", [](RunOptions& o) { o.fit.fixed["coulomb"] = 0.1; }},
       // The neighbour of 0.1 among doubles.
@@ -86,18 +88,18 @@ std::vector<Change> ChangesOfTheFit() {
        [](RunOptions& o) {
          o.fit.priors["viscous"] = {0.1, 0.02};
        }},
-      {"noise gaussian", [](RunOptions& o) { o.fit.noise = NoiseChoice::kGaussian; }},
-      {"noise quantized", [](RunOptions& o) { o.fit.noise = NoiseChoice::kQuantized; }},
-      {"loss huber", [](RunOptions& o) { o.fit.loss = Loss::kHuber; }},
-      {"loss student", [](RunOptions& o) { o.fit.loss = Loss::kStudent; }},
+      {"noise gaussian", [](RunOptions& o) { o.fit.noise = NoiseFamily::kGaussian; }},
+      {"noise quantized", [](RunOptions& o) { o.fit.noise = NoiseFamily::kQuantized; }},
+      {"loss huber", [](RunOptions& o) { o.fit.noise = NoiseFamily::kHuber; }},
+      {"loss student", [](RunOptions& o) { o.fit.noise = NoiseFamily::kStudent; }},
       {"interval covariance", [](RunOptions& o) { o.fit.interval = IntervalMethod::kCovariance; }},
       {"interval profile", [](RunOptions& o) { o.fit.interval = IntervalMethod::kProfile; }},
       {"interval bootstrap", [](RunOptions& o) { o.fit.interval = IntervalMethod::kBootstrap; }},
       {"seed", [](RunOptions& o) { o.fit.seed = 18446744073709551615U; }},
       {"seed 2", [](RunOptions& o) { o.fit.seed = 2; }},
-      {"max_trace_error", [](RunOptions& o) { o.fit.max_trace_error = 1e-9; }},
-      {"max_iterations", [](RunOptions& o) { o.fit.max_iterations = 7; }},
-      {"max_traces", [](RunOptions& o) { o.fit.max_traces = 7; }},
+      {"max_trace_error", [](RunOptions& o) { o.fit.search.max_trace_error = 1e-9; }},
+      {"max_iterations", [](RunOptions& o) { o.fit.search.max_iterations = 7; }},
+      {"max_traces", [](RunOptions& o) { o.fit.search.max_traces = 7; }},
   };
 }
 
@@ -122,9 +124,9 @@ TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
                           most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;
-  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, start_values, sensor_start, bounds, priors, noise,
-                          loss, interval, seed, threads, progress, stop, max_trace_error, max_iterations, max_traces] =
-      fit;
+  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, bounds, priors, noise, interval, seed, threads,
+                          progress, search, stop] = fit;
+  [[maybe_unused]] auto& [start_values, sensor_start, max_trace_error, max_iterations, max_traces] = search;
 }
 
 TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {

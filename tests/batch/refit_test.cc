@@ -203,7 +203,7 @@ TEST_F(RefitTest, SeesOtherOptions) {
       [](RunOptions& run) {
         run.fit.priors["coulomb"] = {0.002, 0.001};
       },
-      [](RunOptions& run) { run.fit.noise = NoiseChoice::kGaussian; },
+      [](RunOptions& run) { run.fit.noise = NoiseFamily::kGaussian; },
       [](RunOptions& run) { run.fit.seed = 2; },
       [](RunOptions& run) { run.read.resolution = 0.001; },
       [](RunOptions& run) { run.closed_form_only = true; }};

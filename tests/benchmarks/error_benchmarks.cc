@@ -5,11 +5,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "pendulum/fitting/bootstrap.h"
-#include "pendulum/fitting/maximum_likelihood.h"
-#include "pendulum/fitting/optimum.h"
-#include "pendulum/fitting/profile.h"
-#include "pendulum/fitting/search.h"
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/search.h"
+#include "pendulum/fitting/uncertainty/bootstrap.h"
+#include "pendulum/fitting/uncertainty/profile.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
 #include "pendulum/trajectory/tolerance.h"
 #include "pendulum_benchmarks.h"
 #include "reference_run.h"
@@ -31,7 +32,7 @@ SolvedRun SolveReferenceRun() {
   run.problem = std::make_unique<FitProblem>(Expect(MakeFitProblem(ReferenceRecording(), options)));
   const FitProblem& problem = *run.problem;
   run.cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
-  run.cost->set_tolerance(TraceTolerance(options.max_trace_error, problem.start.amplitude));
+  run.cost->set_tolerance(TraceTolerance(options.search.max_trace_error, problem.start.amplitude));
   run.cost->set_noise(problem.noise);
   run.solution = Search(
       *run.cost, problem.data, [&](const auto& fixed) { return FirstGuess(problem, fixed); }, problem.solve);

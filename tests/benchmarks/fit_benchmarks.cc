@@ -8,8 +8,9 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include "pendulum/fitting/start_values.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/fitting/start/start_values.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 #include "pendulum/report/json.h"
 #include "pendulum_benchmarks.h"
@@ -38,7 +39,7 @@ void FindStartValues(benchmark::State& state) {
   const Recording recording = ReferenceRecording();
   const MotionModel model = Expect(FindMotionModel("coulomb"));
   for (auto _ : state) {
-    Result<StartValues> values = EstimateStartValues(recording, model, StartChoice::kAuto);
+    Result<StartValues> values = EstimateStartValues(recording, model, std::nullopt);
     if (!values) return state.SkipWithError(values.error().message.c_str());
     benchmark::DoNotOptimize(values);
   }
@@ -74,7 +75,7 @@ void Fit(benchmark::State& state, int samples) {
 }
 
 /// The same readings with noise of so many counts, taken as numbers or as levels.
-void FitCounts(benchmark::State& state, double counts, NoiseChoice noise) {
+void FitCounts(benchmark::State& state, double counts, std::optional<NoiseFamily> noise) {
   FitOptions options = ReferenceOptions();
   options.noise = noise;
   FitAgain(state, ReferenceRecording(kSamples, counts), options);
@@ -164,8 +165,8 @@ void RegisterFitBenchmarks() {
   benchmark::RegisterBenchmark("find_window", FindWindow)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("fit", Fit, kSamples)->Unit(benchmark::kMicrosecond);
   for (const auto& [name, counts] : {std::pair{"0.5", 0.5}, std::pair{"0.25", 0.25}}) {
-    for (const NoiseChoice noise : {NoiseChoice::kGaussian, NoiseChoice::kQuantized}) {
-      const std::string family = noise == NoiseChoice::kGaussian ? "gaussian" : "quantized";
+    for (const std::optional<NoiseFamily> noise : {NoiseFamily::kGaussian, NoiseFamily::kQuantized}) {
+      const std::string family = noise == NoiseFamily::kGaussian ? "gaussian" : "quantized";
       benchmark::RegisterBenchmark(("fit/counts:" + std::string(name) + "/" + family).c_str(), FitCounts, counts, noise)
           ->Unit(benchmark::kMicrosecond);
     }

@@ -50,7 +50,7 @@ FloorRun MakeFloorRun(int samples) {
   FloorRun run{MakeEvaluationPoint("coulomb", StartKind::kRelease, samples), 0, {}, {}};
   const TrajectoryData& data = run.point.problem.data;
   const std::vector<double>& p = run.point.parameters;
-  run.tolerance = TraceTolerance(FitOptions().max_trace_error, run.point.problem.start.amplitude);
+  run.tolerance = TraceTolerance(FitOptions().search.max_trace_error, run.point.problem.start.amplitude);
   for (const double value : data.value) run.values.push_back(value - p[5]);
   const Pendulum<CoulombFriction, Dual> pendulum{Gravity::kSine, Dual(p[0], 0), {Dual(p[1], 1), Dual(p[2], 2)}};
   const Start<Dual> start{StartKind::kRelease, p[4], Dual(p[3], 3), Dual(0.0)};

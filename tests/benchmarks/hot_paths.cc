@@ -21,7 +21,7 @@ namespace {
 void EvaluateSums(int count) {
   const EvaluationPoint point = MakeEvaluationPoint("coulomb", StartKind::kRelease);
   const auto cost = MakeTrajectoryCost(point.problem.model, StartKind::kRelease, point.problem.data);
-  cost->set_tolerance(TraceTolerance(FitOptions().max_trace_error, point.problem.start.amplitude));
+  cost->set_tolerance(TraceTolerance(FitOptions().search.max_trace_error, point.problem.start.amplitude));
   std::vector<double> parameters = point.parameters;
   Eigen::MatrixXd sums;
   for (int i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ void EvaluateSums(int count) {
   }
 }
 
-void FitAgain(int count, double counts_of_noise, NoiseChoice noise) {
+void FitAgain(int count, double counts_of_noise, std::optional<NoiseFamily> noise) {
   const Recording recording = ReferenceRecording(kSamples, counts_of_noise);
   FitOptions options;
   options.rig = ReferenceRig();
@@ -46,8 +46,8 @@ const std::map<std::string, std::function<void(int)>>& HotPaths() {
   static const std::map<std::string, std::function<void(int)>> paths = {
       {"sensitivities/coulomb/release", EvaluateSums},
       {"fit", [](int count) { FitAgain(count, 1, FitOptions().noise); }},
-      {"fit/counts:0.5/gaussian", [](int count) { FitAgain(count, 0.5, NoiseChoice::kGaussian); }},
-      {"fit/counts:0.5/quantized", [](int count) { FitAgain(count, 0.5, NoiseChoice::kQuantized); }},
+      {"fit/counts:0.5/gaussian", [](int count) { FitAgain(count, 0.5, NoiseFamily::kGaussian); }},
+      {"fit/counts:0.5/quantized", [](int count) { FitAgain(count, 0.5, NoiseFamily::kQuantized); }},
   };
   return paths;
 }

@@ -22,7 +22,7 @@ constexpr double kFinestTolerance = 1e-17;
 FitOptions OptionsFor(std::string_view model, StartKind start) {
   FitOptions options;
   options.model = model;
-  options.start = start == StartKind::kRelease ? StartChoice::kRelease : StartChoice::kMoving;
+  options.start = start == StartKind::kRelease ? StartKind::kRelease : StartKind::kMoving;
   options.rig = ReferenceRig();
   return options;
 }

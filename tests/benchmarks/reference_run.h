@@ -11,9 +11,9 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/status.h"
-#include "pendulum/fitting/fit.h"
-#include "pendulum/fitting/fit_problem.h"
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 

@@ -21,7 +21,7 @@ class TinyResiduals {
 
   explicit TinyResiduals(const FitProblem& problem)
       : data_(problem.data), cost_(MakeTrajectoryCost(problem.model, problem.start.start, problem.data)) {
-    cost_->set_tolerance(TraceTolerance(FitOptions().max_trace_error, problem.start.amplitude));
+    cost_->set_tolerance(TraceTolerance(FitOptions().search.max_trace_error, problem.start.amplitude));
   }
 
   int NumResiduals() const { return static_cast<int>(data_.value.size()); }

@@ -35,7 +35,7 @@ void Report(benchmark::State& state, const EvaluationPoint& point, const Traject
 
 /// Sum of squares alone.
 void EvaluateCost(benchmark::State& state, const EvaluationPoint& point) {
-  const auto cost = CostAt(point, FitOptions().max_trace_error);
+  const auto cost = CostAt(point, FitOptions().search.max_trace_error);
   double sum = 0;
   for (auto _ : state) {
     if (!cost->SumOfSquares(point.parameters, &sum)) return state.SkipWithError("no trajectory");
@@ -58,7 +58,7 @@ void EvaluateSumsTo(benchmark::State& state, const EvaluationPoint& point, doubl
 }
 
 void EvaluateSums(benchmark::State& state, const EvaluationPoint& point) {
-  EvaluateSumsTo(state, point, FitOptions().max_trace_error);
+  EvaluateSumsTo(state, point, FitOptions().search.max_trace_error);
 }
 
 void Register(const std::string& name, const std::string& model, StartKind start, int samples) {

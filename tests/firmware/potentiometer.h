@@ -7,7 +7,7 @@
 #include <random>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/recording/adc.h"
+#include "pendulum/recording/calibration/adc.h"
 
 namespace pendulum {
 

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "tests/fitting/trajectory_cost_examples.h"
 
 namespace {

@@ -16,7 +16,7 @@
 #include <boost/random/normal_distribution.hpp>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/arma_likelihood.h"
+#include "pendulum/fitting/residuals/arma_likelihood.h"
 #include "tests/fitting/correlated_noise.h"
 
 namespace pendulum {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/nesting.h"
 #include "pendulum/trajectory/synthetic.h"

@@ -15,11 +15,12 @@
 #include <Eigen/Core>
 #include <boost/random/normal_distribution.hpp>
 
-#include "pendulum/fitting/estimate_autocorrelation.h"
-#include "pendulum/fitting/fit_problem.h"
-#include "pendulum/fitting/maximum_likelihood.h"
-#include "pendulum/fitting/optimum.h"
-#include "pendulum/fitting/search.h"
+#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/search.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {

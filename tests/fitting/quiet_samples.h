@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/trajectory/trajectory.h"
 

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/fit_problem.h"
+#include "pendulum/fitting/solve/fit_problem.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {

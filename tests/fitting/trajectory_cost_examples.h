@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/trajectory_cost.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/model/friction/registry.h"
 #include "tests/model/typical_friction.h"
 #include "tests/model/undamped_pendulum.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "recording/mat_timeseries.h"
+#include "recording/readers/mat/mat_timeseries.h"
 #include "tests/fuzz/recording.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "recording/mat_columns.h"
-#include "recording/mat_recording.h"
+#include "recording/readers/mat/mat_columns.h"
+#include "recording/readers/mat/mat_recording.h"
 #include "tests/fuzz/recording.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

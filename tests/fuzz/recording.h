@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "tests/fuzz/require.h"
 
 /// Any bytes are a recording that holds its invariant, or a sentence.

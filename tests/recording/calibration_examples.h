@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum/recording/calibration_table.h"
+#include "pendulum/recording/calibration/calibration_table.h"
 
 /// Tables for tests of calibrations.
 namespace pendulum {

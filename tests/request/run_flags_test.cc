@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/swing/choose_swings.h"
+
 namespace pendulum::run_flags_test {
 namespace {
 

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum::fit_pendulum_options_test {
@@ -45,7 +46,7 @@ TEST(MakeFitPendulumOptions, HasDefaultsForAllButTheData) {
   ASSERT_TRUE(options);
   EXPECT_THAT(options->data, ElementsAre("run.csv"));
   EXPECT_EQ(options->fit.model, "coulomb");
-  EXPECT_EQ(options->fit.start, StartChoice::kAuto);
+  EXPECT_EQ(options->fit.start, std::nullopt);
   EXPECT_THAT(options->fit.fixed, IsEmpty());
   EXPECT_TRUE(std::isnan(options->swing.from));
   EXPECT_TRUE(std::isnan(options->swing.to));
@@ -67,7 +68,7 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
   const auto options = MakeFitPendulumOptions(flags);
   ASSERT_TRUE(options);
   EXPECT_EQ(options->fit.model, "drag");
-  EXPECT_EQ(options->fit.start, StartChoice::kMoving);
+  EXPECT_EQ(options->fit.start, StartKind::kMoving);
   EXPECT_EQ(options->swing.from, -1.5);
   EXPECT_EQ(options->swing.to, 20);
   EXPECT_THAT(options->fit.fixed, ElementsAre(Pair("drag", 0.001), Pair("initial_angle", -0.25)));
@@ -160,7 +161,7 @@ TEST(MakeFitPendulumOptions, KnowsThreeKindsOfStart) {
   flags.start = "held";
   EXPECT_EQ(Refusal(flags), "--start is 'held'; it must be auto, release or moving");
   flags.start = "release";
-  EXPECT_EQ(MakeFitPendulumOptions(flags)->fit.start, StartChoice::kRelease);
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->fit.start, StartKind::kRelease);
 }
 
 TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {

@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "tests/acquisition/scripted_logger.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/record_text.h"

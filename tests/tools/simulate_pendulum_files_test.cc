@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "tests/tools/temporary_folder.h"
 
 namespace pendulum::simulate_pendulum_files_test {

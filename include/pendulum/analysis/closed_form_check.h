@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/closed_form/closed_forms.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 

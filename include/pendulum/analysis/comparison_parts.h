@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pendulum/analysis/model_comparison.h"
-#include "pendulum/fitting/arma_likelihood.h"
+#include "pendulum/fitting/residuals/arma_likelihood.h"
 
 namespace pendulum {
 

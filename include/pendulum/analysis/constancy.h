@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {

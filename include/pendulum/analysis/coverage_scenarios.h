@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/trajectory/synthetic.h"
 
 namespace pendulum {

@@ -6,7 +6,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/free_swing.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {

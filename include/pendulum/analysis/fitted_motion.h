@@ -8,7 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/likelihood/fit_parameters.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"

@@ -9,7 +9,7 @@
 
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/random_effects.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pendulum/analysis/constancy.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 
 namespace pendulum {
 

@@ -7,7 +7,7 @@
 
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/prediction.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 
 namespace pendulum {
 

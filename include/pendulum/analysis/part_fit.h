@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "pendulum/analysis/fitted_motion.h"
-#include "pendulum/fitting/fit.h"
-#include "pendulum/fitting/noise.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
 

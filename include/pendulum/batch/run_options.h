@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/fitting/fit.h"
-#include "pendulum/fitting/fit_swing.h"
-#include "pendulum/recording/read_recording.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
+#include "pendulum/recording/readers/read_recording.h"
 
 namespace pendulum {
 

@@ -6,7 +6,8 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/run_options.h"
-#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "pendulum/recording/adc.h"
+#include "pendulum/recording/calibration/adc.h"
 
 namespace pendulum {
 

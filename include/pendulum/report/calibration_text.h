@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pendulum/recording/calibrate.h"
+#include "pendulum/recording/calibration/calibrate.h"
 
 namespace pendulum {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/report/run_report.h"
 
 namespace pendulum {

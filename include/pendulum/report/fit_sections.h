@@ -5,7 +5,7 @@
 #include <string>
 
 #include "pendulum/analysis/closed_form_check.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/report/section.h"
 

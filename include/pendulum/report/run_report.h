@@ -17,8 +17,9 @@
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/sampling.h"
-#include "pendulum/fitting/fit.h"
-#include "pendulum/fitting/fit_swing.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
 

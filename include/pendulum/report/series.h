@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/analysis/closed_form_check.h"
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/report/run_report.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pendulum/fitting/fit.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {

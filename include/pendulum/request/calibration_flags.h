@@ -5,8 +5,8 @@
 #include <string>
 
 #include "pendulum/base/status.h"
-#include "pendulum/recording/calibrate.h"
-#include "pendulum/recording/calibration_table.h"
+#include "pendulum/recording/calibration/calibrate.h"
+#include "pendulum/recording/calibration/calibration_table.h"
 #include "pendulum/recording/sensor.h"
 
 namespace pendulum {

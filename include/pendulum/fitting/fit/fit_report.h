@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/likelihood/noise.h"
+#include "pendulum/fitting/residuals/autocorrelation.h"
+#include "pendulum/fitting/residuals/residual_diagnostics.h"
+#include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/fitting/start/start_values.h"
+#include "pendulum/fitting/uncertainty/derived.h"
+#include "pendulum/fitting/uncertainty/identifiability.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/parameter.h"
+#include "pendulum/model/sensor_model.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// How a fit ended, and what of its report means something:
+///                                     estimates     std_error, covariance   statistics
+///   kConverged                        yes           yes                     yes
+///   kNotConverged, kNotIdentifiable   best found    no                      yes
+///   kFailed                           not any       no                      no
+enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
+
+std::string_view TerminationName(Termination termination);
+
+/// 0 for kConverged, 1 for the others.
+int ExitCode(Termination termination);
+
+/// One parameter after the fit, in the unit given.
+struct ParameterEstimate {
+  ParameterInfo info;
+  std::string unit;  ///< info.unit with a rig, info.relative_unit without; counts and volts instead of rad.
+  double estimate = 0;
+  std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
+  std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
+  std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
+  std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
+  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent without.
+  std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
+  bool fixed = false;
+  bool at_bound = false;
+  std::string reason;
+};
+
+/// The noise of the samples about the trajectory, and why this family.
+struct NoiseEstimate {
+  NoiseFamily family = NoiseFamily::kGaussian;
+  double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), else the likeliest σ or scale.
+  std::optional<double> sigma_std_error;  ///< Same unit.
+  double resolution = 0;                  ///< Of the readings, same unit; 0: none.
+  Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
+  std::string why;
+  double lag1_correlation = 0;  ///< Of the quantile residuals.
+  Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
+  // Of edges, as in NoiseModel.
+  double stamp_ratio = 0;  ///< s/rad: standard deviation of a stamp over sigma.
+  double lag = 0;          ///< rad: the estimate of edge_lag.
+  std::optional<double> edge = std::nullopt;
+  std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
+};
+
+/// The likelihood along one parameter, the others at their best, at M values: what its profile interval rests on.
+struct ProfileCurve {
+  std::string name;
+  std::vector<double> value;      ///< M, increasing, in the parameter's unit.
+  std::vector<double> statistic;  ///< M, as ProfilePoint: 0 at the estimate, at least 0.
+  double threshold = 0;           ///< Of the statistic, where the 95 % interval ends.
+};
+
+/// What the solver did, over all its runs.
+struct SolverSummary {
+  int iterations = 0;
+  int evaluations = 0;  ///< Trajectories of the start that was kept, with and without sensitivities.
+  std::string termination;
+};
+
+/// One model fitted to one recording.
+struct FitReport {
+  MotionModel model;
+  Termination termination = Termination::kFailed;
+  std::string reason;  ///< A sentence, whatever the termination.
+  StartKind start = StartKind::kMoving;
+  Quantity quantity = Quantity::kAngle;
+  SensorModel sensor;
+  std::string reading_unit = "rad";  ///< Of readings, residuals and noise: rad, rad/s, or the recording's unit.
+  std::vector<ParameterEstimate> parameters;  ///< As FitParameters: the order of covariance's rows.
+  std::vector<DerivedQuantity> derived;
+  std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
+  Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  std::string std_error_method, interval_method;
+  std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
+  std::vector<std::string> systematic_names;
+  Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
+  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.
+  NoiseEstimate noise;
+  FitStatistics statistics;
+  SolverSummary solver;
+  StartValues start_values;  ///< Where the search began, in units of G.
+  std::vector<Warning> warnings;
+  double trace_error = 0;  ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
+  Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.
+
+  /// The parameter of that name, or nullptr.
+  const ParameterEstimate* Find(std::string_view name) const;
+
+  bool Warns(std::string_view code) const;
+};
+
+/// Removes errors, intervals and covariance that do not hold from a report. Each free parameter gets the reason `why`.
+void WithdrawErrors(std::string_view why, FitReport& fit);
+
+/// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it.
+FitOptions OptionsLike(const FitReport& fit, FitOptions options);
+
+}  // namespace pendulum

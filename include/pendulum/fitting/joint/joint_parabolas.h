@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/joint/joint_problem.h"
+
+namespace pendulum {
+
+/// The joint optimum within the bounds were the members' likelihoods parabolas about the fits alone, and its
+/// information (P x P).
+struct CombinedParabolas {
+  std::vector<double> parameters;
+  Eigen::MatrixXd information;
+};
+CombinedParabolas CombineParabolas(const JointProblem& joint);
+
+}  // namespace pendulum

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/joint/joint_cost.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+
+namespace pendulum {
+
+/// One recording of a joint problem.
+struct JointMember {
+  const Recording* recording = nullptr;
+  const FitReport* alone = nullptr;
+  FitOptions options;                    // kind of start and family of noise are those of `alone`
+  std::unique_ptr<FitProblem> problem;   // the cost looks into it
+  std::unique_ptr<TrajectoryCost> cost;  // without priors
+  double tolerance = 0;                  // of its trajectory, rad
+  double cost_sigma = 0;                 // σ that the cost has, rad or rad/s
+  std::vector<double> alone_parameters;  // P_k, where its own fit ended
+  Solution solution;                     // its own P_k parameters, and its noise
+  std::vector<int> at;                   // P_k: where they stand among all P
+
+  double samples() const { return static_cast<double>(problem->data.time.size()); }
+
+  /// Those of all that are free, or at a bound, as places among its own.
+  std::vector<int> Own(const std::vector<int>& of_all) const;
+
+  /// Where these of its own, which must be there, stand in that list.
+  std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
+};
+
+/// Several recordings over P parameters: the shared ones, then those of each recording. Units of G.
+struct JointProblem {
+  std::vector<JointMember> members;
+  std::vector<std::string> shared;  // names; shared[i] is parameter i
+  std::unique_ptr<JointCost> cost;
+  SolveOptions solve;
+
+  double samples() const;
+
+  /// Puts parameters into the members' solutions.
+  void Distribute(const std::vector<double>& parameters);
+
+  /// Where the fits alone ended, P; of what is shared, that of the last recording.
+  std::vector<double> AloneParameters() const;
+
+  bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
+
+  /// "inertia", "release_angle of recording 2".
+  std::string NameOf(int parameter) const;
+};
+
+/// Ready to be solved: each member where its own fit ended. Errors as FitJointly.
+Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
+
+}  // namespace pendulum

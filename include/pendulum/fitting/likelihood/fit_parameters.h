@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/parameter.h"
+#include "pendulum/model/sensor_model.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// How the zero of a direct sensor moves during a recording.
+enum class ZeroMotion {
+  kNone,
+  kDrifts,  ///< Linearly with time: zero_drift or bias_drift.
+  kLags,    ///< Of events: it lags behind the direction of motion by edge_lag.
+};
+
+/// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
+/// initial_rate, then those of the sensor. A direct sensor has zero_angle or rate_bias, and the motion of its zero.
+std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
+                                         ZeroMotion zero = ZeroMotion::kNone, const SensorModel& sensor = {});
+
+}  // namespace pendulum

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pendulum/fitting/likelihood/fit_parameters.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/fitting/solve/solve.h"
+#include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/fitting/start/start_values.h"
+
+namespace pendulum {
+
+/// A recording made ready for the solver: everything in units of G, times from the first sample.
+struct FitProblem {
+  MotionModel model;
+  StartValues start;                    ///< As found in the data, before fixed values are put in.
+  std::vector<ParameterInfo> infos;     ///< P
+  std::vector<double> si_per_internal;  ///< P; value in the report = si_per_internal · internal + offset.
+  std::vector<double> offset;           ///< P; the clock of the first sample for release_time, else 0.
+  std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
+  TrajectoryData data;
+  ZeroMotion zero_motion = ZeroMotion::kNone;
+  SolveOptions solve;
+  std::size_t sensor_starts = 1;  ///< Ways to begin that there are, of which one is `start`.
+  bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
+  std::vector<PriorTerm> priors;
+  NoiseModel noise;  ///< With which a search begins: σ is data.scale; `censored` saturated readings.
+  Eigen::Index censored = 0;
+  double resolution = 0;  ///< Of the readings; 0: none.
+
+  /// Parameter i as the report has it, and back.
+  double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
+  double Internal(std::size_t i, double reported) const { return (reported - offset[i]) / si_per_internal[i]; }
+
+  /// Index of the zero, the first parameter of the sensor.
+  std::size_t zero() const { return static_cast<std::size_t>(solve.last_friction) + 3; }
+
+  /// σ below this is rounding: a millionth of the data's scale.
+  double negligible_sigma() const { return 1e-6 * data.scale; }
+
+  /// Root mean square of the residuals of readings that are neither censored nor silences.
+  double RmsResidual(const Eigen::VectorXd& readings) const;
+
+  /// Share of the readings' variance that a trajectory leaves; a censored reading that it exceeds is explained.
+  double UnexplainedShare(const Eigen::VectorXd& readings) const;
+};
+
+/// The first guess for a simpler law: parameters that are fixed besides those of the problem are at their lower bound,
+/// and the other friction parameters balance the energy without them.
+std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
+
+/// Start values from the data, bounds and fixed values from the options. Errors as FitRecording.
+Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
+
+}  // namespace pendulum

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/likelihood/least_squares.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/fitting/solve/covariance.h"
+#include "pendulum/fitting/solve/solve.h"
+
+namespace pendulum {
+
+/// The likelihood around a solution, in the problem's units, and what is free there.
+struct Optimum {
+  Eigen::MatrixXd information;  ///< P x P, observed, priors included.
+  Eigen::VectorXd gradient;     ///< P, of minus the log-likelihood.
+  std::vector<int> free;        ///< F parameters that are neither fixed nor at a bound.
+  std::vector<int> at_bound;    ///< Those at a bound that the likelihood pushes outwards.
+  InformationInverse inverse;   ///< Of the information, over free.
+};
+
+/// Nothing when the trajectory cannot be traced.
+std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution);
+
+/// Derivatives of the readings by the free parameters, N x F; no rows when the trajectory cannot be traced.
+Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
+
+/// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
+double RemainingShift(const Optimum& optimum);
+
+/// A solution has converged if its RemainingShift is at most this many standard errors.
+inline constexpr double kLargestShift = 0.1;
+
+}  // namespace pendulum

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "pendulum/base/status.h"
+#include "pendulum/fitting/likelihood/noise.h"
+#include "pendulum/fitting/start/start_values.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/model/parameter.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// How confidence intervals are computed.
+enum class IntervalMethod {
+  kAuto,        ///< From the covariance, unless one of the next two is needed.
+  kCovariance,  ///< Estimate plus or minus Student's t times the standard error.
+  kProfile,     ///< Of the likelihood; kAuto takes it if a parameter is within three standard errors of a bound.
+  kBootstrap,   ///< Parametric, from refits of simulated readings.
+  kNone,        ///< For trial fits: no errors, intervals, identifiability, rival sensors or autocorrelation.
+};
+
+/// How the search for the solution runs. Trial fits and refits change it; users do not.
+struct SearchOptions {
+  std::optional<StartValues> start_values;  ///< Replaces EstimateStartValues; complete.
+  std::size_t sensor_start = 0;             ///< Index into SensorStarts.
+  double max_trace_error =
+      1e-8;                  ///< Target error of the trajectory [rad]; also sigma / 1000, warning above sigma / 100.
+  int max_iterations = 100;  ///< Of Ceres, for each solve.
+  int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends hopeless fits.
+};
+
+/// What the user asks of a fit. Values by name are in SI with a rig (N m, kg m^2); without one, torques and inertia are
+/// in units of G.
+struct FitOptions {
+  std::string model = "coulomb";
+  std::optional<Gravity> gravity;  ///< Replaces the model's own.
+  std::optional<StartKind> start;  ///< std::nullopt: decided from the readings.
+  std::optional<Rig> rig;
+  ParameterValues fixed;
+  ParameterValues initial;  ///< Initial values that replace those estimated from the readings.
+  ParameterRanges bounds;   ///< Bounds within a parameter's own.
+  ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev. A prior is not counted as a sample.
+  /// std::nullopt: edges where the recording has them (Recording::edge), else quantized where the noise is smaller than
+  /// the resolution, else Gaussian.
+  std::optional<NoiseFamily> noise;
+  IntervalMethod interval = IntervalMethod::kAuto;
+  std::uint64_t seed = 1;  ///< Of the bootstrap and of posterior sampling.
+  int threads = 0;         ///< For the bootstrap and long recordings; 0: all cores. The result does not depend on it.
+  std::function<void(int done, int total)> progress;  ///< Called now and then by the bootstrap, from one thread.
+  SearchOptions search;
+  /// Once a stop is requested, the fit ends soon with kTryAgain and its results are discarded. Default: never.
+  std::stop_token stop;
+};
+
+/// The error of a fit that was stopped on request: kTryAgain.
+inline tl::unexpected<Status> FitStopped() {
+  return Error(
+      StatusCode::kTryAgain,
+      "the fit was stopped before it was done; give it more time, or ask for fewer models, a shorter window or "
+      "intervals by covariance");
+}
+
+/// Options of a quick trial fit whose residuals are to be inspected: the richest law (drag), without errors. Start,
+/// robust noise family, threads and stop are those of `options`.
+FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces);
+
+}  // namespace pendulum

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/closed_form/free_swing.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// Which part of a recording to fit. Times are s on the file's clock.
+struct SwingChoice {
+  static constexpr int kLongest = 0;
+  static constexpr int kAll = -1;
+
+  /// The window's first and last time; NaN: as the data say.
+  double from = std::numeric_limits<double>::quiet_NaN();
+  double to = std::numeric_limits<double>::quiet_NaN();
+  int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
+};
+
+/// The free swings of a recording, and those of them that were asked for.
+struct ChosenSwings {
+  std::vector<FreeSwing> found;
+  std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
+};
+
+/// Finds the free swings and chooses. An end the user gave is the end of the window; with both nothing is looked for.
+/// What is sampled too slowly for a pendulum such as the rig's (IsUndersampled) is one swing from end to end.
+/// kInvalidArgument: no swing of that number, or an empty window. kFailedPrecondition: as FindFreeSwings.
+Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
+                                  const std::optional<Rig>& rig = std::nullopt);
+
+}  // namespace pendulum

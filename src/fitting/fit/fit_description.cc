@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/fit_description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pendulum/base/median.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Residuals of a billionth of the swing are those of numbers, not of a model.
+bool IsRounding(const Recording& recording, const FitReport& report) {
+  constexpr double kRounding = 1e-9;
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  return report.statistics.rms_residual < kRounding * range;
+}
+
+/// Samples in a period, as a number of lags.
+int PeriodLags(const FitProblem& problem) {
+  const std::vector<double>& time = problem.data.time;
+  constexpr std::size_t kEnough = 100'000;
+  const std::size_t stride = time.size() / kEnough + 1;
+  std::vector<double> intervals;
+  for (std::size_t i = 0; i + 1 < time.size(); i += stride) intervals.push_back(time[i + 1] - time[i]);
+  const double lags = 2 * kPi / problem.start.natural_frequency / Median(std::move(intervals));
+  return static_cast<int>(std::min(lags, static_cast<double>(time.size())));
+}
+
+/// The unit of what is told in that of the readings.
+void SetReadingUnit(const Recording& recording, const SensorModel& sensor, ParameterEstimate& parameter) {
+  const std::string_view name = parameter.info.name;
+  const bool is_length = name == kPivotX.name || name == kPivotY.name || name == kRadius.name;
+  if (is_length && sensor.kind != SensorKind::kAcceleration) parameter.unit = recording.unit;
+  if (sensor.kind == SensorKind::kScaledRate && name == kRateBias.name) parameter.unit = recording.unit;
+  if (name == kRateScale.name) parameter.unit = recording.unit + " s/rad";
+  if (sensor.kind != SensorKind::kDirect || recording.is_calibrated() || !parameter.unit.starts_with("rad")) return;
+  // The motion itself is told in the readings' unit then: of a rate it is a rate.
+  const bool is_rate = parameter.unit == "rad/s";
+  if (recording.quantity != Quantity::kRate) {
+    parameter.unit.replace(0, 3, recording.unit);
+  } else {
+    parameter.unit = is_rate ? recording.unit : parameter.unit == "rad" ? recording.unit + " s" : recording.unit + "/s";
+  }
+}
+
+/// Value, unit and flags of parameter i, without its errors.
+ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                               const Solution& solution, std::size_t i) {
+  ParameterEstimate parameter;
+  parameter.info = problem.infos[i];
+  parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
+  SetReadingUnit(recording, problem.data.sensor, parameter);
+  parameter.estimate = problem.Reported(i, solution.parameters[i]);
+  parameter.fixed = problem.solve.fixed[i];
+  const auto is_one_of = [&](auto... infos) { return ((parameter.info.name == infos.name) || ...); };
+  const bool is_seen = recording.is_calibrated() || problem.data.sensor.kind == SensorKind::kDirect;
+  const bool has_closed_form = is_seen && !IsSensorParameter(parameter.info.name) &&
+                               !is_one_of(kInitialAngle, kInitialRate, kZeroDrift, kBiasDrift);
+  if (has_closed_form && !parameter.fixed) parameter.closed_form = problem.Reported(i, problem.start.parameters[i]);
+  return parameter;
+}
+
+NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution, const Eigen::VectorXd& z) {
+  NoiseEstimate noise;
+  noise.family = solution.noise.family;
+  noise.sigma = solution.noise.sigma;
+  noise.resolution = problem.resolution;
+  noise.censored = problem.censored;
+  noise.why = solution.noise_reason;
+  noise.lag1_correlation = Lag1Correlation(z);
+  if (noise.family != NoiseFamily::kEdges) return noise;
+  noise.stamp_ratio = solution.noise.stamp_ratio;
+  noise.lag = solution.noise.lag;
+  noise.edge = solution.noise.edge;
+  noise.spread = solution.noise.spread;
+  return noise;
+}
+
+}  // namespace
+
+FitReport IntroduceFit(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+                       const Solution& solution) {
+  FitReport report;
+  report.model = problem.model;
+  report.start = problem.start.start;
+  report.start_values = problem.start;
+  report.quantity = recording.quantity;
+  report.sensor = problem.data.sensor;
+  report.reading_unit = recording.value_unit();
+  report.solver = {solution.iterations, cost.traces(), solution.message};
+  return report;
+}
+
+Description Describe(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+                     const Solution& solution, int free_parameters) {
+  Description described;
+  FitReport& report = described.report;
+  report = IntroduceFit(recording, problem, cost, solution);
+  const Eigen::VectorXd& z = described.quantile_residuals =
+      QuantileResiduals(solution.noise, recording.value, solution.readings);
+  report.fitted = solution.readings;
+  report.residual = recording.value - report.fitted;
+  report.trace_error = solution.trace_error;
+  report.statistics = ComputeStatistics(report.residual, z, solution.log_likelihood, free_parameters);
+  report.statistics.rms_residual = problem.RmsResidual(report.fitted);
+  report.noise = DescribeNoise(problem, solution, z);
+  described.trace = cost.Trace(solution.parameters);
+  described.correlated = !IsRounding(recording, report) &&
+                         (FollowEachOther(z, PeriodLags(problem)) ||
+                          SwingAlong(recording.time, report.fitted, z,
+                                     2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
+  return described;
+}
+
+void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                   const Optimum& optimum, const Solution& solution, FitReport& report) {
+  report.parameters.clear();
+  for (int i = 0; i < static_cast<int>(problem.infos.size()); ++i) {
+    ParameterEstimate parameter = MakeEstimate(recording, options, problem, solution, static_cast<std::size_t>(i));
+    parameter.at_bound = std::ranges::find(optimum.at_bound, i) != optimum.at_bound.end();
+    if (parameter.fixed) {
+      parameter.reason = "fixed";
+    } else if (report.termination != Termination::kConverged) {
+      parameter.reason = "the fit is " + std::string(TerminationName(report.termination));
+    } else if (parameter.at_bound) {
+      parameter.reason = "at its bound";
+    }
+    report.parameters.push_back(std::move(parameter));
+  }
+}
+
+void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report) {
+  Eigen::VectorXd scale(static_cast<Index>(optimum.free.size()));
+  for (std::size_t i = 0; i < optimum.free.size(); ++i) {
+    const auto index = static_cast<std::size_t>(optimum.free[i]);
+    const auto row = static_cast<Index>(i);
+    report.covariance_names.emplace_back(problem.infos[index].name);
+    scale[row] = problem.si_per_internal[index];
+    report.parameters[index].std_error = scale[row] * std::sqrt(errors.covariance(row, row));
+    report.parameters[index].t95 = errors.t95[row];
+  }
+  report.covariance = scale.asDiagonal() * errors.covariance * scale.asDiagonal();
+  report.std_error_method = errors.runs[0].method;
+}
+
+void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covariance, FitReport& report) {
+  const Eigen::Map<const Eigen::VectorXd> units(problem.si_per_internal.data(), covariance.rows());
+  std::vector<Index> concerned;
+  for (Index i = 0; i < covariance.rows(); ++i) {
+    if (!(covariance(i, i) > 0)) continue;
+    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
+    parameter.systematic_std_error = units[i] * std::sqrt(covariance(i, i));
+    report.systematic_names.emplace_back(parameter.info.name);
+    concerned.push_back(i);
+  }
+  report.systematic_covariance = (units.asDiagonal() * covariance * units.asDiagonal())(concerned, concerned);
+}
+
+void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
+                FitReport& report) {
+  const auto size = static_cast<Index>(problem.infos.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  covariance(optimum.free, optimum.free) = errors.covariance;
+  report.derived = DerivedQuantities(problem.infos, solution.parameters, &covariance, optimum.at_bound);
+  std::vector<IntervalEnds> intervals;
+  for (std::size_t i = 0; i < problem.infos.size(); ++i) {
+    const ParameterEstimate& parameter = report.parameters[i];
+    const auto internal = [&](const std::optional<double>& end) {
+      if (parameter.fixed) return std::optional(solution.parameters[i]);
+      return end ? std::optional(problem.Internal(i, *end)) : std::nullopt;
+    };
+    intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
+  }
+  SetDerivedIntervals(problem.infos, solution.parameters, intervals, report.derived);
+}
+
+Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                         const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
+  constexpr double kDoubtful = 0.05;
+  if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
+  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
+  if (jacobian.rows() == 0) return {};
+  const Eigen::VectorXd weight = solution.noise.Deviations(jacobian.rows()).cwiseInverse();
+  return EstimateAutocorrelation(problem.data.times(), z, weight.asDiagonal() * jacobian, problem.data.stop);
+}
+
+}  // namespace pendulum

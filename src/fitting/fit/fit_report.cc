@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/fit_report.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pendulum {
+
+std::string_view TerminationName(Termination termination) {
+  switch (termination) {
+    case Termination::kConverged: return "converged";
+    case Termination::kNotConverged: return "not_converged";
+    case Termination::kNotIdentifiable: return "not_identifiable";
+    case Termination::kFailed: return "failed";
+  }
+  return "failed";
+}
+
+int ExitCode(Termination termination) { return termination == Termination::kConverged ? 0 : 1; }
+
+const ParameterEstimate* FitReport::Find(std::string_view name) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.info.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+bool FitReport::Warns(std::string_view code) const {
+  return std::ranges::find(warnings, code, &Warning::code) != warnings.end();
+}
+
+void WithdrawErrors(std::string_view why, FitReport& fit) {
+  for (ParameterEstimate& parameter : fit.parameters) {
+    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+    if (!parameter.fixed) parameter.reason = why;
+  }
+  for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
+  fit.profiles.clear();
+  fit.covariance_names.clear();
+  fit.covariance.resize(0, 0);
+}
+
+FitOptions OptionsLike(const FitReport& fit, FitOptions options) {
+  options.start = fit.start;
+  options.noise = fit.noise.family;
+  return options;
+}
+
+}  // namespace pendulum

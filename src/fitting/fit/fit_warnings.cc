@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/fit_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Eigen/QR>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/extrema.h"
+#include "pendulum/fitting/fit/fit_report.h"
+#include "pendulum/fitting/residuals/autocorrelation.h"
+
+namespace pendulum {
+namespace {
+
+/// A reading at an end of the sensor's range only says that the angle is there or beyond.
+void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings) {
+  if (problem.censored == 0) return;
+  warnings.push_back({"saturated", std::to_string(problem.censored) +
+                                       " readings stand at an end of the sensor's range; they are taken to say that "
+                                       "the angle is there or beyond"});
+}
+
+/// The misfit beyond the noise, in levels where the readings stand on such.
+std::string MisfitSize(const Recording& recording, double misfit) {
+  if (recording.resolution > 0) return NumberText(misfit / recording.resolution, 2) + " resolutions";
+  return NumberText(misfit, 2) + " " + recording.value_unit();
+}
+
+void WarnOfCorrelation(const Recording& recording, const FitReport& report, const Eigen::VectorXd& z,
+                       std::vector<Warning>& warnings) {
+  constexpr double kRatio = 1.3;
+  constexpr double kLargestSaid = 99;
+  Recording residuals;
+  residuals.time = recording.time;
+  residuals.value = z;
+  const double noise = SuccessiveDifferenceNoise(residuals);
+  const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
+  const double ratio = rms / noise;
+  if (!(ratio > kRatio)) {
+    const bool taken =
+        report.noise.memory.kind != Autocorrelation::Kind::kWhite && report.termination == Termination::kConverged;
+    warnings.push_back({"correlated_residuals",
+                        taken ? "the residuals follow each other: the error bars take them as noise that remembers (" +
+                                    report.noise.memory.Name() + ") and hold if the model is right"
+                              : "the residuals follow each other, and no error bar takes that into account"});
+    return;
+  }
+  const std::string times = ratio > kLargestSaid ? "more than 99" : NumberText(ratio, 2);
+  const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
+  warnings.push_back({"lack_of_fit", "the residuals are " + times +
+                                         " times the noise between neighbouring samples and follow each other, by " +
+                                         MisfitSize(recording, misfit) +
+                                         ": the model does not describe everything in this recording, or its noise is "
+                                         "slow (look at --residuals, try another model or window); the error bars are "
+                                         "conditional on a model that may be wrong"});
+}
+
+/// Line through the mean residuals of whole periods, which the swing itself leaves alone.
+void WarnOfDrift(const Recording& recording, const FitProblem& problem, const FitReport& report,
+                 std::vector<Warning>& warnings) {
+  constexpr Eigen::Index kFewest = 5;
+  constexpr double kSure = 5;  // standard errors
+  if (problem.zero_motion == ZeroMotion::kDrifts || problem.data.sensor.kind != SensorKind::kDirect) return;
+  const Eigen::VectorXd& time = recording.time;
+  const double period = 2 * kPi / (problem.start.natural_frequency * recording.clock_scale);
+  std::vector<double> when, mean;
+  for (Eigen::Index first = 0; first < time.size();) {
+    Eigen::Index end = first;
+    while (end < time.size() && time[end] - time[first] < period) ++end;
+    if (end < time.size()) {
+      when.push_back(time.segment(first, end - first).mean());
+      mean.push_back(report.residual.segment(first, end - first).mean());
+    }
+    first = end;
+  }
+  const auto count = static_cast<Eigen::Index>(when.size());
+  if (count < kFewest) return;
+  const Eigen::Map<const Eigen::VectorXd> y(mean.data(), count);
+  Eigen::MatrixX2d basis(count, 2);
+  basis << Eigen::VectorXd::Ones(count), Eigen::Map<const Eigen::VectorXd>(when.data(), count).array() - when.front();
+  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(y);
+  const double scatter = (y - basis * line).norm() / std::sqrt(static_cast<double>(count - 2));
+  const double spread = (basis.col(1).array() - basis.col(1).mean()).matrix().norm();
+  constexpr double kMatters = 0.5;  // of the residuals
+  const double drift = line[1] * (when.back() - when.front());
+  if (!(std::abs(line[1]) * spread > kSure * scatter)) return;
+  if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
+  const bool angle = recording.quantity != Quantity::kRate;
+  const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
+  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) + " " +
+                                        recording.value_unit() + " over the window; --init " + name +
+                                        "=0 makes the drift a parameter of the fit"});
+}
+
+/// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
+void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr double kQuiet = 0.5;
+  const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // outliers apart
+  const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
+  if (of_levels || !(rms < kQuiet * recording.resolution)) return;
+  warnings.push_back(
+      {"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                           " resolutions: the noise is too small for rounding to average out, and the "
+                           "error bars may be several times too small; --noise quantized has true ones"});
+}
+
+void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr double kNegligible = 0.01;
+  constexpr double kRounding = 1e-11;  // rad or rad/s: noise below it is none
+  if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
+  warnings.push_back({"trace_accuracy", "the trajectory is computed to " + NumberText(report.trace_error, 1) +
+                                            " only, which is not small against the noise of " +
+                                            NumberText(report.noise.sigma, 1) +
+                                            ": near the top rounding grows; choose a window of smaller swings"});
+}
+
+/// The prior against what the recording alone would say, which prior and estimate tell: with variances s² of the
+/// estimate and p² of the prior, the recording's own is 1 / (1/s² - 1/p²). Where s is no less than p, for the law does
+/// not fit, that is no variance: then the estimate is compared with the prior alone.
+void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
+                  std::vector<Warning>& warnings) {
+  constexpr double kFar = 3;  // standard deviations of their difference
+  for (const PriorTerm& prior : problem.priors) {
+    const ParameterEstimate& parameter = report.parameters[prior.parameter];
+    if (!parameter.std_error) continue;
+    const double error = *parameter.std_error / problem.si_per_internal[prior.parameter] * prior.weight;  // s / p
+    const double own = error < 1 ? 1 / (1 / (error * error) - 1) : 0;                                     // in p²
+    const double distance =
+        std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight * std::sqrt(1 + own);
+    if (!(distance > kFar)) continue;
+    warnings.push_back({"prior_conflict", "what is known of " + std::string(parameter.info.name) +
+                                              " beforehand (--prior) and the recording disagree by " +
+                                              NumberText(distance, 3) + " standard deviations of their difference"});
+  }
+}
+
+/// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
+void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
+  constexpr std::string_view kConsequence =
+      "; the standard errors of the others take that as exact, the intervals by profile likelihood do not";
+  std::vector<ParameterInfo> friction, bounded, extreme;
+  for (const ParameterEstimate& parameter : report.parameters) {
+    if (!parameter.at_bound) continue;
+    if (parameter.info.name != kReleaseTime.name) {
+      const bool none = parameter.estimate == 0 && parameter.info.lower == 0;  // what is left is a simpler law
+      const bool own = parameter.estimate == parameter.info.lower || parameter.estimate == parameter.info.upper;
+      (none ? friction : own ? extreme : bounded).push_back(parameter.info);
+      continue;
+    }
+    warnings.push_back({"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
+                                        std::string(kConsequence) +
+                                        "; choose a window with all of the hold, or --start moving with a window after "
+                                        "the release"});
+  }
+  if (!extreme.empty()) {
+    warnings.push_back({"at_bound", "at the end of what it can be: " + NameList(extreme) + std::string(kConsequence) +
+                                        "; the recording hardly tells it"});
+  }
+  if (!bounded.empty()) {
+    warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) + std::string(kConsequence) +
+                                        "; widen --bounds"});
+  }
+  if (friction.empty()) return;
+  warnings.push_back({"at_bound", "at the bound 0: " + NameList(friction) + std::string(kConsequence) +
+                                      "; a simpler model, or a longer recording, has smaller ones"});
+}
+
+/// Warnings about the stop of a pendulum that dry friction brings to rest.
+void WarnOfStop(const FitProblem& problem, const Solution& solution, const TraceSummary& trace, const FitReport& report,
+                std::vector<Warning>& warnings) {
+  const int holding = problem.solve.holding_parameter;
+  if (holding < 0 || !report.parameters[holding].std_error) return;
+  const ParameterEstimate& friction = report.parameters[holding];
+  const double si = problem.si_per_internal[holding];
+  const double error = *friction.std_error / si;
+  const std::string name(friction.info.name);
+  constexpr double kNearlyAsWell = 9;  // in -2 log L
+  const auto other =
+      std::find_if(solution.other_minima.begin(), solution.other_minima.end(), [&](const Minimum& minimum) {
+        const double distance = minimum.parameters[holding] - solution.parameters[holding];
+        return minimum.sum - solution.sum <= kNearlyAsWell && std::abs(distance) >= error;
+      });
+  if (other != solution.other_minima.end()) {
+    warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) + " " +
+                                               std::string(friction.unit) +
+                                               " and another number of half swings the recording is explained nearly "
+                                               "as well; the error bars are those of the first minimum alone"});
+  }
+  if (trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error) {
+    warnings.push_back({"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " + name +
+                                              ", where the number of half swings changes: the error bars are rough; a "
+                                              "window that ends before the stop has better ones"});
+  }
+}
+
+}  // namespace
+
+std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
+                                 const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
+                                 const FitReport& report) {
+  std::vector<Warning> warnings;
+  WarnOfSaturation(problem, warnings);
+  if (correlated) WarnOfCorrelation(recording, report, quantile_residuals, warnings);
+  if (correlated) WarnOfDrift(recording, problem, report, warnings);
+  WarnOfQuietSensor(recording, report, warnings);
+  WarnOfTraceAccuracy(report, warnings);
+  if (report.termination != Termination::kConverged) return warnings;
+  WarnOfPriors(problem, solution, report, warnings);
+  WarnOfBounds(report, warnings);
+  WarnOfStop(problem, solution, trace, report, warnings);
+  return warnings;
+}
+
+}  // namespace pendulum

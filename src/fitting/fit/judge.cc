@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/fit/fit_description.h"
+#include "pendulum/fitting/fit/fit_warnings.h"
+#include "pendulum/fitting/fit/intervals.h"
+#include "pendulum/fitting/solve/cross_jumps.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
+#include "pendulum/fitting/uncertainty/systematic.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices) {
+  std::string names;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (i > 0) names += i + 1 == indices.size() ? " and " : ", ";
+    names += problem.infos[static_cast<std::size_t>(indices[i])].name;
+  }
+  return names;
+}
+
+/// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
+/// reversal: a little less friction and it would swing on.
+bool OnKink(const FitProblem& problem, const TraceSummary& trace, const Solution& solution) {
+  constexpr double kNear = 1e-4;
+  const int holding = problem.solve.holding_parameter;
+  return holding >= 0 && trace.stop_time < problem.data.time.back() &&
+         trace.smallest_reversal_margin < kNear * solution.parameters[holding];
+}
+
+std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<int>& direction) {
+  const std::string names = JoinNames(problem, direction);
+  return direction.size() == 1 ? "the recording does not depend on " + names + "; fix it"
+                               : "the recording tells only a combination of " + names + "; fix one of them";
+}
+
+std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
+  const std::string what = problem.restricted ? "not with the values, bounds and priors that were given, not a free "
+                                                "pendulum's swing, or not one of this model: "
+                                              : "this is not a free pendulum's swing, or not one of this model: ";
+  const std::string leaves = unexplained < 1
+                                 ? "the best trajectory leaves " + std::to_string(std::lround(100 * unexplained)) +
+                                       " % of the reading's variance unexplained"
+                                 : std::string("the best trajectory explains the readings no better than a constant");
+  return what + leaves + (problem.restricted ? "; look at --fix, --bounds and --prior, or" : ";") +
+         " choose a window of free swing with --from and --to";
+}
+
+/// Number of the release time among the parameters, if there is one.
+std::optional<std::size_t> ReleaseTimeOf(const FitProblem& problem) {
+  const auto found = std::ranges::find(problem.infos, "release_time", &ParameterInfo::name);
+  if (found == problem.infos.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - problem.infos.begin());
+}
+
+/// RemainingShift, but where the release lies at the instant of a rate's sample: there the sum of squares has a kink.
+/// If it rises on both sides the release is where it belongs, whatever the slope on one of them, and only the step of
+/// the others is left.
+double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                 const Optimum& optimum) {
+  constexpr double kBeside = 1e-5;  // standard errors
+  const double shift = RemainingShift(optimum);
+  const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
+  if (shift <= kLargestShift || !may_have_a_kink) return shift;
+  const auto release = std::ranges::find(optimum.free, static_cast<int>(*ReleaseTimeOf(problem)));
+  if (release == optimum.free.end()) return shift;
+  const auto k = release - optimum.free.begin();
+  double least = 0;
+  if (!cost.SumOfSquares(solution.parameters, &least)) return shift;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> beside = solution.parameters;
+    beside[static_cast<std::size_t>(*release)] += side * kBeside * std::sqrt(optimum.inverse.matrix(k, k));
+    double sum = 0;
+    if (!cost.SumOfSquares(beside, &sum) || sum < least) return shift;
+  }
+  Optimum others = optimum;
+  others.free.erase(others.free.begin() + k);
+  others.inverse = InvertInformation(others.information, others.free);
+  return others.inverse.identifiable ? RemainingShift(others) : shift;
+}
+
+/// Whether a step is left to make only because the sum of squares jumps: nowhere along it, down to 0.1 standard errors,
+/// is it less.
+bool StopsAtJump(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                 const Optimum& optimum) {
+  return HasJumps(problem) && optimum.inverse.identifiable && RemainingShift(optimum) > kLargestShift &&
+         !LowerAlongShift(optimum, problem.solve, cost, solution);
+}
+
+/// How many small-angle periods the motion of the solution lasts in the recording.
+double PeriodsOf(const FitProblem& problem, const Solution& solution) {
+  const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
+  const std::optional<std::size_t> release = ReleaseTimeOf(problem);
+  return (problem.data.time.back() - (release ? solution.parameters[*release] : 0.0)) / period;
+}
+
+/// What a solution is judged by.
+struct Judged {
+  double shift = 0;      ///< ShiftLeft
+  bool at_jump = false;  ///< StopsAtJump
+  double periods = 0;    ///< PeriodsOf
+  bool correlated = false;
+  bool on_kink = false;
+};
+
+void SetTermination(const FitProblem& problem, const Optimum& optimum, const Judged& judged, FitReport& report) {
+  if (!optimum.inverse.identifiable) {
+    report.termination = Termination::kNotIdentifiable;
+    report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
+    return;
+  }
+  constexpr double kFewestPeriods = 0.5;
+  const double unexplained = problem.UnexplainedShare(report.fitted);
+  report.termination = Termination::kNotConverged;
+  if (unexplained > MostUnexplained(judged.correlated)) {
+    report.reason = UnexplainedReason(problem, unexplained);
+  } else if (judged.periods < kFewestPeriods) {
+    report.reason = "the motion lasts " + NumberText(judged.periods, 2) +
+                    " of a period of the best trajectory: that is no swing, and hardly anything of the pendulum can be "
+                    "told; record several periods, or choose a window of free swing with --from and --to";
+  } else if (judged.at_jump) {
+    report.termination = Termination::kConverged;
+    report.reason = "a jump of the acceleration's sum of squares stopped the search: nowhere along the step of " +
+                    NumberText(judged.shift, 2) +
+                    " standard errors left to make is it less; the errors are those of the parabola";
+  } else if (!(judged.shift <= kLargestShift)) {
+    report.reason = judged.on_kink
+                        ? "the best trajectory stops just where one half swing more would begin, and there the sum "
+                          "of squares has a kink; end the window before the stop (--to) or choose another model"
+                        : "a step of " +
+                              (judged.shift < 10 ? NumberText(judged.shift, 2)
+                                                 : std::to_string(std::lround(std::min(judged.shift, 1e6)))) +
+                              " standard errors is left to make; a shorter window or another model may converge";
+  } else if (optimum.free.empty() && optimum.at_bound.empty()) {
+    report.termination = Termination::kConverged;
+    report.reason = "every parameter is fixed: nothing was fitted";
+  } else {
+    report.termination = Termination::kConverged;
+    report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
+  }
+}
+
+FitReport FailedReport(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                       const TrajectoryCost& cost, const Solution& solution) {
+  FitReport report = IntroduceFit(recording, problem, cost, solution);
+  report.termination = Termination::kFailed;
+  report.reason =
+      "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
+      "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
+  SetParameters(recording, options, problem, Optimum{}, solution, report);
+  return report;
+}
+
+/// Estimates, errors and intervals of a fit that converged, and what they rest on.
+void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
+               Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
+               FitReport& report) {
+  // Before the posterior moves σ, on which the optimum's information rests.
+  SetSystematicErrors(problem, SystematicCovariance(recording, options, problem, cost, solution, optimum), report);
+  const Autocorrelation memory = MemoryOf(problem, cost, solution, optimum, z, correlated);
+  Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
+  report.noise.memory = memory;
+  report.statistics.effective_samples = errors.runs[0].effective_samples;
+  const FittedModel fitted{options, problem, cost, solution, optimum, memory, z};
+  const std::optional<Optimum> sampled = UsePosterior(fitted, errors, report);
+  report.noise.sigma = solution.noise.sigma;
+  report.noise.sigma_std_error = errors.runs[0].sigma;
+  SetCovariance(problem, sampled.value_or(optimum), errors, report);
+  if (!sampled) SetIntervals(fitted, errors, report);
+  SetDerived(problem, sampled.value_or(optimum), errors, solution, report);
+}
+
+}  // namespace
+
+FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
+                Solution solution) {
+  const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
+  if (!optimum) return FailedReport(recording, options, problem, cost, solution);
+  Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
+  FitReport& report = described.report;
+  const double shift = optimum->inverse.identifiable ? ShiftLeft(problem, cost, solution, *optimum) : 0.0;
+  const bool at_jump = StopsAtJump(problem, cost, solution, *optimum);
+  const bool on_kink = OnKink(problem, described.trace, solution);
+  SetTermination(problem, *optimum, {shift, at_jump, PeriodsOf(problem, solution), described.correlated, on_kink},
+                 report);
+  SetParameters(recording, options, problem, *optimum, solution, report);
+  if (report.termination == Termination::kConverged && options.interval != IntervalMethod::kNone) {
+    SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
+              report);
+  } else {
+    report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
+  }
+  const bool is_told = report.termination == Termination::kConverged || !optimum->inverse.identifiable;
+  if (is_told) SetIdentifiability(problem, *optimum, report);
+  report.warnings = FitWarnings(recording, problem, solution, described.trace, described.quantile_residuals,
+                                described.correlated, report);
+  report.solver.evaluations = cost.traces();
+  return std::move(report);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/joint/joint_errors.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "pendulum/fitting/fit/intervals.h"
+#include "pendulum/fitting/joint/joint_parabolas.h"
+#include "pendulum/fitting/uncertainty/systematic.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+bool IsFromPosterior(const FitReport& fit) { return fit.interval_method == kPosteriorIntervals; }
+
+/// A source of errors, and how many recordings have it.
+struct CommonSource {
+  SystematicSource source;  // of all P parameters
+  std::size_t count = 0;
+};
+
+/// Where a recording's powers stand among all. An angle's friction follows the clock otherwise than a rate's: then no
+/// one power of a shared parameter says it, there are none, and the pulls do.
+void MergePowers(const JointProblem& joint, const JointMember& member, const SystematicSource& own,
+                 CommonSource& common) {
+  Eigen::VectorXd& powers = common.source.powers;
+  if (powers.size() == 0 || own.powers.size() == 0) return;
+  const bool first = common.count == 1;
+  for (std::size_t i = 0; i < member.at.size(); ++i) {
+    const double power = own.powers[static_cast<Index>(i)];
+    if (!first && joint.IsShared(member.at[i]) && powers[member.at[i]] != power) {
+      powers.resize(0);
+      return;
+    }
+    powers[member.at[i]] = power;
+  }
+}
+
+/// The sources of all recordings by what they are.
+std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
+  std::map<std::string, CommonSource> sources;
+  const auto size = static_cast<Index>(joint.solve.fixed.size());
+  for (const JointMember& member : joint.members) {
+    for (const SystematicSource& own :
+         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
+      CommonSource& common = sources[own.identity];
+      if (common.count++ == 0) {
+        common.source = {own.identity, Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0),
+                         Eigen::MatrixXd::Zero(size, own.pull.cols()), own.covariance};
+      }
+      MergePowers(joint, member, own, common);
+      common.source.pull(member.at, Eigen::all) += own.pull;
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum) {
+  const auto size = static_cast<Index>(joint.solve.fixed.size());
+  const SourceContext context{solution.parameters, joint.solve.fixed, joint.cost->priors(), optimum};
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (!optimum.inverse.identifiable) return covariance;
+  for (const auto& [identity, common] : SourcesOf(joint)) {
+    covariance += SourceCovariance(common.source, common.count == joint.members.size(), context);
+  }
+  return covariance;
+}
+
+bool HasPosteriors(const JointProblem& joint) {
+  const auto& members = joint.members;
+  return std::ranges::any_of(members, [](const JointMember& m) { return IsFromPosterior(*m.alone); }) &&
+         std::ranges::all_of(members, [](const JointMember& m) { return !m.alone->covariance_names.empty(); });
+}
+
+bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known) {
+  Optimum optimum = known;
+  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
+  std::ranges::sort(optimum.free);
+  optimum.at_bound.clear();
+  CombinedParabolas combined = CombineParabolas(joint);
+  optimum.inverse = InvertInformation(combined.information, optimum.free);
+  double sum = 0;
+  if (!optimum.inverse.identifiable || !joint.cost->SumOfSquares(combined.parameters, &sum)) return false;
+  optimum.information = std::move(combined.information);
+  optimum.gradient.setZero();
+  known = std::move(optimum);
+  solution.parameters = std::move(combined.parameters);
+  joint.Distribute(solution.parameters);
+  for (JointMember& member : joint.members) {
+    member.solution.noise.sigma = member.alone->noise.sigma;
+    member.cost->Readings(member.solution.parameters, &member.solution.readings,
+                          nullptr);  // known to be traced, unless stopped
+  }
+  return true;
+}
+
+}  // namespace pendulum

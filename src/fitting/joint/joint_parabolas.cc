@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/joint/joint_parabolas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/fitting/likelihood/least_squares.h"
+#include "pendulum/fitting/solve/covariance.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The likelihood of a recording about its own fit, without its priors: places among all parameters (M), information A
+/// (M x M), and A p - gradient.
+struct Parabola {
+  std::vector<int> at;
+  Eigen::MatrixXd information;
+  Eigen::VectorXd pull;
+};
+
+/// From the sums where the fit alone ended: its cost has no priors.
+Parabola ParabolaOfSums(const JointMember& member) {
+  const std::vector<double>& own = member.alone_parameters;
+  const auto size = static_cast<Index>(own.size());
+  Parabola parabola{member.at, Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  Eigen::MatrixXd sums;
+  if (!member.cost->Sums(own, &sums)) return parabola;
+  parabola.information = sums.topLeftCorner(size, size);
+  parabola.pull =
+      parabola.information * Eigen::Map<const Eigen::VectorXd>(own.data(), size) - sums.col(size).head(size);
+  return parabola;
+}
+
+/// From the covariance of the fit alone where it has one: the trajectory need not be traced for it.
+Parabola ParabolaOf(const JointMember& member) {
+  const FitReport& alone = *member.alone;
+  const auto count = static_cast<Index>(alone.covariance_names.size());
+  std::vector<int> all(alone.covariance_names.size());
+  std::iota(all.begin(), all.end(), 0);
+  const InformationInverse inverse = InvertInformation(alone.covariance, all);
+  if (count == 0 || !inverse.identifiable) return ParabolaOfSums(member);
+  Parabola parabola;
+  Eigen::VectorXd unit(count), estimates(count), prior = Eigen::VectorXd::Zero(count), mean = prior;
+  for (Index row = 0; row < count; ++row) {
+    const auto i = static_cast<std::size_t>(alone.Find(alone.covariance_names[static_cast<std::size_t>(row)]) -
+                                            alone.parameters.data());
+    parabola.at.push_back(member.at[i]);
+    unit[row] = member.problem->si_per_internal[i];
+    estimates[row] = member.alone_parameters[i];
+    for (const PriorTerm& known : member.problem->priors) {
+      if (known.parameter != static_cast<int>(i)) continue;
+      prior[row] = known.weight * known.weight;
+      mean[row] = known.mean;
+    }
+  }
+  parabola.information = unit.asDiagonal() * inverse.matrix * unit.asDiagonal();
+  parabola.pull = parabola.information * estimates - prior.cwiseProduct(mean);
+  parabola.information.diagonal() -= prior;
+  return parabola;
+}
+
+}  // namespace
+
+CombinedParabolas CombineParabolas(const JointProblem& joint) {
+  const auto size = static_cast<Index>(joint.solve.fixed.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  std::vector<double> parameters = joint.AloneParameters();
+  const Eigen::VectorXd start = Eigen::Map<const Eigen::VectorXd>(parameters.data(), size);
+  AddPriors(joint.cost->priors(), parameters, &sums);
+  Eigen::VectorXd pull = -sums.col(size).head(size);
+  for (const JointMember& member : joint.members) {
+    const Parabola parabola = ParabolaOf(member);
+    sums(parabola.at, parabola.at) += parabola.information;
+    pull(parabola.at) += parabola.pull - parabola.information * start(parabola.at);
+  }
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (!joint.solve.fixed[static_cast<std::size_t>(i)] && sums(i, i) > 0) free.push_back(i);
+  }
+  const Eigen::VectorXd scale = sums.diagonal()(free).cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(scale.asDiagonal() * sums(free, free) * scale.asDiagonal());
+  const Eigen::VectorXd step = scale.cwiseProduct(factor.solve(scale.cwiseProduct(pull(free))));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto i = static_cast<std::size_t>(free[k]);
+    const double moved = parameters[i] + step[static_cast<Index>(k)];
+    if (std::isfinite(moved)) parameters[i] = std::clamp(moved, joint.solve.lower[i], joint.solve.upper[i]);
+  }
+  return {parameters, sums.topLeftCorner(size, size)};
+}
+
+}  // namespace pendulum

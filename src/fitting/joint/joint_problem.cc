@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/joint/joint_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/search.h"
+#include "pendulum/fitting/solve/trace_error.h"
+#include "pendulum/trajectory/tolerance.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+std::string NumberOf(std::size_t k) { return "recording " + std::to_string(k + 1); }
+
+/// A problem whose parameters are those of the fit alone.
+Result<FitProblem> ProblemOf(const JointRun& run, FitOptions& options) {
+  options = OptionsLike(run.alone, run.options);
+  options.search.start_values = run.alone.start_values;
+  options.initial.clear();
+  for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {  // a parameter where the options name it
+    if (run.alone.Find(drift) != nullptr && !options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
+  }
+  return MakeFitProblem(run.used, options);
+}
+
+/// The noise of the fit alone, with the sensor's range.
+NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
+  NoiseModel noise = problem.noise;
+  noise.family = alone.noise.family;
+  noise.sigma = std::max(alone.noise.sigma, problem.negligible_sigma());
+  const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kEdges;
+  noise.resolution = has_levels ? problem.resolution : 0;
+  noise.stamp_ratio = alone.noise.stamp_ratio;
+  noise.lag = alone.noise.lag;
+  noise.spread = alone.noise.spread;
+  return noise;
+}
+
+Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
+  JointMember member;
+  member.recording = &run.used;
+  member.alone = &run.alone;
+  if (run.alone.termination == Termination::kFailed) {
+    return Error(StatusCode::kFailedPrecondition, NumberOf(k) + " cannot be fitted alone: " + run.alone.reason);
+  }
+  Result<FitProblem> problem = ProblemOf(run, member.options);
+  if (!problem) return tl::unexpected(problem.error());
+  member.problem = std::make_unique<FitProblem>(*std::move(problem));
+  member.cost = MakeTrajectoryCost(member.problem->model, member.problem->start.start, member.problem->data);
+  member.cost->set_threads(member.options.threads);
+  member.tolerance = TraceTolerance(MaxTraceError(*member.problem, member.options), member.problem->start.amplitude);
+  member.cost->set_tolerance(member.tolerance);
+  Solution& solution = member.solution;
+  for (std::size_t i = 0; i < member.problem->infos.size(); ++i) {
+    const double own = member.problem->Internal(i, run.alone.parameters[i].estimate);
+    solution.parameters.push_back(std::clamp(own, member.problem->solve.lower[i], member.problem->solve.upper[i]));
+  }
+  member.alone_parameters = solution.parameters;
+  solution.noise = NoiseOf(*member.problem, run.alone);
+  solution.noise_reason = run.alone.noise.why;
+  member.cost_sigma = solution.noise.sigma;
+  member.cost->set_noise(solution.noise);
+  return member;
+}
+
+/// One model, and one rig, for parameters are shared in units of its gravity torque.
+Result<void> CheckAlike(std::span<const JointRun> runs) {
+  const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
+  for (std::size_t k = 1; k < runs.size(); ++k) {
+    if (runs[k].alone.model.name != runs[0].alone.model.name) {
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " was fitted with another model than the first");
+    }
+    if (torque(runs[k]) != torque(runs[0])) {
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " is of another rig than the first");
+    }
+  }
+  return {};
+}
+
+/// Names of the model's parameters among those asked for, in the model's order.
+std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<std::string>& asked) {
+  std::vector<std::string> shared;
+  for (const ParameterInfo& info : PhysicalParameters(model)) {
+    if (std::ranges::find(asked, info.name) != asked.end()) shared.emplace_back(info.name);
+  }
+  return shared;
+}
+
+/// Room for so many parameters, without bounds.
+void Resize(SolveOptions& solve, std::size_t count) {
+  solve.lower.resize(count, -kUnbounded);
+  solve.upper.resize(count, kUnbounded);
+  solve.fixed.resize(count, false);
+}
+
+/// Where the parameter of a member stands among all: what is its own is added to them.
+std::size_t FindOrAddPlace(JointProblem& joint, std::string_view name) {
+  const auto shared = std::ranges::find(joint.shared, name);
+  if (shared != joint.shared.end()) return static_cast<std::size_t>(shared - joint.shared.begin());
+  Resize(joint.solve, joint.solve.fixed.size() + 1);
+  return joint.solve.fixed.size() - 1;
+}
+
+/// Gives a member's parameters their places. What is shared keeps to the bounds of all members.
+void Place(JointProblem& joint, JointMember& member) {
+  const SolveOptions& own = member.problem->solve;
+  SolveOptions& all = joint.solve;
+  for (std::size_t i = 0; i < own.fixed.size(); ++i) {
+    const std::size_t place = FindOrAddPlace(joint, member.problem->infos[i].name);
+    all.lower[place] = std::max(all.lower[place], own.lower[i]);
+    all.upper[place] = std::min(all.upper[place], own.upper[i]);
+    all.fixed[place] = all.fixed[place] || own.fixed[i];
+    member.at.push_back(static_cast<int>(place));
+  }
+}
+
+/// What is known beforehand of a shared parameter counts once, as the first member has it.
+std::vector<PriorTerm> PriorsOf(const JointProblem& joint) {
+  std::vector<PriorTerm> priors;
+  for (const JointMember& member : joint.members) {
+    for (PriorTerm prior : member.problem->priors) {
+      prior.parameter = member.at[static_cast<std::size_t>(prior.parameter)];
+      if (!joint.IsShared(prior.parameter) || &member == &joint.members.front()) priors.push_back(prior);
+    }
+  }
+  return priors;
+}
+
+/// One cost of all members, and how it is solved.
+void Assemble(JointProblem& joint) {
+  Resize(joint.solve, joint.shared.size());
+  std::vector<JointTerm> terms;
+  for (JointMember& member : joint.members) {
+    Place(joint, member);
+    terms.push_back({member.cost.get(), member.at});
+  }
+  const SolveOptions& first = joint.members.front().problem->solve;
+  const int holding = first.holding_parameter;
+  const int held = holding < 0 ? -1 : joint.members.front().at[static_cast<std::size_t>(holding)];
+  joint.solve.holding_parameter = joint.IsShared(held) ? held : -1;
+  joint.solve.max_iterations = first.search.max_iterations;
+  joint.solve.max_traces = first.search.max_traces * static_cast<int>(terms.size());
+  joint.cost =
+      std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), PriorsOf(joint));
+}
+
+}  // namespace
+
+std::vector<int> JointMember::Own(const std::vector<int>& of_all) const {
+  std::vector<int> own;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (std::ranges::find(of_all, at[i]) != of_all.end()) own.push_back(static_cast<int>(i));
+  }
+  return own;
+}
+
+std::vector<Eigen::Index> JointMember::RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const {
+  std::vector<Index> rows;
+  rows.reserve(own.size());
+  for (const int i : own) {
+    rows.push_back(std::ranges::find(of_all, at[static_cast<std::size_t>(i)]) - of_all.begin());
+  }
+  return rows;
+}
+
+double JointProblem::samples() const {
+  double samples = 0;
+  for (const JointMember& member : members) samples += member.samples();
+  return samples;
+}
+
+void JointProblem::Distribute(const std::vector<double>& parameters) {
+  for (std::size_t k = 0; k < members.size(); ++k) members[k].solution.parameters = cost->Own(k, parameters);
+}
+
+std::vector<double> JointProblem::AloneParameters() const {
+  std::vector<double> all(solve.fixed.size());
+  for (const JointMember& member : members) {
+    for (std::size_t i = 0; i < member.at.size(); ++i) {
+      all[static_cast<std::size_t>(member.at[i])] = member.alone_parameters[i];
+    }
+  }
+  return all;
+}
+
+std::string JointProblem::NameOf(int parameter) const {
+  if (IsShared(parameter)) return shared[static_cast<std::size_t>(parameter)];
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto own = std::ranges::find(members[k].at, parameter);
+    if (own == members[k].at.end()) continue;
+    const auto i = static_cast<std::size_t>(own - members[k].at.begin());
+    return std::string(members[k].problem->infos[i].name) + " of " + NumberOf(k);
+  }
+  return "";
+}
+
+Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+  if (runs.size() < 2) {
+    return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
+                                                   std::string(runs.empty() ? "there is none" : "there is one"));
+  }
+  if (Result<void> checked = CheckAlike(runs); !checked) return tl::unexpected(checked.error());
+  JointProblem joint;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    Result<JointMember> member = MakeMember(runs[k], k);
+    if (!member) return tl::unexpected(member.error());
+    joint.members.push_back(*std::move(member));
+  }
+  const MotionModel& model = joint.members.front().problem->model;
+  joint.shared = SharedOf(model, shared);
+  if (joint.shared.empty()) {
+    return Error(StatusCode::kInvalidArgument,
+                 "model " + std::string(model.name) + " has none of the parameters that are to be shared");
+  }
+  Assemble(joint);
+  return joint;
+}
+
+}  // namespace pendulum

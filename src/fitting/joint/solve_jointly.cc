@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/joint/solve_jointly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/joint/joint_parabolas.h"
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/search.h"
+#include "pendulum/fitting/solve/trace_error.h"
+#include "pendulum/trajectory/tolerance.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// How many of the free parameters a recording pays for: without priors those of all recordings add up to their number.
+double ShareOf(const JointMember& member, const Optimum& optimum) {
+  Eigen::MatrixXd sums;
+  if (!member.cost->Sums(member.solution.parameters, &sums)) return 0;
+  const std::vector<int> own = member.Own(optimum.free);
+  const std::vector<Index> rows = member.RowsAmong(optimum.free, own);
+  return optimum.inverse.matrix(rows, rows).cwiseProduct(sums(own, own)).sum();
+}
+
+/// σ of a recording at the joint optimum; of Gaussian noise RSS / (N - its share of the parameters).
+double SigmaOf(const JointMember& member, const Optimum& optimum) {
+  const FitProblem& problem = *member.problem;
+  const NoiseModel& noise = member.solution.noise;
+  const double smallest = problem.negligible_sigma();
+  if (!noise.IsPlain()) {
+    const double of_levels = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
+    return LikeliestSigma(noise, problem.data.values(), member.solution.readings, std::max(of_levels, smallest));
+  }
+  const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
+  return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
+}
+
+/// Gives every recording its parameters and readings at the solution. False where a motion cannot be traced.
+bool UpdateReadings(JointProblem& joint, const Solution& solution) {
+  joint.Distribute(solution.parameters);
+  return std::ranges::all_of(joint.members, [](JointMember& member) {
+    return member.cost->Readings(member.solution.parameters, &member.solution.readings, nullptr);
+  });
+}
+
+/// Gives every recording the σ that its residuals have at the solution, and its cost too unless that has it to a
+/// fraction of σ's own error: another σ of levels costs a trajectory. False where a motion cannot be traced.
+bool UpdateNoise(JointProblem& joint, const Solution& solution) {
+  constexpr double kSame = 3e-3;
+  const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
+  if (!optimum || !UpdateReadings(joint, solution)) return false;
+  if (!optimum->inverse.identifiable) return true;
+  for (JointMember& member : joint.members) {
+    const double sigma = SigmaOf(member, *optimum);
+    const bool changed = std::abs(std::log(sigma / member.cost_sigma)) > kSame;
+    member.solution.noise.sigma = sigma;
+    if (!changed && !member.solution.noise.IsPlain()) continue;
+    member.cost_sigma = sigma;
+    member.cost->set_noise(member.solution.noise);
+  }
+  return true;
+}
+
+/// Parameters and σ in turn.
+void Settle(JointProblem& joint, Solution& solution) {
+  constexpr int kMostRounds = 30;
+  constexpr double kSettled = 0.01;  // standard errors
+  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+    solution.usable = UpdateNoise(joint, solution);
+    const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
+    if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) < kSettled) return;
+    solution = Continue(*joint.cost, solution, joint.solve);
+  }
+  solution.usable = solution.usable && UpdateReadings(joint, solution);
+}
+
+/// Whether all trajectories are accurate enough, or no finer tolerance is left to try. Where the fit alone was accurate
+/// at the first tolerance, so is the joint one.
+bool AreAccurate(JointProblem& joint, Solution& solution, bool last) {
+  bool accurate = true;
+  for (JointMember& member : joint.members) {
+    const double max_error = MaxTraceError(*member.problem, member.options);
+    member.solution.trace_error = member.alone->trace_error;
+    if (member.solution.trace_error <= max_error) continue;
+    solution.usable = solution.usable && MeasureTraceError(*member.cost, member.tolerance, member.solution);
+    if (member.solution.trace_error <= max_error || last) continue;
+    accurate = false;
+    member.tolerance = FinerTolerance(member.tolerance);
+    member.cost->set_tolerance(member.tolerance);
+  }
+  return accurate || !solution.usable;
+}
+
+}  // namespace
+
+Solution SolveJointly(JointProblem& joint) {
+  Solution solution;
+  solution.parameters = CombineParabolas(joint).parameters;
+  solution = Refine(*joint.cost, solution, joint.solve);
+  if (!solution.usable) {  // far from parabolas the step may lead where nothing can be traced
+    solution.parameters = joint.AloneParameters();
+    solution = Refine(*joint.cost, solution, joint.solve);
+  }
+  Settle(joint, solution);
+  for (int refinement = 0; !AreAccurate(joint, solution, refinement == kMostTraceRefinements); ++refinement) {
+    solution = Continue(*joint.cost, solution, joint.solve);
+    Settle(joint, solution);
+  }
+  for (JointMember& member : joint.members) {
+    member.solution.usable = solution.usable;
+    member.solution.iterations = solution.iterations;
+    member.solution.message = solution.message;
+    if (solution.usable) member.solution.log_likelihood = LogLikelihoodOf(*member.problem, member.solution);
+  }
+  return solution;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "fitting/likelihood/sample_kernel.h"
+#include "pendulum/base/parallel.h"
+
+namespace pendulum {
+
+/// Brings the segments of a trajectory, as they are traced, to the samples of a recording, block by block: kBlock
+/// consecutive samples, whatever the segments. Of a long recording segments are kept until there are blocks enough for
+/// several threads; what blocks give (Part) is added up in their order, so that a sum does not depend on the number of
+/// threads. A block has R rows, the first of them as EvaluateAt fills them.
+template <typename T, bool kRelease, int R, typename Part>
+class BlockSamples {
+ public:
+  void Restart(std::span<const double> time, int threads) {
+    time_ = time;
+    threads_ = time.size() < 2 * kShare * kBlock ? 1 : ThreadsOrCores(threads);
+    samples_per_second_ = time.size() < 2 ? 0 : static_cast<double>(time.size() - 1) / (time.back() - time.front());
+    kept_ = 0;
+    next_ = done_ = 0;
+  }
+
+  /// Works on the samples before the segment's end that no segment was for yet: calls work(SampleBlock<R>&, first
+  /// sample, count, Part&), then add(Part), for each block that is complete.
+  template <typename Work, typename Add>
+  void Take(const Segment<T>& segment, const Work& work, const Add& add) {
+    const std::size_t first = next_;
+    next_ = FirstNotBefore(segment.end);
+    if (next_ == first) return;
+    if (threads_ > 1) {
+      Keep(segment, first);
+      Share(work, add);
+      return;
+    }
+    for (std::size_t begin = first; begin < next_;) {
+      const std::size_t block = begin / kBlock * kBlock;
+      const std::size_t end = std::min(next_, block + kBlock);
+      Evaluate(segment, begin, end, block_, block);
+      begin = end;
+      if (end < std::min(time_.size(), block + kBlock)) break;
+      work(block_, block, static_cast<int>(end - block), part_);
+      add(part_);
+    }
+  }
+
+  bool is_complete() const { return next_ == time_.size(); }
+
+ private:
+  static constexpr std::size_t kShare = 128;  ///< Blocks that are worth a thread: some hundred microseconds.
+
+  /// A segment and the first of the samples it is for, up to the next one's.
+  struct Kept {
+    std::size_t first = 0;
+    Segment<T> segment;
+  };
+
+  /// The first sample from next_ on that is not before `end` [s]: near where evenly spaced ones have it.
+  std::size_t FirstNotBefore(double end) const {
+    if (next_ == time_.size() || !(time_[next_] < end)) return next_;
+    const double guess = (end - time_[next_]) * samples_per_second_;
+    std::size_t sample = next_ + static_cast<std::size_t>(std::min(guess, static_cast<double>(time_.size() - next_)));
+    while (sample > next_ && !(time_[sample - 1] < end)) --sample;
+    while (sample < time_.size() && time_[sample] < end) ++sample;
+    return sample;
+  }
+
+  /// Samples `begin` to end - 1, of a block that begins with sample `first`.
+  void Evaluate(const Segment<T>& segment, std::size_t begin, std::size_t end, SampleBlock<R>& block,
+                std::size_t first) const {
+    double* const rows = block.row[0].data() + (begin - first);
+    EvaluateAt<kRelease>(segment, &time_[begin], static_cast<int>(end - begin), rows);
+  }
+
+  void Keep(const Segment<T>& segment, std::size_t first) {
+    if (kept_ == segments_.size()) segments_.emplace_back();
+    segments_[kept_++] = {first, segment};
+  }
+
+  /// Works on all full blocks once there are enough of them, and on what is left when the last sample has come.
+  template <typename Work, typename Add>
+  void Share(const Work& work, const Add& add) {
+    constexpr std::size_t kMostKept = 4096;
+    const std::size_t ready = is_complete() ? (next_ - done_ + kBlock - 1) / kBlock : (next_ - done_) / kBlock;
+    const std::size_t wanted = kShare * static_cast<std::size_t>(threads_);
+    if (ready == 0 || (!is_complete() && ready < wanted && kept_ < kMostKept)) return;
+    if (parts_.size() < ready) parts_.resize(ready);
+    const auto one = [&](int b) {
+      const std::size_t first = done_ + static_cast<std::size_t>(b) * kBlock;
+      WorkOn(first, std::min<std::size_t>(kBlock, next_ - first), work, parts_[static_cast<std::size_t>(b)]);
+    };
+    const int worth = static_cast<int>(std::max<std::size_t>(ready / kShare, 1));
+    ParallelFor(static_cast<int>(ready), std::min(worth, threads_), std::ref(one));
+    for (std::size_t b = 0; b < ready; ++b) add(parts_[b]);
+    done_ = std::min(done_ + ready * kBlock, next_);
+    const auto left = KeptFor(done_);
+    kept_ = static_cast<std::size_t>(std::move(left, End(), segments_.begin()) - segments_.begin());
+  }
+
+  auto End() { return segments_.begin() + static_cast<std::ptrdiff_t>(kept_); }
+
+  auto KeptFor(std::size_t sample) {
+    if (sample == next_) return End();
+    return std::ranges::upper_bound(segments_.begin(), End(), sample, {}, &Kept::first) - 1;
+  }
+
+  template <typename Work>
+  void WorkOn(std::size_t first, std::size_t count, const Work& work, Part& part) {
+    SampleBlock<R> block;
+    for (auto kept = KeptFor(first); kept != End() && kept->first < first + count; ++kept) {
+      const std::size_t begin = std::max(kept->first, first);
+      const std::size_t end = std::min(kept + 1 == End() ? next_ : (kept + 1)->first, first + count);
+      Evaluate(kept->segment, begin, end, block, first);
+    }
+    work(block, first, static_cast<int>(count), part);
+  }
+
+  std::span<const double> time_;
+  int threads_ = 1;
+  double samples_per_second_ = 0;
+  std::size_t next_ = 0;  ///< The first sample that no segment was for.
+  SampleBlock<R> block_;
+  Part part_{};
+  std::size_t done_ = 0;        ///< The first sample that was not worked on, where segments are kept.
+  std::vector<Kept> segments_;  ///< The first kept_ of them; the others are room.
+  std::size_t kept_ = 0;
+  std::vector<Part> parts_;
+};
+
+}  // namespace pendulum

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include "fitting/likelihood/block_samples.h"
+#include "fitting/likelihood/depth_table.h"
+#include "fitting/likelihood/known_at.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/model/dual.h"
+#include "pendulum/model/friction/friction_model.h"
+#include "pendulum/trajectory/trajectory.h"
+
+namespace pendulum {
+
+/// A trial that asks for more steps than this has a time scale far from that of the start values: a period takes
+/// some 12.
+inline constexpr double kStepsPerRadian = 20;
+inline constexpr double kMostSteps = 10'000;
+
+/// The cost of one law and start, whose parameters are as many as the compiler knows.
+template <FrictionModel F, StartKind kStart>
+class TrajectoryCostFor final : public TrajectoryCost {
+  static constexpr int kFriction = kFrictionParameters<F>;
+  static constexpr int kParameters = kFriction + 4;
+  static constexpr int kZero = kParameters - 1;
+  static_assert(kParameters + 1 <= kMostCompressed);
+  static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
+  /// Derivatives by release time and zero need no dual number.
+  using Dual = std::conditional_t<kStart == StartKind::kRelease, ReleaseDual<F>, MovingDual<F>>;
+  template <typename T, int R, typename Sum>
+  using Samples = BlockSamples<T, kStart == StartKind::kRelease, R, Sum>;
+  static_assert(kSegmentRows<Dual, kStart == StartKind::kRelease> == kParameters);
+
+ public:
+  TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
+      : TrajectoryCost(kParameters + (data.moves.empty() ? 0 : 1)),
+        gravity_(gravity),
+        data_(data),
+        used_samples_(data.time.size()) {
+    noise_.sigma = data.scale;
+  }
+
+  void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
+  void set_threads(int threads) override { threads_ = threads; }
+  void set_used_samples(std::size_t count) override { used_samples_ = count; }
+
+  void set_noise(const NoiseModel& noise) override {
+    if (noise_.IsPlain() && noise.IsPlain()) {
+      last_.value *= std::pow(noise_.sigma / noise.sigma, 2);
+    } else {
+      last_.parameters.clear();
+    }
+    noise_ = noise;
+    if (noise_.family == NoiseFamily::kQuantized) levels_.Build(noise_.sigma / noise_.resolution);
+  }
+
+  bool SumOfSquares(std::span<const double> p, double* sum) const override {
+    double deviance = 0;
+    const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& part) {
+      auto& row = block.row[0];
+      Read(p, row.data(), first, count, row.data());
+      if (noise_.IsPlain()) {
+        RowProducts<1> square;
+        FindResiduals(row.data(), first, count, row.data());
+        SumProducts(block, count, square);
+        part = square[0];
+        return;
+      }
+      part = 0;
+      for (int i = 0; i < count; ++i) part += At(first + i, row[i]).deviance;
+    };
+    if (!VisitSamples(values_, p, work, [&](double part) { deviance += part; })) return false;
+    if (noise_.IsPlain()) deviance /= noise_.sigma * noise_.sigma;
+    *sum = deviance + PriorSum(p);
+    return std::isfinite(*sum);
+  }
+
+  bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
+    if (is_stopped()) return false;
+    if (!last_.IsAt(Asking(p))) {
+      if (!(data_.moves.empty() ? AddUp<1>(steady_, p, sums) : AddUp<2>(moving_, p, sums))) return false;
+      last_.value = *sums;  // into the room it has
+      last_.SetAt(Asking(p));
+    }
+    *sums = last_.value;
+    AddPriors(priors(), p, sums);
+    return true;
+  }
+
+  bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
+    if (is_stopped()) return false;
+    readings->resize(static_cast<Eigen::Index>(used_samples_));
+    const auto read = [&](const double* row, std::size_t first, int count) {
+      Read(p, row, first, count, readings->data() + first);
+    };
+    const auto add = [](double /*part*/) {};
+    if (jacobian == nullptr) {
+      if (read_.IsAt(Asking(p))) {
+        *readings = read_.value;
+        return true;
+      }
+      const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& /*part*/) {
+        read(block.row[0].data(), first, count);
+      };
+      return VisitSamples(values_, p, work, add);
+    }
+    jacobian->resize(readings->size(), count());
+    const auto work = [&](SampleBlock<kParameters>& block, std::size_t first, int count, double& /*part*/) {
+      read(block.row[kModel].data(), first, count);
+      for (int j = 0; j < kZero; ++j) std::copy_n(block.row[j].data(), count, &(*jacobian)(first, j));
+      jacobian->col(kZero).segment(first, count).setOnes();
+      if (!data_.moves.empty()) std::copy_n(&data_.moves[first], count, &(*jacobian)(first, kZero + 1));
+    };
+    Samples<Dual, kParameters, double> columns;
+    return VisitSamples(columns, p, work, add);
+  }
+
+  bool Motion(std::span<const double> p, bool with_jacobian, MotionStates* states) const override {
+    return with_jacobian ? FollowMotion<Dual>(p, states) : FollowMotion<double>(p, states);
+  }
+
+  /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
+  TraceSummary Trace(std::span<const double> p) const override {
+    if (is_stopped()) return {};
+    if (traced_.IsAt(Asking(p))) return traced_.value;
+    ++traces_;
+    TraceOptions options = Options();
+    const SegmentVisitor<double> nothing = [&](const Segment<double>&) { GiveUpIfStopped(options); };
+    traced_.SetAt(Asking(p), TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
+    return traced_.value;
+  }
+
+  bool is_stopped() const override { return data_.stop.stop_requested(); }
+
+  /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be
+  /// safe.
+  bool ComesToRest(std::span<const double> p, double torque_change) const override {
+    constexpr double kSafe = 4;
+    const TraceSummary trace = Trace(p);
+    return trace.stop_time < data_.time.back() ||
+           trace.smallest_reversal_margin < kSafe * 2 * trace.reversals * torque_change;
+  }
+
+ private:
+  /// Readings of the model's values: what the sensor shows when the angle, or rate, is zero is added.
+  void Read(std::span<const double> p, const double* row, std::size_t first, int count, double* readings) const {
+    const double zero = p[kZero];
+    for (int i = 0; i < count; ++i) readings[i] = row[i] + zero;
+    if (data_.moves.empty()) return;
+    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.moves[first + i];
+  }
+
+  /// As noise_.At, without an exponential and an error function for every sample of a level.
+  SampleLikelihood At(std::size_t sample, double reading) const {
+    const double value = data_.value[sample];
+    if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).At(value, reading);
+    if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.At(value, reading);
+    const double per_level = 1 / noise_.resolution;
+    const double position = (value - reading) * per_level;
+    const DepthTable::Curve level = levels_.At(0.5 - std::abs(position));
+    return {std::max(2 * (levels_.best() - level.log), 0.0), std::copysign(level.slope * per_level, position),
+            std::max(-level.curvature, 0.0) * per_level * per_level};
+  }
+
+  void FindResiduals(const double* readings, std::size_t first, int count, double* residuals) const {
+    const double* const value = &data_.value[first];
+    for (int i = 0; i < count; ++i) residuals[i] = value[i] - readings[i];
+  }
+
+  /// The rows of a block whose products are wanted: derivatives, zero, what moves it if anything does, residuals.
+  template <int kBaseline>
+  using Rows = SampleBlock<kZero + kBaseline + 1>;
+
+  /// Of one block.
+  template <int kBaseline>
+  struct Part {
+    RowProducts<kZero + kBaseline + 1> products;
+    double deviance = 0;
+  };
+
+  /// Completes the rows behind the derivatives and weighs them all; gives the deviance. Plain residuals are divided by
+  /// σ when all are summed up.
+  template <int kBaseline>
+  double Prepare(const double* readings, std::size_t first, int count, Rows<kBaseline>& block) const {
+    constexpr int kResidual = kZero + kBaseline;
+    auto& residual = block.row[kResidual];
+    std::fill_n(block.row[kZero].begin(), count, 1.0);
+    if constexpr (kBaseline == 2) std::copy_n(&data_.moves[first], count, block.row[kZero + 1].begin());
+    if (noise_.IsPlain()) {
+      FindResiduals(readings, first, count, residual.data());
+      return 0;
+    }
+    double deviance = 0;
+    for (int i = 0; i < count; ++i) {
+      const SampleLikelihood sample = At(first + i, readings[i]);
+      deviance += sample.deviance;
+      const double root_weight = std::sqrt(sample.weight);
+      residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;
+      for (int j = 0; j < kResidual; ++j) block.row[j][i] *= root_weight;
+    }
+    return deviance;
+  }
+
+  /// kBaseline parameters for the zero: itself, and what moves it. Residuals are measured - modelled: their derivatives
+  /// are minus the model's.
+  template <int kBaseline>
+  bool AddUp(auto& samples, std::span<const double> p, Eigen::MatrixXd* sums) const {
+    constexpr int kResidual = kZero + kBaseline;
+    read_.parameters.clear();
+    read_.value.resize(static_cast<Eigen::Index>(used_samples_));
+    const auto work = [&](Rows<kBaseline>& block, std::size_t first, int count, Part<kBaseline>& part) {
+      double* const readings = read_.value.data() + first;
+      Read(p, block.row[kModel].data(), first, count, readings);
+      part.deviance = Prepare<kBaseline>(readings, first, count, block);
+      SumProducts(block, count, part.products);
+    };
+    Part<kBaseline> total{};
+    const auto add = [&](const Part<kBaseline>& part) {
+      total.deviance += part.deviance;
+      for (std::size_t k = 0; k < total.products.size(); ++k) total.products[k] += part.products[k];
+    };
+    if (!VisitSamples(samples, p, work, add)) return false;
+    read_.SetAt(Asking(p));
+    const double scale = noise_.IsPlain() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
+    sums->resize(kResidual + 1, kResidual + 1);
+    for (int i = 0, k = 0; i <= kResidual; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) {
+        const double sign = i == kResidual && j < kResidual ? -1.0 : 1.0;
+        (*sums)(i, j) = (*sums)(j, i) = sign * scale * total.products[k];
+      }
+    }
+    if (!noise_.IsPlain()) (*sums)(kResidual, kResidual) = total.deviance;
+    return sums->allFinite();
+  }
+
+  /// Parameter i as a T: carries its own derivative when T is dual.
+  template <typename T>
+  static T Carry(double value, int i) {
+    if constexpr (DualNumber<T>) {
+      return T(value, i);
+    } else {
+      return value;
+    }
+  }
+
+  template <typename T>
+  Pendulum<F, T> MakePendulum(std::span<const double> p) const {
+    Pendulum<F, T> pendulum{gravity_, Carry<T>(p[0], 0), {}};
+    for (int i = 0; i < kFriction; ++i) pendulum.friction[i] = Carry<T>(p[1 + i], 1 + i);
+    return pendulum;
+  }
+
+  template <typename T>
+  Start<T> MakeStart(std::span<const double> p) const {
+    constexpr int kAngle = 1 + kFriction;
+    if constexpr (kStart == StartKind::kRelease) {
+      return {kStart, p[kAngle + 1], Carry<T>(p[kAngle], kAngle), T(0.0)};
+    } else {
+      return {kStart, 0.0, Carry<T>(p[kAngle], kAngle), Carry<T>(p[kAngle + 1], kAngle + 1)};
+    }
+  }
+
+  TraceOptions Options() const {
+    TraceOptions options;
+    options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
+    options.tolerance = tolerance_;
+    options.max_steps =
+        static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMostSteps, 1e9));
+    return options;
+  }
+
+  /// A motion of a short period and few samples takes minutes: the tracer refuses it as soon as it may make no more
+  /// steps.
+  void GiveUpIfStopped(TraceOptions& options) const {
+    if (is_stopped()) options.max_steps = 0;
+  }
+
+  bool IsAdmissible(std::span<const double> p) const {
+    if (!(p[0] > 0)) return false;
+    return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
+  }
+
+  /// Traces the motion and hands its segments to take(segment).
+  template <typename T, typename TakeSegment>
+  bool Follow(std::span<const double> p, const TakeSegment& take) const {
+    TraceOptions options = Options();
+    const auto visit = [&](const Segment<T>& segment) {
+      GiveUpIfStopped(options);
+      take(segment);
+    };
+    ++traces_;
+    const SegmentVisitor<T> visitor = std::ref(visit);
+    const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
+    if (summary.outcome != TraceSummary::Outcome::kComplete) return false;
+    if constexpr (DualNumber<T>) traced_.SetAt(Asking(p), summary);
+    return true;
+  }
+
+  /// Values and, of dual numbers, derivatives of the angle and of its rate and acceleration, which are slopes of the
+  /// same segments.
+  template <typename T>
+  bool FollowMotion(std::span<const double> p, MotionStates* states) const {
+    if (is_stopped() || !IsAdmissible(p)) return false;
+    constexpr int kRows = kSegmentRows<T, kStart == StartKind::kRelease>;
+    const auto size = static_cast<Eigen::Index>(used_samples_);
+    std::array<Samples<T, kRows, double>, SensorModel::kStates> samples;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      samples[n].Restart({data_.time.data(), used_samples_}, threads_);
+      states->value[n].resize(size);
+      if constexpr (DualNumber<T>) states->jacobian[n].resize(size, kRows - 1);
+    }
+    const auto take = [&](int n, const Segment<T>& segment) {
+      const auto work = [&](SampleBlock<kRows>& block, std::size_t first, int count, double& /*part*/) {
+        std::copy_n(block.row[kRows - 1].data(), count, states->value[n].data() + first);
+        for (int j = 0; j + 1 < kRows; ++j) std::copy_n(block.row[j].data(), count, &states->jacobian[n](first, j));
+      };
+      samples[n].Take(segment, work, [](double /*part*/) {});
+    };
+    const bool traced = Follow<T>(p, [&](const Segment<T>& angle) {
+      const Segment<T> rate = RateOf(angle);
+      take(0, angle);
+      take(1, rate);
+      take(2, RateOf(rate));
+    });
+    return traced && samples[0].is_complete();
+  }
+
+  /// Traces the motion through all samples. The first rows of each block are EvaluateAt's: derivatives by all
+  /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
+  template <typename T, int R, typename Sum, typename Work, typename Add>
+  bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
+    if (is_stopped() || !IsAdmissible(p)) return false;
+    samples.Restart({data_.time.data(), used_samples_}, threads_);
+    const auto take = [&](const Segment<T>& segment) {
+      if (data_.quantity == Quantity::kRate) {
+        samples.Take(RateOf(segment), work, add);
+      } else {
+        samples.Take(segment, work, add);
+      }
+    };
+    return Follow<T>(p, take) && samples.is_complete();
+  }
+
+  Question Asking(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
+
+  Gravity gravity_;
+  const TrajectoryData& data_;
+  std::size_t used_samples_;
+  double tolerance_ = 1e-10;
+  int threads_ = 1;
+  NoiseModel noise_;
+  DepthTable levels_{1};                   // of quantized noise_
+  mutable KnownAt<Eigen::MatrixXd> last_;  // sums without priors
+  mutable KnownAt<TraceSummary> traced_;
+  mutable KnownAt<Eigen::VectorXd> read_;
+  // Room that evaluations leave to the next one.
+  mutable Samples<double, 1, double> values_;
+  mutable Samples<Dual, kZero + 2, Part<1>> steady_;
+  mutable Samples<Dual, kZero + 3, Part<2>> moving_;
+};
+
+}  // namespace pendulum

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <boost/math/tools/minima.hpp>
+
+#include "fitting/residuals/burg.h"
+#include "pendulum/base/median.h"
+
+namespace pendulum {
+namespace {
+
+using Kind = Autocorrelation::Kind;
+
+// ---- Stamps --------------------------------------------------------------------------------------------------------
+
+struct Clock {
+  bool even = false;
+  double interval = 0;  // s, the median one
+  std::vector<Stretch> stretches;
+};
+
+Clock FindClock(const Eigen::VectorXd& time) {
+  constexpr double kJitter = 0.1;   // mean, in intervals
+  constexpr double kShortest = 50;  // samples in a stretch, on average
+  const Eigen::Index count = time.size();
+  const Eigen::VectorXd steps = time.tail(count - 1) - time.head(count - 1);
+  Clock clock;
+  clock.interval = Median({steps.begin(), steps.end()});
+  clock.stretches.push_back({0, 1});
+  double jitter = 0;
+  for (Eigen::Index i = 1; i < count; ++i) {
+    const double step = steps[i - 1] / clock.interval;
+    if (step > kGapIntervals) {
+      clock.stretches.push_back({i, 1});
+    } else {
+      ++clock.stretches.back().size;
+      jitter += std::abs(step - 1);
+    }
+  }
+  const auto samples = static_cast<double>(count);
+  const auto gaps = static_cast<double>(clock.stretches.size() - 1);
+  clock.even = jitter < kJitter * samples && samples >= kShortest * gaps;
+  return clock;
+}
+
+// ---- AR(p) ---------------------------------------------------------------------------------------------------------
+
+int LongestOrder(double samples) { return static_cast<int>(std::min({30.0, samples / 20, 10 * std::log10(samples)})); }
+
+/// Schwarz's criterion N ln σ_e² + p ln N of white residuals (G. Schwarz, Annals of Statistics 6:461, 1978).
+double WhiteCriterion(const Eigen::VectorXd& residual) {
+  const auto samples = static_cast<double>(residual.size());
+  return samples * std::log(residual.squaredNorm() / samples);
+}
+
+/// An autoregression and its Schwarz criterion, over that of white residuals.
+struct Autoregression {
+  std::vector<double> reflection;
+  double criterion = std::numeric_limits<double>::infinity();
+};
+
+/// The best of AR(1), AR(2), ... (J. P. Burg, Maximum entropy spectral analysis, 1975).
+Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& residual) {
+  const auto samples = static_cast<double>(residual.size());
+  const auto stretches = static_cast<double>(clock.stretches.size());
+  const std::vector<double> reflection = ReflectionCoefficients(residual, clock.stretches, LongestOrder(samples));
+  constexpr double kRounding = 1e-8;  // of the variance left to innovations: smooth curves are no noise
+  Autoregression best;
+  double criterion = 0;
+  double left = 1;
+  for (std::size_t order = 1; order <= reflection.size(); ++order) {
+    left *= 1 - reflection[order - 1] * reflection[order - 1];
+    if (left < kRounding) break;
+    // The samples at a stretch's begin are predicted from fewer than p others: `order` of them without this one.
+    const double predicted = samples - stretches * static_cast<double>(order);
+    criterion += predicted * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
+    if (criterion < best.criterion) best = {{reflection.begin(), reflection.begin() + order}, criterion};
+  }
+  return best;
+}
+
+Autocorrelation FromBurg(const Clock& clock, const std::vector<double>& reflection) {
+  Autocorrelation correlation;
+  correlation.kind = Kind::kAutoregressive;
+  correlation.interval = clock.interval;
+  correlation.autoregressive = FromReflection(reflection);
+  for (const double last : reflection) correlation.innovation_variance *= 1 - last * last;
+  return correlation;
+}
+
+// ---- Likelihood of two parameters ----------------------------------------------------------------------------------
+
+/// What turns N residuals into independent innovations e_i = z_i - m_i: the prediction m_i = keep_i m_{i-1} +
+/// gain_i e_{i-1}, and the variance of e_i over that of one that is predicted from all the past (or over that of z).
+struct Innovations {
+  explicit Innovations(Eigen::Index samples) : keep(samples), gain(samples), variance(samples) {}
+  Eigen::VectorXd keep, gain, variance;
+  double log_determinant = 0;  // Σ ln variance_i
+};
+
+/// Of ARMA(1,1), exact from the first sample of each stretch on (P. J. Brockwell and R. A. Davis, Time Series: Theory
+/// and Methods, section 5.3, 1991).
+void PredictMixed(const Clock& clock, double phi, double theta, Innovations* innovations) {
+  constexpr double kSettled = 1e-12;
+  innovations->keep.setConstant(phi);
+  innovations->gain.setConstant(phi + theta);
+  innovations->variance.setOnes();
+  innovations->log_determinant = 0;
+  for (const Stretch& stretch : clock.stretches) {
+    innovations->keep[stretch.begin] = innovations->gain[stretch.begin] = 0;
+    double variance = (1 + 2 * phi * theta + theta * theta) / (1 - phi * phi);
+    const Eigen::Index end = stretch.begin + stretch.size;
+    for (Eigen::Index i = stretch.begin; i < end && std::abs(variance - 1) > kSettled; ++i) {
+      innovations->variance[i] = variance;
+      innovations->log_determinant += std::log(variance);
+      if (i + 1 < end) innovations->gain[i + 1] = phi + theta / variance;
+      variance = 1 + theta * theta * (1 - 1 / variance);
+    }
+  }
+}
+
+/// Of the continuous AR(1) under white noise: a Kalman filter of one state. age: N x 1, s, since the sample before.
+void PredictContinuous(const Eigen::VectorXd& age, double decay_time, double white_share, Innovations* innovations) {
+  innovations->keep = (age.array() / -decay_time).exp();
+  innovations->keep[0] = 0;
+  double known = 0;  // of the state's variance, after the sample before
+  double gain = 0;
+  for (Eigen::Index i = 0; i < age.size(); ++i) {
+    const double kept = innovations->keep[i];
+    const double spread = (1 - white_share) - kept * kept * known;
+    innovations->gain[i] = kept * gain;
+    innovations->variance[i] = spread + white_share;
+    gain = spread / innovations->variance[i];
+    known = (1 - white_share) - spread * (1 - gain);
+  }
+  innovations->log_determinant = innovations->variance.array().log().sum();
+}
+
+/// Turns some columns, beginning with the one of this number, into their innovations. Several at once do not wait for
+/// each other.
+template <int Columns>
+void Whiten(const Innovations& innovations, Eigen::Index first, Eigen::MatrixXd* columns) {
+  Eigen::Array<double, 1, Columns> predicted = Eigen::Array<double, 1, Columns>::Zero();
+  Eigen::Array<double, 1, Columns> innovation = predicted;
+  for (Eigen::Index i = 0; i < columns->rows(); ++i) {
+    predicted = innovations.keep[i] * predicted + innovations.gain[i] * innovation;
+    innovation = columns->row(i).segment<Columns>(first).array() - predicted;
+    columns->row(i).segment<Columns>(first) = innovation;
+  }
+}
+
+/// -2 log likelihood, but for a constant and at the best scale, of what the first M - 1 of M columns (N x M) leave of
+/// the last one.
+double Deviance(const Innovations& innovations, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd white = columns;
+  Eigen::Index done = 0;
+  for (; done + 4 <= columns.cols(); done += 4) Whiten<4>(innovations, done, &white);
+  for (; done < columns.cols(); ++done) Whiten<1>(innovations, done, &white);
+  white.array().colwise() *= innovations.variance.array().rsqrt();
+  const Eigen::Index taken = columns.cols() - 1;
+  const auto left = static_cast<double>(columns.rows() - taken);
+  const Eigen::LLT<Eigen::MatrixXd> root(white.transpose() * white);
+  if (root.info() != Eigen::Success) return std::numeric_limits<double>::max();
+  const Eigen::ArrayXd diagonal = root.matrixLLT().diagonal().array();
+  return 2 * left * std::log(diagonal[taken]) - left * std::log(left) + 2 * diagonal.head(taken).log().sum() +
+         innovations.log_determinant;
+}
+
+/// The largest of the squared scores of z_t = δ (z_{t-1} + φ z_{t-2} + φ² z_{t-3} + ...) + e_t at δ = 0, over some φ:
+/// each is χ² of one degree of freedom for white residuals, and about what the likelihood of ARMA(1,1) can gain.
+double LargestScore(const Eigen::VectorXd& residual) {
+  using Scores = Eigen::Array<double, 8, 1>;
+  const Scores memory{{-0.9, -0.5, 0.0, 0.5, 0.8, 0.95, 0.99, 0.998}};
+  Scores past = Scores::Zero();
+  Scores product = Scores::Zero();
+  Scores energy = Scores::Constant(std::numeric_limits<double>::min());
+  for (const double now : residual) {
+    product += now * past;
+    energy += past.square();
+    past = memory * past + now;
+  }
+  return (product.square() / energy).maxCoeff() * static_cast<double>(residual.size()) / residual.squaredNorm();
+}
+
+/// Whether no likelihood of two parameters can exceed that of white residuals as much as Schwarz's criterion asks for;
+/// half of that is the margin for what the scores miss.
+bool LooksWhite(const Eigen::VectorXd& residual) {
+  return LargestScore(residual) < std::log(static_cast<double>(residual.size()));
+}
+
+/// A deviance over the plane, which is flat when the search for its lowest place is to end.
+constexpr double kStopped = 0;
+using Surface = std::function<double(const Eigen::Vector2d&)>;
+
+struct Vertex {
+  Eigen::Vector2d place;
+  double height = 0;
+};
+
+/// Nelder and Mead's simplex (Computer Journal 7:308, 1965), to 1e-3 in height: some hundredths of a standard error.
+Vertex Lowest(const Surface& surface, const Eigen::Vector2d& start, double size) {
+  constexpr int kMostSteps = 150;
+  constexpr double kFlat = 1e-3;
+  const auto at = [&](const Eigen::Vector2d& place) { return Vertex{place, surface(place)}; };
+  const auto lower = [](const Vertex& a, const Vertex& b) { return a.height < b.height; };
+  std::array<Vertex, 3> simplex = {at(start), at(start + Eigen::Vector2d(size, 0)),
+                                   at(start + Eigen::Vector2d(0, size))};
+  for (int step = 0; step < kMostSteps; ++step) {
+    std::sort(simplex.begin(), simplex.end(), lower);
+    if (simplex[2].height - simplex[0].height < kFlat) break;
+    const Eigen::Vector2d middle = (simplex[0].place + simplex[1].place) / 2;
+    const Eigen::Vector2d away = middle - simplex[2].place;
+    Vertex next = at(middle + away);
+    if (next.height < simplex[0].height) {
+      next = std::min(next, at(middle + 2 * away), lower);
+    } else if (next.height >= simplex[1].height) {
+      next = at(middle + (next.height < simplex[2].height ? 0.5 : -0.5) * away);
+    }
+    if (next.height < simplex[2].height) {
+      simplex[2] = next;
+    } else {
+      for (int i = 1; i < 3; ++i) simplex[i] = at((simplex[0].place + simplex[i].place) / 2);
+    }
+  }
+  return *std::min_element(simplex.begin(), simplex.end(), lower);
+}
+
+/// The lowest place of a line, within a few parts in a million of its length.
+Vertex LowestOnLine(const std::function<double(double)>& height, double from, double to) {
+  constexpr int kBits = 20;
+  std::uintmax_t steps = 60;
+  const auto [place, lowest] = boost::math::tools::brent_find_minima(height, from, to, kBits, steps);
+  return {{place, 0}, lowest};
+}
+
+/// Orthonormal columns that span the weights, and the residual behind them. A fit takes of the residuals what its
+/// parameters can follow, and so the slowest part of their memory; the likelihood of what parameters cannot follow
+/// gives it back (H. D. Patterson and R. Thompson, Biometrika 58:545, 1971).
+Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
+  constexpr Eigen::Index kFew = 100'000;  // beyond, what the parameters took is nothing beside what they left
+  if (weights.cols() == 0 || residual.size() > kFew) return residual;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weights);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Identity(residual.size(), qr.rank() + 1);
+  columns.applyOnTheLeft(qr.householderQ());
+  columns.rightCols(1) = residual;
+  return columns;
+}
+
+// ---- ARMA(1,1) -----------------------------------------------------------------------------------------------------
+
+/// Places in the plane are artanh of φ and θ: all of it is stationary and invertible.
+constexpr double kMostMemory = 0.99999;
+
+double MemoryAt(double place) { return kMostMemory * std::tanh(place); }
+
+Surface MixedSurface(const Clock& clock, const Eigen::MatrixXd& columns, const std::stop_token& stop) {
+  return [&clock, &columns, &stop, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
+    if (stop.stop_requested()) return kStopped;
+    PredictMixed(clock, MemoryAt(place[0]), MemoryAt(place[1]), &innovations);
+    return Deviance(innovations, columns);
+  };
+}
+
+Autocorrelation Mixed(const Clock& clock, const Eigen::Vector2d& place) {
+  Autocorrelation mixed;
+  const double phi = MemoryAt(place[0]);
+  const double theta = MemoryAt(place[1]);
+  mixed.kind = Kind::kMixed;
+  mixed.interval = clock.interval;
+  mixed.autoregressive = {phi};
+  mixed.moving_average = theta;
+  mixed.innovation_variance = (1 - phi * phi) / (1 + 2 * phi * theta + theta * theta);
+  return mixed;
+}
+
+Vertex BestMixed(const Surface& surface) {
+  using Pair = std::array<double, 2>;
+  constexpr std::array kStarts = {Pair{0.5, 0.3},   Pair{0.5, -0.2},  Pair{-0.5, 0.2},   Pair{0.8, -0.4},
+                                  Pair{0.95, -0.6}, Pair{0.99, -0.8}, Pair{0.998, -0.95}};
+  Vertex best{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
+  for (const auto& start : kStarts) {
+    const Eigen::Vector2d place(std::atanh(start[0]), std::atanh(start[1]));
+    const double height = surface(place);
+    if (height < best.height) best = {place, height};
+  }
+  return Lowest(surface, best.place, 0.3);
+}
+
+Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights,
+                             const std::stop_token& stop) {
+  const double penalty = std::log(static_cast<double>(residual.size()));
+  const double white = WhiteCriterion(residual);
+  const Autoregression burg = BestAutoregression(clock, residual);
+  if (burg.criterion >= 0 && LooksWhite(residual)) return {};
+  const Eigen::MatrixXd column = residual;
+  const Vertex mixed = BestMixed(MixedSurface(clock, column, stop));
+  const double gain = mixed.height + 2 * penalty - white;
+  if (std::min(burg.criterion, gain) >= 0 || stop.stop_requested()) return {};
+  const bool is_mixed = gain < burg.criterion;
+  if (!is_mixed && burg.reflection.size() > 1) return FromBurg(clock, burg.reflection);
+  const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
+  const Surface restricted = MixedSurface(clock, columns, stop);
+  if (is_mixed) return Mixed(clock, Lowest(restricted, mixed.place, 0.1).place);
+  const double place = std::atanh(burg.reflection[0]);
+  const auto along = [&](double p) { return restricted({p, 0}); };
+  Autocorrelation first_order = Mixed(clock, LowestOnLine(along, place - 1, place + 1).place);
+  first_order.kind = Kind::kAutoregressive;
+  return first_order;
+}
+
+// ---- Continuous AR(1) ----------------------------------------------------------------------------------------------
+
+/// Places are (ln τ, logit s).
+Autocorrelation Continuous(const Eigen::VectorXd& time, const Eigen::Vector2d& place) {
+  Autocorrelation continuous;
+  continuous.kind = Kind::kContinuous;
+  continuous.interval = (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1);
+  continuous.decay_time = std::exp(place[0]);
+  continuous.white_share = 1 / (1 + std::exp(-place[1]));
+  return continuous;
+}
+
+Surface ContinuousSurface(const Eigen::VectorXd& time, const Eigen::MatrixXd& columns, const std::stop_token& stop) {
+  Eigen::VectorXd age = Eigen::VectorXd::Zero(time.size());
+  age.tail(time.size() - 1) = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  return
+      [&time, &columns, &stop, age, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
+        if (stop.stop_requested()) return kStopped;
+        const Autocorrelation continuous = Continuous(time, place);
+        PredictContinuous(age, continuous.decay_time, continuous.white_share, &innovations);
+        return Deviance(innovations, columns);
+      };
+}
+
+Vertex LowestWithoutWhite(const Surface& surface, double from, double to) {
+  constexpr double kNone = -INFINITY;
+  Vertex lowest = LowestOnLine([&](double place) { return surface({place, kNone}); }, from, to);
+  lowest.place[1] = kNone;
+  return lowest;
+}
+
+Vertex BestUnderWhite(const Surface& surface, double interval) {
+  Vertex best{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
+  for (const double intervals : {3.0, 10.0, 50.0, 250.0}) {
+    const Eigen::Vector2d place(std::log(intervals * interval), 0);
+    const double height = surface(place);
+    if (height < best.height) best = {place, height};
+  }
+  return Lowest(surface, best.place, 0.5);
+}
+
+Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                               const Eigen::MatrixXd& weights, const std::stop_token& stop) {
+  if (LooksWhite(residual)) return {};
+  const double penalty = std::log(static_cast<double>(residual.size()));
+  const Eigen::MatrixXd column = residual;
+  const Surface plain = ContinuousSurface(time, column, stop);
+  const double interval = Continuous(time, {0, 0}).interval;
+  const Vertex pure = LowestWithoutWhite(plain, std::log(interval / 10), std::log(time[time.size() - 1] - time[0]));
+  const Vertex under_white = BestUnderWhite(plain, interval);
+  const double least = std::min(pure.height + penalty, under_white.height + 2 * penalty);
+  if (WhiteCriterion(residual) <= least || stop.stop_requested()) return {};
+  const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
+  const Surface restricted = ContinuousSurface(time, columns, stop);
+  if (least < pure.height + penalty) return Continuous(time, Lowest(restricted, under_white.place, 0.1).place);
+  return Continuous(time, LowestWithoutWhite(restricted, pure.place[0] - 1, pure.place[0] + 1).place);
+}
+
+}  // namespace
+
+Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                                        const Eigen::MatrixXd& weights, const std::stop_token& stop) {
+  constexpr Eigen::Index kFewest = 30;
+  if (residual.size() < kFewest || !(residual.squaredNorm() > 0)) return {};
+  const Clock clock = FindClock(time);
+  return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
+}
+
+}  // namespace pendulum

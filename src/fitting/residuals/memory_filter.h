@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/residuals/autocorrelation.h"
+
+namespace pendulum {
+
+/// Processes are filtered side by side in lanes: their recursions do not wait for each other and fill vector registers.
+inline constexpr int kLanes = 8;
+using Lanes = std::array<double, kLanes>;
+
+/// A stationary process and white noise over it, in the state space of A. C. Harvey (Forecasting, structural time
+/// series models and the Kalman filter, 1989, section 3.3): a' = T a + R e with T = (φ | shift), reading = a_0 + noise.
+struct FilteredProcess {
+  std::vector<double> autoregressive;  // φ_1..φ_m, of m states
+  std::vector<double> response;        // R, m: 1, θ, 0, ...
+  double innovation_variance = 0;      // of e
+  Eigen::MatrixXd stationary;          // m x m, covariance of a
+  double white_variance = 0;           // of the noise
+  double interval = 0;                 // s, of an even clock
+  double decay_time = 0;               // s; of a process that decays between any stamps, > 0: then m = 1 and no clock
+};
+
+/// Exact Kalman filters of up to kLanes processes of one kind and order side by side, each over its own readings at the
+/// same times. O(m²) a sample until the covariance of the prediction has settled, then O(m). Advance stands between two
+/// samples, Take at each.
+class MemoryFilter {
+ public:
+  explicit MemoryFilter(const std::vector<FilteredProcess>& processes);
+
+  /// To the next sample, so many s later: by one interval, or over a gap in the clock.
+  void Advance(double step);
+
+  void Take(const Lanes& value);
+
+  /// What the last reading was not expected to be, and the variance of that.
+  const Lanes& innovation() const { return innovation_; }
+  const Lanes& variance() const { return variance_; }
+
+  /// Whether the variance has been the same since some samples, and so remains.
+  bool settled() const { return settled_; }
+
+ private:
+  void Predict();
+  void PredictCovariance();
+  void Decay(double step);
+  void Skip(double intervals);
+  void Jump(double intervals);
+  Lanes& covariance(std::size_t i, std::size_t j) { return covariance_[i * (order_ + 1) + j]; }
+
+  std::vector<FilteredProcess> processes_;
+  std::size_t order_;  // m; states beyond it are 0
+  std::vector<Lanes> memory_, response_, state_, gain_, first_;
+  std::vector<Lanes> covariance_;  // of the predicted state, its upper triangle
+  Lanes white_{}, innovation_{}, variance_{};
+  bool observed_ = false;  // since the last prediction
+  bool settled_ = false;
+};
+
+// -----------------------------------------------------------------------------------------------------------------
+
+inline MemoryFilter::MemoryFilter(const std::vector<FilteredProcess>& processes)
+    : processes_(processes), order_(processes.front().autoregressive.size()) {
+  processes_.resize(kLanes, processes.back());
+  for (auto* column : {&memory_, &response_, &state_, &gain_, &first_}) column->resize(order_ + 1, Lanes{});
+  covariance_.resize((order_ + 1) * (order_ + 1), Lanes{});
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const FilteredProcess& process = processes_[lane];
+    white_[lane] = process.white_variance;
+    for (std::size_t i = 0; i < order_; ++i) {
+      memory_[i][lane] = process.autoregressive[i];
+      response_[i][lane] = std::sqrt(process.innovation_variance) * process.response[i];
+      for (std::size_t j = i; j < order_; ++j) {
+        covariance(i, j)[lane] = process.stationary(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      }
+    }
+  }
+}
+
+inline void MemoryFilter::Take(const Lanes& value) {
+  if (!settled_) {
+    for (int lane = 0; lane < kLanes; ++lane) variance_[lane] = covariance_[0][lane] + white_[lane];
+    for (std::size_t i = 0; i < order_; ++i) {
+      for (int lane = 0; lane < kLanes; ++lane) gain_[i][lane] = covariance_[i][lane] / variance_[lane];
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane) innovation_[lane] = value[lane] - state_[0][lane];
+  for (std::size_t i = 0; i < order_; ++i) {
+    for (int lane = 0; lane < kLanes; ++lane) state_[i][lane] += gain_[i][lane] * innovation_[lane];
+  }
+  observed_ = true;
+}
+
+inline void MemoryFilter::Advance(double step) {
+  if (processes_[0].decay_time > 0) return Decay(step);
+  const double intervals = step / processes_[0].interval;
+  Predict();
+  if (intervals > kGapIntervals) Skip(std::round(intervals) - 1);
+}
+
+inline void MemoryFilter::Decay(double step) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double age = step / processes_[lane].decay_time;
+    const double kept = std::exp(-age);
+    const double known = covariance_[0][lane] * white_[lane] / variance_[lane];
+    state_[0][lane] *= kept;
+    covariance_[0][lane] = kept * kept * known - std::expm1(-2 * age) * processes_[lane].stationary(0, 0);
+  }
+}
+
+inline void MemoryFilter::Predict() {
+  const Lanes now = state_[0];
+  for (std::size_t i = 0; i < order_; ++i) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      state_[i][lane] = memory_[i][lane] * now[lane] + state_[i + 1][lane];
+    }
+  }
+  if (!settled_) PredictCovariance();
+  observed_ = false;
+}
+
+/// T (P - P_0 P_0' / F) T' + R R', in place, and whether that is the P of the sample before.
+inline void MemoryFilter::PredictCovariance() {
+  constexpr double kSame = 1e-12;  // of the variance
+  Lanes kept, known, change{};     // shares: of P_0 after the reading; 1 / F
+  for (int lane = 0; lane < kLanes; ++lane) {
+    kept[lane] = observed_ ? white_[lane] / variance_[lane] : 1;
+    known[lane] = observed_ ? 1 / variance_[lane] : 0;
+  }
+  for (std::size_t i = 0; i < order_; ++i) first_[i] = covariance_[i];
+  for (std::size_t i = 0; i < order_; ++i) {
+    for (std::size_t j = i; j < order_; ++j) {
+      Lanes& here = covariance(i, j);
+      const Lanes& next = covariance(i + 1, j + 1);
+      const Lanes &a = first_[i + 1], &b = first_[j + 1];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const double phi_i = memory_[i][lane], phi_j = memory_[j][lane];
+        const double after = kept[lane] * (phi_i * (phi_j * first_[0][lane] + b[lane]) + phi_j * a[lane]) +
+                             (next[lane] - known[lane] * a[lane] * b[lane]) + response_[i][lane] * response_[j][lane];
+        const double moved = std::abs(after - here[lane]);
+        change[lane] = change[lane] < moved ? moved : change[lane];
+        here[lane] = after;
+      }
+    }
+  }
+  settled_ = observed_;
+  for (int lane = 0; lane < kLanes; ++lane) settled_ = settled_ && change[lane] <= kSame * variance_[lane];
+}
+
+/// Samples that were not taken.
+inline void MemoryFilter::Skip(double intervals) {
+  constexpr double kFew = 30;
+  settled_ = false;
+  if (intervals > kFew) return Jump(intervals);
+  for (double i = 0; i < intervals; ++i) Predict();
+}
+
+/// T to this power, which may be 0 to rounding.
+inline Eigen::MatrixXd TransitionPower(const std::vector<double>& memory, double power) {
+  constexpr double kLongest = 1e12;
+  constexpr double kForgotten = 1e-18;
+  const auto order = static_cast<Eigen::Index>(memory.size());
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(order, order);
+  factor.col(0) = Eigen::Map<const Eigen::VectorXd>(memory.data(), order);
+  factor.rightCols(order - 1).topRows(order - 1).setIdentity();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Identity(order, order);
+  for (auto left = static_cast<long long>(std::min(power, kLongest)); left > 0; left /= 2) {
+    if (left % 2 != 0) product = factor * product;
+    if (left > 1) factor = factor * factor;
+    if (!(factor.cwiseAbs().maxCoeff() > kForgotten)) return Eigen::MatrixXd::Zero(order, order);
+  }
+  return product;
+}
+
+/// By P = S + Tⁿ (P - S) T'ⁿ, S the stationary covariance.
+inline void MemoryFilter::Jump(double intervals) {
+  const auto order = static_cast<Eigen::Index>(order_);
+  const auto at = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const FilteredProcess& process = processes_[lane];
+    const Eigen::MatrixXd power = TransitionPower(process.autoregressive, intervals);
+    Eigen::MatrixXd excess = -process.stationary;
+    Eigen::VectorXd state(order);
+    for (Eigen::Index i = 0; i < order; ++i) {
+      state[i] = state_[at(i)][lane];
+      for (Eigen::Index j = i; j < order; ++j) excess(j, i) = excess(i, j) += covariance(at(i), at(j))[lane];
+    }
+    state = power * state;
+    const Eigen::MatrixXd after = process.stationary + power * excess * power.transpose();
+    for (Eigen::Index i = 0; i < order; ++i) {
+      state_[at(i)][lane] = state[i];
+      for (Eigen::Index j = i; j < order; ++j) covariance(at(i), at(j))[lane] = after(i, j);
+    }
+  }
+}
+
+}  // namespace pendulum

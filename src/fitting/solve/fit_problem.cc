@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/solve/fit_problem.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "pendulum/base/format.h"
+#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/start/sensor_start.h"
+#include "pendulum/model/friction/registry.h"
+#include "pendulum/model/nesting.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// Index of the first friction parameter that holds the pendulum at rest, among all parameters; -1: none.
+int HoldingParameter(const MotionModel& model) {
+  int holding = -1;
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    for (int k = kFrictionParameters<F> - 1; k >= 0; --k) {
+      std::array<double, kFrictionParameters<F>> unit{};
+      unit[k] = 1;
+      if (F::Torque(0.0, 1.0, unit.data()) > 0) holding = 1 + k;
+    }
+  });
+  return holding;
+}
+
+/// s², in units of G; ω0 = 1/sqrt(I) must be of a size that can be traced.
+constexpr double kSmallestInertia = 1e-30;
+
+/// What a parameter may be, for a sentence, in the units of the report.
+std::string Range(const FitProblem& problem, std::size_t i) {
+  const auto reported = [&](double internal) { return NumberText(problem.Reported(i, internal)); };
+  if (problem.infos[i].name == kInertia.name) return "greater than " + reported(kSmallestInertia);
+  const std::string from = "at least " + reported(problem.solve.lower[i]);
+  return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
+}
+
+/// Index of a parameter that an option names; `what` the option does, for the message.
+Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& name, const std::string& what) {
+  const auto info = std::ranges::find(problem.infos, name, &ParameterInfo::name);
+  if (info != problem.infos.end()) return static_cast<std::size_t>(info - problem.infos.begin());
+  return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" + name +
+                                                 "' to " + what + " with this start; it has " +
+                                                 NameList(problem.infos));
+}
+
+/// Begins parameter i at a value; refuses one that it cannot have.
+Result<void> BeginAt(double value, std::size_t i, const std::string& what, FitProblem& problem) {
+  const double internal = problem.Internal(i, value);
+  const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
+  const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
+  if (!std::isfinite(internal) || outside || too_small) {
+    return Error(StatusCode::kInvalidArgument, std::string(problem.infos[i].name) + " cannot be " + what + " " +
+                                                   NumberText(value) + "; it must be " + Range(problem, i));
+  }
+  problem.first_guess[i] = internal;
+  return {};
+}
+
+Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
+  for (const auto& [name, range] : bounds) {
+    const Result<std::size_t> i = FindParameter(problem, name, "bound");
+    if (!i) return tl::unexpected(i.error());
+    double& lower = problem.solve.lower[*i];
+    double& upper = problem.solve.upper[*i];
+    const double most = std::max(problem.Internal(*i, range.lower), lower);
+    const double least = std::min(problem.Internal(*i, range.upper), upper);
+    const bool too_small = name == kInertia.name && !(least > kSmallestInertia);
+    if (!(most < least) || too_small) {
+      return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " leave it no value; it must be " +
+                                                     Range(problem, *i) + ", and may be fixed with --fix");
+    }
+    lower = most;
+    upper = least;
+    problem.first_guess[*i] = std::clamp(problem.first_guess[*i], lower, upper);
+  }
+  return {};
+}
+
+Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
+  for (const auto& [name, prior] : priors) {
+    const Result<std::size_t> i = FindParameter(problem, name, "give a prior");
+    if (!i) return tl::unexpected(i.error());
+    const double scale = problem.si_per_internal[*i];
+    problem.priors.push_back({static_cast<int>(*i), problem.Internal(*i, prior.mean), scale / prior.std_dev});
+  }
+  return {};
+}
+
+/// Puts the user's bounds, start values, fixed values and priors in, and what is known of the sensor.
+Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sensor_priors, FitProblem& problem) {
+  if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
+  for (const auto& [name, value] : options.initial) {
+    const Result<std::size_t> i = FindParameter(problem, name, "begin");
+    if (!i) return tl::unexpected(i.error());
+    if (Result<void> done = BeginAt(value, *i, "begun at", problem); !done) return done;
+  }
+  for (const auto& [name, value] : options.fixed) {
+    const Result<std::size_t> i = FindParameter(problem, name, "fix");
+    if (!i) return tl::unexpected(i.error());
+    if (Result<void> done = BeginAt(value, *i, "fixed at", problem); !done) return done;
+    problem.solve.fixed[*i] = true;
+  }
+  if (Result<void> done = ApplyPriors(options.priors, problem); !done) return done;
+  return ApplyPriors(sensor_priors, problem);
+}
+
+/// Bounds in the units of the problem: those of the parameters, and the hold for the release.
+void SetBounds(FitProblem& problem) {
+  for (const ParameterInfo& info : problem.infos) {
+    const bool is_release = info.name == kReleaseTime.name;
+    problem.solve.lower.push_back(is_release ? 0.0 : info.name == kInertia.name ? -kUnbounded : info.lower);
+    problem.solve.upper.push_back(is_release ? problem.start.latest_release : info.upper);
+  }
+}
+
+TrajectoryData MakeData(const Recording& recording, const SensorModel& sensor, const StartValues& start) {
+  TrajectoryData data;
+  data.quantity = recording.quantity;
+  data.sensor = sensor;
+  data.time.resize(static_cast<std::size_t>(recording.size()));
+  std::transform(recording.time.begin(), recording.time.end(), data.time.begin(),
+                 [&](double time) { return time - recording.time[0]; });
+  data.value.assign(recording.value.begin(), recording.value.end());
+  data.natural_frequency = start.natural_frequency;
+  data.latest_release = start.latest_release;
+  const double range = recording.value.maxCoeff() - recording.value.minCoeff();
+  data.scale = std::max({SuccessiveDifferenceNoise(recording), 0.3 * recording.resolution, 1e-6 * range});
+  return data;
+}
+
+/// Which readings stand at an end of the sensor's range: those beyond the edge of the last level within it. Files round
+/// their numbers, those of the range too.
+void SetCensoring(const Recording& recording, FitProblem& problem) {
+  problem.noise.sigma = problem.data.scale;
+  problem.resolution = recording.resolution;
+  problem.noise.edge = recording.edge;
+  if (recording.edge) problem.noise.resolution = recording.resolution;
+  if (!recording.range) return;
+  constexpr double kRounding = 1e-6;
+  const auto [low, high] = *recording.range;
+  const double q = recording.resolution;
+  const double levels = q > 0 ? std::floor((high - low) / q + kRounding) : 0;
+  const double half = q > 0 ? 0.5 * q : kRounding * (high - low);
+  NoiseModel noise = problem.noise;
+  noise.low = low + half;
+  noise.high = (q > 0 ? low + q * levels : high) - half;
+  problem.censored =
+      std::ranges::count_if(problem.data.value, [&](double reading) { return noise.IsCensored(reading); });
+  if (problem.censored > 0) problem.noise = noise;
+}
+
+/// The recording with each value the median of five around it, so that lone outliers begin no motion.
+Recording WithoutOutliers(Recording recording) {
+  const Eigen::VectorXd value = recording.value;
+  for (Eigen::Index i = 2; i + 2 < value.size(); ++i) {
+    std::array<double, 5> five{};
+    std::copy_n(value.begin() + i - 2, five.size(), five.begin());
+    std::nth_element(five.begin(), five.begin() + 2, five.end());
+    recording.value[i] = five[2];
+  }
+  return recording;
+}
+
+tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  return Error(StatusCode::kDataLoss,
+               where + "the readings are in " + recording.unit + " and model " + std::string(model.name) +
+                   " needs an angle; calibrate first (--calibration), or fit --model linear, whose period and damping "
+                   "need none");
+}
+
+ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {
+  if (sensor.kind != SensorKind::kDirect) return ZeroMotion::kNone;
+  const auto names = [](const auto& map) { return map.contains(kZeroDrift.name) || map.contains(kBiasDrift.name); };
+  const bool drifts = names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+  const bool lags = recording.edge && !IsRobust(options.noise);
+  return drifts ? ZeroMotion::kDrifts : lags ? ZeroMotion::kLags : ZeroMotion::kNone;
+}
+
+}  // namespace
+
+double FitProblem::RmsResidual(const Eigen::VectorXd& readings) const {
+  double sum = 0;
+  double count = 0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const double value = data.values()[i];
+    if (noise.IsCensored(value) || noise.IsSilence(value)) continue;
+    sum += (value - readings[i]) * (value - readings[i]);
+    ++count;
+  }
+  return std::sqrt(sum / std::max(count, 1.0));
+}
+
+double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
+  const auto values = data.values();
+  double left = 0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    const bool beyond =
+        (values[i] >= noise.high && readings[i] >= noise.high) || (values[i] <= noise.low && readings[i] <= noise.low);
+    if (!beyond) left += (values[i] - readings[i]) * (values[i] - readings[i]);
+  }
+  return left / (values.array() - values.mean()).matrix().squaredNorm();
+}
+
+namespace {
+
+Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
+  const bool edges = options.noise == NoiseFamily::kEdges;
+  if (!edges && options.noise != NoiseFamily::kQuantized) return {};
+  if (edges && recording.edge) return {};
+  if (edges) {
+    return Error(StatusCode::kInvalidArgument,
+                 "--noise edges needs rows that come only when the count changes, by one count mostly and at uneven "
+                 "times; those of this recording do not");
+  }
+  if (recording.resolution > 0) return {};
+  return Error(
+      StatusCode::kInvalidArgument,
+      "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
+}
+
+Result<void> CheckSensor(const Recording& recording, const MotionModel& model, const SensorModel& sensor,
+                         const FitOptions& options) {
+  const bool is_raw_angle = recording.quantity == Quantity::kAngle && !recording.is_calibrated();
+  if (is_raw_angle && model.gravity == Gravity::kSine) return NeedsCalibration(recording, model);
+  if (Result<void> checked = CheckSensorOptions(sensor, options); !checked) return checked;
+  if (recording.quantity != Quantity::kAcceleration) return {};
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  if (sensor.kind == SensorKind::kDirect && IsRadial(recording)) {
+    return Error(StatusCode::kDataLoss,
+                 where + "an acceleration along the rod swings twice as fast as the pendulum, which " +
+                     "--model linear cannot tell; choose the axis across the rod, or another model");
+  }
+  if (options.start == StartKind::kRelease) {
+    return Error(
+        StatusCode::kFailedPrecondition,
+        where + "an acceleration jumps at the release, which no sample dates; --start moving fits what follows");
+  }
+  return {};
+}
+
+/// Start values from the readings, seen through the sensor as an angle or a rate.
+Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, const SensorModel& sensor,
+                              const FitOptions& options, std::size_t& sensor_starts) {
+  const auto estimate = [&](const Recording& view) {
+    const auto choice = timed.quantity == Quantity::kAcceleration ? StartKind::kMoving : options.start;
+    return EstimateStartValues(IsRobust(options.noise) ? WithoutOutliers(view) : view, model, choice);
+  };
+  if (sensor.kind == SensorKind::kDirect) return HasOtherView(timed) ? estimate(TurnsView(timed)) : estimate(timed);
+  const Result<std::vector<SensorStart>> starts = SensorStarts(timed, sensor, options);
+  if (!starts) return tl::unexpected(starts.error());
+  if (starts->empty())
+    return Error(StatusCode::kFailedPrecondition, "no swing of a pendulum gives readings like these");
+  sensor_starts = starts->size();
+  const SensorStart& start = (*starts)[std::min(options.search.sensor_start, starts->size() - 1)];
+  Result<StartValues> values = estimate(start.view);
+  if (!values) return values;
+  const double zero = values->parameters.back();
+  values->parameters.pop_back();
+  values->parameters.insert(values->parameters.end(), start.parameters.begin(), start.parameters.end());
+  if (sensor.kind == SensorKind::kArc) values->parameters[values->parameters.size() - start.parameters.size()] = zero;
+  return values;
+}
+
+}  // namespace
+
+Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
+  if (const Result<void> checked = CheckNoise(recording, options); !checked) return tl::unexpected(checked.error());
+  Result<MotionModel> model = FindMotionModel(options.model);
+  if (!model) return tl::unexpected(model.error());
+  model->gravity = options.gravity.value_or(model->gravity);
+  const SensorModel sensor = SensorOf(recording, model->gravity);
+  if (const Result<void> checked = CheckSensor(recording, *model, sensor, options); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  std::optional<Recording> scaled;
+  if (recording.clock_scale != 1) scaled = InTrueTime(recording);
+  const Recording& timed = scaled ? *scaled : recording;
+  FitProblem problem;
+  const Result<StartValues> start = options.search.start_values
+                                        ? Result<StartValues>(*options.search.start_values)
+                                        : FindStart(timed, *model, sensor, options, problem.sensor_starts);
+  if (!start)
+    return Error(start.error().code,
+                 recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
+
+  problem.model = *model;
+  problem.start = *start;
+  problem.zero_motion = ZeroMotionOf(recording, sensor, options);
+  problem.infos = FitParameters(*model, start->start, recording.quantity, problem.zero_motion, sensor);
+  const bool moves = problem.zero_motion != ZeroMotion::kNone;
+  if (moves && problem.start.parameters.size() < problem.infos.size()) problem.start.parameters.push_back(0);
+  if (problem.start.parameters.size() != problem.infos.size()) {
+    return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
+  }
+  problem.first_guess = problem.start.parameters;
+  problem.data = MakeData(timed, sensor, *start);
+  problem.data.moves = Moves(recording, problem.data.times(), problem.zero_motion);
+  problem.data.stop = options.stop;
+  SetCensoring(recording, problem);
+  const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
+  for (const ParameterInfo& info : problem.infos) {
+    const bool is_release = info.name == kReleaseTime.name;
+    problem.si_per_internal.push_back(is_release                   ? 1 / recording.clock_scale
+                                      : info.scales_with_gravity() ? gravity_torque
+                                                                   : 1.0);
+    problem.offset.push_back(is_release ? recording.time[0] : 0.0);
+  }
+  SetBounds(problem);
+  problem.solve.fixed.assign(problem.infos.size(), false);
+  problem.solve.holding_parameter = HoldingParameter(*model);
+  problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
+  if (const OrderedPair order = OrderOf(*model); order.larger >= 0) {
+    problem.solve.late = {order.larger, problem.solve.last_friction};
+  }
+  if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
+  problem.restricted = !options.fixed.empty() || !options.bounds.empty() || !options.priors.empty();
+  problem.solve.max_iterations = options.search.max_iterations;
+  problem.solve.max_traces = options.search.max_traces;
+  const ParameterPriors sensor_priors = SensorPriors(recording, sensor, options);
+  if (const Result<void> applied = ApplyOptions(options, sensor_priors, problem); !applied) {
+    return tl::unexpected(applied.error());
+  }
+  return problem;
+}
+
+std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed) {
+  if (fixed == problem.solve.fixed) return problem.first_guess;
+  const auto first = fixed.begin() + 1;
+  const std::vector<bool> left_out(first, first + problem.solve.last_friction);
+  const std::vector<double> friction = FrictionFrom(problem.start.energy_balance, left_out);
+  std::vector<double> guess = problem.first_guess;
+  for (std::size_t i = 1; i <= friction.size(); ++i) {
+    if (!problem.solve.fixed[i]) guess[i] = fixed[i] ? problem.solve.lower[i] : friction[i - 1];
+  }
+  return guess;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/likelihood/edge_noise.h"
+
+namespace pendulum {
+namespace {
+
+/// Parameters that are neither fixed nor at a bound.
+double FreeParameters(const FitProblem& problem, const Solution& solution) {
+  double free = 0;
+  for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
+    if (!problem.solve.fixed[i] && BoundSide(problem.solve, i, solution.parameters[i]) == 0) ++free;
+  }
+  return free;
+}
+
+/// σ² = RSS / (N - free parameters) of a deviance under the cost's noise.
+double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const double freedom = std::max(samples - FreeParameters(problem, solution), 1.0);
+  const double sum = std::max(solution.sum - cost.PriorSum(solution.parameters), 0.0);
+  return std::max(solution.noise.sigma * std::sqrt(sum / freedom), problem.negligible_sigma());
+}
+
+/// Gaussian noise has σ in closed form.
+void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostRounds = 20;
+  constexpr double kSame = 1e-4;
+  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+    const double before = std::exchange(solution.noise.sigma, GaussianSigma(cost, problem, solution));
+    const double ratio = before / solution.noise.sigma;
+    cost.set_noise(solution.noise);
+    const double prior = cost.PriorSum(solution.parameters);
+    solution.sum = (solution.sum - prior) * ratio * ratio + prior;
+    for (Minimum& minimum : solution.other_minima) {
+      const double known = cost.PriorSum(minimum.parameters);
+      minimum.sum = (minimum.sum - known) * ratio * ratio + known;
+    }
+    if (problem.priors.empty() || std::abs(ratio - 1) <= kSame) break;
+    solution = Continue(cost, solution, problem.solve);
+  }
+}
+
+/// One σ after the other, each with the parameters that belong to it.
+void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMostRounds = 15;
+  constexpr int kSpreadRounds = 3;   // in which edges learn what their stamps' errors are
+  constexpr double kMostLead = 0.4;  // of a count: its silences have some room left
+  constexpr double kSame = 3e-3;     // of σ: some tenths of its standard error at most
+  const auto value = problem.data.values();
+  const bool edges = solution.noise.family == NoiseFamily::kEdges;
+  const bool lags = problem.zero_motion == ZeroMotion::kLags;
+  const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
+    if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
+    const double lag = lags ? std::max(solution.parameters.back(), -kMostLead * problem.resolution) : 0.0;
+    const bool same_lag = std::abs(lag - solution.noise.lag) <= kSame * solution.noise.sigma;
+    if (!same_lag) solution.noise.lag = lag;
+    const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
+    const double change = std::abs(std::log(sigma / solution.noise.sigma));
+    solution.noise.sigma = sigma;
+    if (round > 0 && change < kSame && same_lag) break;
+    cost.set_noise(solution.noise);
+    solution = Continue(cost, solution, problem.solve);
+    if (!solution.usable) return;
+  }
+}
+
+/// Solves from those of the other minima that came near, by the same noise, and keeps the likeliest.
+void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::vector<Minimum>& others,
+                   Solution& solution) {
+  for (const Minimum& minimum : others) {
+    Solution other = solution;
+    other.parameters = minimum.parameters;
+    other = Continue(cost, other, problem.solve);
+    if (!other.usable) continue;
+    if (other.sum < solution.sum) std::swap(other, solution);
+    solution.iterations = std::max(solution.iterations, other.iterations);
+    solution.other_minima.push_back({other.parameters, other.sum});
+  }
+}
+
+/// The minima of least squares that may be the likeliest.
+std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
+  constexpr double kNear = 60;  // in -2 log L by least squares, which counts of little noise do not follow closely
+  constexpr std::size_t kMost = 4;
+  std::vector<Minimum> near;
+  for (const Minimum& minimum : solution.other_minima) {
+    if (samples * std::log(minimum.sum / solution.sum) < kNear) near.push_back(minimum);
+  }
+  std::ranges::sort(near, {}, &Minimum::sum);
+  if (near.size() > kMost) near.resize(kMost);
+  return near;
+}
+
+/// The deviances of all minima under the noise that was found, so that they can be compared.
+void SumAgain(TrajectoryCost& cost, Solution& solution) {
+  cost.set_noise(solution.noise);
+  // Of which the judgement asks for the sums next.
+  Eigen::MatrixXd sums;
+  solution.usable = cost.Sums(solution.parameters, &sums);
+  if (solution.usable) solution.sum = sums(sums.rows() - 1, sums.cols() - 1);
+  for (Minimum& minimum : solution.other_minima) {
+    if (!cost.SumOfSquares(minimum.parameters, &minimum.sum)) minimum.sum = std::numeric_limits<double>::infinity();
+  }
+}
+
+double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
+
+/// Of Gaussian noise with the likeliest σ, whose square is RSS / N.
+double GaussianLogLikelihood(double rss, double samples) {
+  return -0.5 * samples * (std::log(2 * kPi * std::max(rss, std::numeric_limits<double>::min()) / samples) + 1);
+}
+
+}  // namespace
+
+double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
+  const auto value = problem.data.values();
+  const auto samples = static_cast<double>(value.size());
+  if (solution.noise.IsPlain()) {
+    return GaussianLogLikelihood((value - solution.readings).squaredNorm(), samples) +
+           samples * std::log(DensityUnit(problem.resolution));
+  }
+  const auto intervals = std::ranges::count_if(value, [&](double y) { return solution.noise.IsInterval(y); });
+  const double densities = samples - static_cast<double>(intervals);
+  return LogLikelihood(solution.noise, value, solution.readings) +
+         densities * std::log(DensityUnit(problem.resolution));
+}
+
+/// Below one resolution rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008,
+/// section 5.1).
+ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
+  constexpr double kDrowned = 1;  // resolutions
+  if (options.noise) return {*options.noise, IsRobust(options.noise) ? "asked for by --loss" : "asked for by --noise"};
+  if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
+  const double ratio = residual_std_dev / resolution;
+  if (ratio < kDrowned) {
+    return {NoiseFamily::kQuantized,
+            "the residuals are " + NumberText(ratio, 2) + " resolutions: the readings are levels, not numbers"};
+  }
+  return {NoiseFamily::kGaussian,
+          "the residuals are " + NumberText(ratio, 2) + " resolutions: rounding drowns in the noise"};
+}
+
+namespace {
+
+ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, double residual_std_dev) {
+  if (!options.noise && problem.noise.edge) {
+    return {NoiseFamily::kEdges, "rows come only when the count changes: the readings are the edges between counts"};
+  }
+  return ChooseNoise(options, problem.resolution, residual_std_dev);
+}
+
+}  // namespace
+
+/// Parameters (Solve) and σ in turn, until σ stays the same. The other minima that came near are solved as well, and
+/// the likeliest wins. Of Gaussian noise nothing is solved again unless priors weigh in. Below kSmallestSigma the
+/// likelihood has no maximum inside, and SamplePosterior has the say.
+void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
+                        Solution& solution) {
+  solution.noise = problem.noise;
+  if (!solution.usable) return;
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const bool traced = cost.Readings(solution.parameters, &solution.readings, nullptr);
+  const double rms = traced ? problem.RmsResidual(solution.readings) : problem.data.scale;
+  ChosenNoise chosen = ChooseNoiseOf(problem, options, rms);
+  solution.noise.family = chosen.family;
+  solution.noise_reason = std::move(chosen.why);
+  const bool quantized = solution.noise.family == NoiseFamily::kQuantized;
+  solution.noise.resolution = quantized || solution.noise.family == NoiseFamily::kEdges ? problem.resolution : 0;
+  if (solution.noise.IsPlain()) {
+    SettleGaussian(cost, problem, solution);
+  } else {
+    const std::vector<Minimum> near = NearMinima(solution, samples);
+    const double rounding = quantized ? solution.noise.resolution / std::sqrt(12.0) : 0;
+    solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
+    solution.noise.sigma = std::max(solution.noise.sigma, problem.negligible_sigma());
+    cost.set_noise(solution.noise);
+    solution.other_minima.clear();
+    Alternate(cost, problem, solution);
+    CompareMinima(cost, problem, near, solution);
+    if (!near.empty()) Alternate(cost, problem, solution);
+    SumAgain(cost, solution);
+  }
+  // Which the cost knows, unless nothing can be traced there.
+  solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);
+  if (solution.usable) solution.log_likelihood = LogLikelihoodOf(problem, solution);
+}
+
+}  // namespace pendulum

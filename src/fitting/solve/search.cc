@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/solve/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+/// A start explains the data when it leaves less than this share of their variance.
+constexpr double kExplained = 0.1;
+
+double Variance(const TrajectoryData& data) {
+  const auto value = data.values();
+  return (value.array() - value.mean()).square().sum() / (data.scale * data.scale);
+}
+
+std::size_t SamplesBefore(const TrajectoryData& data, double time) {
+  return static_cast<std::size_t>(std::upper_bound(data.time.begin(), data.time.end(), time) - data.time.begin());
+}
+
+/// Solves over the samples before each of the times in turn, each from the last; leaves the cost with all samples.
+Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
+                      const std::vector<double>& times) {
+  for (const int k : options.late) options.fixed[k] = true;
+  constexpr std::size_t kFewest = 16;
+  for (const double time : times) {
+    const std::size_t count = SamplesBefore(data, time);
+    if (count < kFewest || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
+    cost.set_used_samples(count);
+    solution = Continue(cost, solution, options);
+  }
+  cost.set_used_samples(data.time.size());
+  return solution;
+}
+
+/// When the motion begins: the hold belongs to no share of it.
+double MotionStart(const std::vector<double>& parameters, const SolveOptions& options) {
+  return options.release_time >= 0 ? parameters[options.release_time] : 0.0;
+}
+
+std::vector<double> GrowingTimes(double begin, double end, double cycle) {
+  std::vector<double> times;
+  if (!(cycle > 0)) return times;
+  for (double length = 3 * cycle; begin + length < end; length *= 2) times.push_back(begin + length);
+  return times;
+}
+
+/// How all parameters move when parameter k does and the others follow to keep the cost low: a column of the inverse of
+/// J'J over the free parameters, with a 1 at k; empty where the data do not determine it.
+Eigen::VectorXd ProfileDirection(const LeastSquares& cost, const std::vector<double>& at, int k,
+                                 const SolveOptions& options) {
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(at, &sums)) return {};
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(at.size()); ++i) {
+    const bool at_bound = BoundSide(options, static_cast<std::size_t>(i), at[i]) != 0;
+    if (!options.fixed[i] && (i == k || !at_bound)) free.push_back(i);
+  }
+  const Eigen::Index position = std::find(free.begin(), free.end(), k) - free.begin();
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(static_cast<Eigen::Index>(free.size()), position);
+  const Eigen::VectorXd column = sums(free, free).ldlt().solve(unit);
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.size()));
+  direction(free) = column / column[position];
+  return direction.allFinite() ? direction : Eigen::VectorXd();
+}
+
+/// `from` with so much of a direction, within the bounds.
+std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift, std::vector<double> from,
+                                 const SolveOptions& options) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double moved = from[i] + shift * direction[static_cast<Eigen::Index>(i)];
+    from[i] = options.fixed[i] ? from[i] : std::clamp(moved, options.lower[i], options.upper[i]);
+  }
+  return from;
+}
+
+/// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
+/// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
+std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double>& from, double side,
+                              const SolveOptions& options) {
+  constexpr double kFirstShift = 1e-3;
+  constexpr double kLargestShift = 0.2;
+  constexpr double kGrowth = 1.15;
+  const int k = options.holding_parameter;
+  const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
+  if (direction.size() == 0) return {};
+  const auto shifted = [&](double shift) { return ShiftedAlong(direction, shift * from[k], from, options); };
+  const int reversals = cost.Reversals(from);
+  for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
+    if (cost.Reversals(shifted(side * shift)) != reversals) return shifted(side * shift * kGrowth);
+  }
+  return {};
+}
+
+/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
+Solution DescendBasins(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
+  Solution best = found;
+  for (const double side : {-1.0, 1.0}) {
+    for (bool better = true; better && cost.traces() < options.max_traces;) {
+      Solution trial = best;
+      trial.parameters = NextBasin(cost, best.parameters, side, options);
+      if (trial.parameters.empty()) break;
+      trial = Continue(cost, trial, options);
+      if (!trial.usable) break;
+      better = trial.sum < best.sum;
+      std::vector<Minimum> others = std::move(best.other_minima);
+      const Solution& other = better ? best : trial;
+      others.push_back({other.parameters, other.sum});
+      if (better) best = trial;
+      best.iterations = trial.iterations;
+      best.other_minima = std::move(others);
+    }
+  }
+  return best;
+}
+
+/// Whether the pendulum comes to rest, at a minimum or with dry friction 1.2 % to either side along its profile: only
+/// then are there other minima near.
+bool MayReachRest(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options) {
+  constexpr double kShift = 0.012;
+  const int k = options.holding_parameter;
+  if (k < 0 || !cost.ComesToRest(parameters, kShift * parameters[k])) return false;
+  if (cost.ComesToRest(parameters, 0)) return true;
+  if (options.fixed[k] || !(parameters[k] > 0)) return false;
+  const Eigen::VectorXd direction = ProfileDirection(cost, parameters, k, options);
+  if (direction.size() == 0) return false;
+  return cost.ComesToRest(ShiftedAlong(direction, kShift * parameters[k], parameters, options), 0) ||
+         cost.ComesToRest(ShiftedAlong(direction, -kShift * parameters[k], parameters, options), 0);
+}
+
+/// Solves from `start`; where that does not explain the data, over the first three cycles, then twice as many and so
+/// on. A recording that reaches rest has a minimum per number of half swings before the stop: it is fitted over 30, 60
+/// and 85 percent of the motion first.
+Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
+                    const SolveOptions& options) {
+  Solution solution;
+  solution.parameters = start;
+  const double begin = MotionStart(start, options);
+  // Of which Solve asks for the sums next.
+  Eigen::MatrixXd sums;
+  const bool traced = cost.Sums(start, &sums);
+  const int holding = options.holding_parameter;
+  const bool may_rest = traced && holding >= 0 && start[holding] > 0;
+  const double stop = may_rest ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
+  if (!traced || sums(sums.rows() - 1, sums.cols() - 1) > kExplained * Variance(data)) {
+    const double cycle = 2 * kPi * std::sqrt(start[0]);
+    solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
+  } else if (stop < data.time.back()) {
+    const double motion = stop - begin;
+    solution = SolveGrowing(cost, data, solution, options,
+                            {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
+  }
+  return Refine(cost, solution, options);
+}
+
+/// A stage of the search ends where it is after so many trajectories, and leaves some to the others.
+SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
+  constexpr int kMostTraces = 500;
+  options.max_traces = std::min(options.search.max_traces, cost.traces() + kMostTraces);
+  return options;
+}
+
+/// Friction parameters that may be held at their bound and leave a simpler law.
+std::vector<int> Removable(const SolveOptions& options) {
+  std::vector<int> removable;
+  for (int k = 1; k <= options.last_friction; ++k) {
+    const bool is_late = std::ranges::find(options.late, k) != options.late.end();
+    if (!options.fixed[k] && options.lower[k] == 0 && !is_late) removable.push_back(k);
+  }
+  return removable.size() > 1 ? removable : std::vector<int>{};
+}
+
+/// Solves without friction parameter k, then lets it go.
+Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, int k,
+                      const SolveOptions& options) {
+  SolveOptions simpler = options;
+  simpler.fixed[k] = true;
+  const bool search = k == Removable(options).back();
+  Solution solution = search ? Search(cost, data, guess, simpler) : Solve(cost, guess(simpler.fixed), simpler);
+  solution.other_minima.clear();  // of the simpler law
+  return Continue(cost, solution, options);
+}
+
+/// Whether the deviance is at most a tenth of what the readings' variance would make it.
+bool IsSmall(const TrajectoryData& data, const Solution& solution) {
+  return solution.usable && solution.sum <= kExplained * Variance(data);
+}
+
+}  // namespace
+
+Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& options) {
+  Solution solution = Continue(cost, from, options);
+  const int holding = options.holding_parameter;
+  if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
+  if (!MayReachRest(cost, solution.parameters, options)) return solution;
+  return DescendBasins(cost, solution, options);
+}
+
+Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
+                const SolveOptions& options) {
+  Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
+  if (IsSmall(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
+  for (const int k : Removable(options)) {
+    Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
+    const bool better = other.usable && (!best.usable || other.sum < best.sum);
+    std::vector<Minimum> others = std::move(best.other_minima);
+    if (better) std::swap(best, other);
+    if (other.usable) others.push_back({other.parameters, other.sum});
+    best.other_minima = std::move(others);
+    best.iterations += other.iterations;
+    if (better) best = Refine(cost, best, WithBudget(cost, options));
+  }
+  return best;
+}
+
+}  // namespace pendulum

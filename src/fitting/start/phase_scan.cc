@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/start/phase_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/period.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+/// From one frequency to the next the phase at the end of the scanned part moves by so many radians.
+constexpr double kPhaseStep = 0.6;
+
+/// The first samples tell the frequency well enough for the solver, which goes on to the others.
+constexpr Index kMostSamples = 150;
+
+constexpr std::size_t kMostStarts = 12;
+
+/// How the amplitude falls over the scanned part: to a share `end` of its first value, exponentially (viscous friction)
+/// or along a line (dry friction; below 0 it stops before the end).
+struct Envelope {
+  bool exponential;
+  double end;
+
+  /// At `part` of the scanned time, over the first amplitude.
+  double At(double part) const {
+    constexpr double kLeast = 0.02;  // what has stopped has a phase no more
+    return std::max(exponential ? std::pow(end, part) : 1 - (1 - end) * part, kLeast);
+  }
+};
+
+constexpr std::array kEnvelopes = {Envelope{true, 0.95}, Envelope{true, 0.75},  Envelope{true, 0.5},
+                                   Envelope{true, 0.25}, Envelope{true, 0.08},  Envelope{false, 0.5},
+                                   Envelope{false, 0.1}, Envelope{false, -0.5}, Envelope{false, -2.0}};
+
+/// A least squares at one frequency.
+struct Candidate {
+  double frequency = 0;  ///< rad/s
+  Envelope envelope = kEnvelopes[0];
+  Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Of A cos φ, A sin φ and 1 with A = 1 at first.
+  double rss = kUnbounded;
+
+  double amplitude() const { return std::hypot(coefficients[0], coefficients[1]); }  ///< Of the reading, at first.
+};
+
+/// The samples to scan.
+class Scan {
+ public:
+  Scan(const Recording& recording, Gravity gravity, const std::stop_token& stop)
+      : quantity_(recording.quantity),
+        gravity_(gravity),
+        time_(recording.clock_scale * (recording.time.head(Count(recording)).array() - recording.time[0])),
+        value_(recording.value.head(Count(recording))),
+        stop_(stop) {}
+
+  double duration() const { return time_[time_.size() - 1]; }
+  double half_range() const { return 0.5 * (value_.maxCoeff() - value_.minCoeff()); }
+
+  /// The best envelope at each frequency, when the reading's amplitude is about `amplitude` at first; unless it is
+  /// stopped.
+  std::vector<Candidate> At(const std::vector<double>& frequencies, double amplitude) const {
+    std::vector<Candidate> best(frequencies.size());
+    for (const Envelope& envelope : kEnvelopes) {
+      const ArrayXd decay = (time_ / duration()).unaryExpr([&](double part) { return envelope.At(part); });
+      ArrayXd warped;
+      for (std::size_t i = 0; i < frequencies.size() && !stop_.stop_requested(); ++i) {
+        // The amplitude that belongs to a rate depends on the frequency, that of an angle does not.
+        if (i == 0 || quantity_ == Quantity::kRate) warped = WarpedTime(amplitude * decay, frequencies[i]);
+        Candidate trial{frequencies[i], envelope};
+        Solve(decay, frequencies[i] * warped, trial);
+        if (trial.rss < best[i].rss) best[i] = trial;
+      }
+    }
+    return best;
+  }
+
+ private:
+  static Index Count(const Recording& recording) { return std::min(recording.size(), kMostSamples); }
+
+  /// ∫ dt / PeriodRatio, s: the phase at 1 rad/s. amplitude: of the reading.
+  ArrayXd WarpedTime(const ArrayXd& amplitude, double frequency) const {
+    if (gravity_ == Gravity::kLinear) return time_;
+    const ArrayXd speed = amplitude.unaryExpr(
+        [&](double reading) { return 1 / PeriodRatio(AngleAmplitude(quantity_, reading, frequency)); });
+    ArrayXd warped = ArrayXd::Zero(time_.size());
+    for (Index i = 1; i < time_.size(); ++i) {
+      warped[i] = warped[i - 1] + 0.5 * (speed[i] + speed[i - 1]) * (time_[i] - time_[i - 1]);
+    }
+    return warped;
+  }
+
+  void Solve(const ArrayXd& decay, const ArrayXd& phase, Candidate& candidate) const {
+    constexpr double kRidge = 1e-6;  // sampled once a cycle two of the columns are one
+    Eigen::MatrixX3d basis(time_.size(), 3);
+    basis << decay * phase.cos(), decay * phase.sin(), ArrayXd::Ones(time_.size());
+    Eigen::Matrix3d normal = basis.transpose() * basis;
+    normal.diagonal() *= 1 + kRidge;
+    candidate.coefficients = normal.ldlt().solve(basis.transpose() * value_);
+    candidate.rss = (value_ - basis * candidate.coefficients).squaredNorm();
+  }
+
+  Quantity quantity_;
+  Gravity gravity_;
+  ArrayXd time_;
+  Eigen::VectorXd value_;
+  const std::stop_token& stop_;
+};
+
+std::vector<double> Grid(const FrequencyRange& range, double duration) {
+  constexpr double kMostFrequencies = 20'000;  // beyond, the grid is coarser: such recordings tell no frequency
+  const double step = std::max(kPhaseStep / duration, (range.high - range.low) / kMostFrequencies);
+  const auto count = static_cast<std::size_t>(std::ceil(std::max(range.high - range.low, 0.0) / step));
+  std::vector<double> grid;
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double share = count == 0 ? 0.0 : static_cast<double>(i) / static_cast<double>(count);
+    grid.push_back(range.low + share * (range.high - range.low));
+  }
+  return grid;
+}
+
+/// Local minima over frequency, the best first; what explains next to nothing only if nothing does better.
+std::vector<Candidate> LocalMinima(const std::vector<Candidate>& candidates) {
+  std::vector<Candidate> minima;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool falls = i == 0 || candidates[i].rss < candidates[i - 1].rss;
+    const bool rises = i + 1 == candidates.size() || candidates[i].rss <= candidates[i + 1].rss;
+    if (falls && rises) minima.push_back(candidates[i]);
+  }
+  std::ranges::sort(minima, {}, &Candidate::rss);
+  if (minima.size() > kMostStarts) minima.resize(kMostStarts);
+  return minima;
+}
+
+/// The turning points that a candidate would have had: amplitudes of reading at half periods.
+HalfSwingTable TurnsOf(const Candidate& candidate, Quantity quantity, Gravity gravity, double duration) {
+  constexpr double kMostHalfSwings = 200;
+  HalfSwingTable table;
+  table.quantity = quantity;
+  table.gravity = gravity;
+  table.zero = candidate.coefficients[2];
+  const double half_swings = std::clamp(candidate.frequency * duration / kPi, 2.0, kMostHalfSwings);
+  const double step = kPi / candidate.frequency / duration;
+  for (double i = 0; i < half_swings; ++i) {
+    const auto reading = [&](double turns) { return candidate.amplitude() * candidate.envelope.At(turns * step); };
+    table.half_swings.push_back({0, reading(i), reading(i + 1), i > 0});
+  }
+  return table;
+}
+
+/// Angle and rate at the first sample, from the reading and its slope there as EstimateStartValues has it.
+std::array<double, 2> InitialState(const Candidate& candidate, Quantity quantity, Gravity gravity, double amplitude) {
+  const double ratio = gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0;
+  const double reading = candidate.coefficients[0];
+  const double slope = candidate.coefficients[1] * candidate.frequency / ratio;
+  if (quantity == Quantity::kAngle) return {reading, slope};
+  const double square = candidate.frequency * candidate.frequency;
+  const double torque = -slope / square;  // θ'' = -ω0² g(θ)
+  if (gravity == Gravity::kLinear) return {torque, reading};
+  const double peak = candidate.amplitude();
+  return {std::atan2(torque, 1 - (peak * peak - reading * reading) / (2 * square)), reading};
+}
+
+StartValues StartAt(const Candidate& candidate, const Recording& recording, const MotionModel& model, double duration) {
+  const HalfSwingTable table = TurnsOf(candidate, recording.quantity, model.gravity, duration);
+  StartValues values;
+  values.start = StartKind::kMoving;
+  values.natural_frequency = candidate.frequency;
+  values.amplitude = AngleAmplitude(recording.quantity, candidate.amplitude(), candidate.frequency, model.gravity);
+  values.energy_balance = BalanceEnergy(model, table, candidate.frequency).front();
+  values.parameters = {1 / (candidate.frequency * candidate.frequency)};
+  const std::vector<double> friction = FrictionFrom(values.energy_balance);
+  values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
+  const auto state = InitialState(candidate, recording.quantity, model.gravity, values.amplitude);
+  values.parameters.insert(values.parameters.end(), {state[0], state[1], table.zero});
+  return values;
+}
+
+}  // namespace
+
+/// Scanned twice: the samples' range tells the amplitude roughly, the best least squares well.
+std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
+                                         const FrequencyRange& range, const std::stop_token& stop) {
+  constexpr double kMostAmplitude = 3;  // half ranges: samples seldom miss more of the swing
+  const Scan scan(recording, model.gravity, stop);
+  const std::vector<double> frequencies = Grid(range, scan.duration());
+  const std::vector<Candidate> rough = scan.At(frequencies, scan.half_range());
+  const Candidate& best = *std::ranges::min_element(rough, {}, &Candidate::rss);
+  const double amplitude = std::min(best.amplitude(), kMostAmplitude * scan.half_range());
+  const std::vector<Candidate> fine = scan.At(frequencies, amplitude);
+  if (stop.stop_requested()) return {};
+  std::vector<StartValues> starts;
+  for (const Candidate& candidate : LocalMinima(fine)) {
+    starts.push_back(StartAt(candidate, recording, model, scan.duration()));
+  }
+  return starts;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/start/sensor_start.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/half_swings.h"
+#include "pendulum/closed_form/period.h"
+#include "pendulum/closed_form/turns_view.h"
+
+namespace pendulum {
+namespace {
+
+/// Largest amplitudes [rad] that readings in an unknown unit may stand for.
+constexpr std::array kAmplitudes = {0.15, 0.4, 0.8, 1.3};
+
+/// A view that would go beyond this [rad] is cut off there.
+constexpr double kLargestView = 1.5;
+
+/// What the options say of a parameter: its value, or where it is likely.
+std::optional<double> Known(const FitOptions& options, const ParameterInfo& info) {
+  if (const auto found = options.fixed.find(info.name); found != options.fixed.end()) return found->second;
+  if (const auto found = options.initial.find(info.name); found != options.initial.end()) return found->second;
+  if (const auto found = options.priors.find(info.name); found != options.priors.end()) return found->second.mean;
+  return std::nullopt;
+}
+
+/// The direction of an accelerometer: across the rod, or along it.
+double AxisOf(const Recording& recording) { return IsRadial(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
+
+/// The readings' view, with what its turning points tell.
+struct Turns {
+  Recording view;
+  double zero = 0;       ///< Of the view.
+  double amplitude = 0;  ///< The largest, of the view.
+  double frequency = 0;  ///< rad/s, of small swings if those of the recording were.
+
+  /// ω0, if the largest amplitude is that angle.
+  double NaturalFrequency(double angle) const { return frequency * PeriodRatio(angle); }
+};
+
+Result<Turns> FindTurnsOf(const Recording& recording) {
+  Turns turns{TurnsView(recording)};
+  Result<HalfSwingTable> table = TabulateHalfSwings(turns.view);
+  if (!table) return tl::unexpected(table.error());
+  table->gravity = Gravity::kLinear;
+  turns.frequency = NaturalFrequency(*table);
+  turns.zero = table->zero;
+  for (const HalfSwing& half : table->half_swings)
+    turns.amplitude = std::max({turns.amplitude, half.before, half.after});
+  return turns;
+}
+
+/// Any of the amplitudes; one alone where the scale is known.
+std::vector<double> AmplitudesOf(std::optional<double> known) {
+  if (known) return {std::clamp(*known, 0.01, kLargestView)};
+  return {kAmplitudes.begin(), kAmplitudes.end()};
+}
+
+/// (reading - zero) / unit as the sine of an angle.
+Recording AsSine(Recording view, double zero, double unit) {
+  const double most = std::sin(kLargestView);
+  for (double& value : view.value) value = std::asin(std::clamp((value - zero) / unit, -most, most));
+  view.unit = "rad";
+  view.quantity = Quantity::kAngle;
+  view.resolution /= std::abs(unit);
+  return view;
+}
+
+std::vector<SensorStart> StartsOfCoordinate(const Turns& turns, const FitOptions& options) {
+  const std::optional<double> radius = Known(options, kRadius);
+  std::optional<double> amplitude;
+  if (radius) amplitude = std::asin(std::min(turns.amplitude / *radius, std::sin(kLargestView)));
+  std::vector<SensorStart> starts;
+  for (const double angle : AmplitudesOf(amplitude)) {
+    const double length = radius.value_or(turns.amplitude / std::sin(angle));
+    const double pivot = Known(options, kPivotX).value_or(turns.zero);
+    const double zero = Known(options, kZeroAngle).value_or(0);
+    starts.push_back({{zero, pivot, length}, AsSine(turns.view, turns.zero, length)});
+  }
+  return starts;
+}
+
+std::vector<SensorStart> StartsOfRate(const Recording& recording, const Turns& turns, const FitOptions& options) {
+  const std::optional<double> known = Known(options, kRateScale);
+  std::vector<SensorStart> starts;
+  for (const double angle : known ? std::vector{0.0} : AmplitudesOf({})) {
+    const double peak = 2 * turns.NaturalFrequency(angle) * std::sin(0.5 * angle);
+    const double scale = known.value_or(turns.amplitude / std::max(peak, 1e-9));
+    SensorStart start{{turns.zero, scale}, recording};
+    start.view.value = (recording.value.array() - turns.zero) / scale;
+    start.view.resolution /= std::abs(scale);
+    start.view.unit = "rad/s";
+    starts.push_back(std::move(start));
+  }
+  return starts;
+}
+
+/// Across the rod: k ((g - r ω0²) sin θ - r friction); friction is little.
+std::vector<SensorStart> StartsAcross(const SensorModel& sensor, const Turns& turns, const FitOptions& options) {
+  const std::optional<double> known = Known(options, kRadius);
+  const double scale = Known(options, kAccelerationScale).value_or(1);
+  const double axis = Known(options, kAxis).value_or(0);
+  std::vector<SensorStart> starts;
+  const auto add = [&](double unit, double radius) {
+    starts.push_back(
+        {{turns.zero - sensor.gravity * std::sin(axis), scale, axis, radius}, AsSine(turns.view, turns.zero, unit)});
+  };
+  for (const double angle : AmplitudesOf({})) {
+    const double square = std::pow(turns.NaturalFrequency(angle), 2);
+    if (known) {
+      add(scale * (sensor.gravity - *known * square), *known);
+      continue;
+    }
+    for (const double side : {1.0, -1.0}) {
+      const double unit = side * turns.amplitude / std::sin(angle);
+      const double radius = (sensor.gravity - unit / scale) / square;
+      if (radius > 0) add(unit, radius);
+    }
+  }
+  if (known) starts.resize(1);
+  return starts;
+}
+
+/// Along the rod, unfolded: |view| = sqrt(2 k (g + 2 r ω0²)) sin(θ/2).
+std::vector<SensorStart> StartsAlong(const SensorModel& sensor, const Turns& turns, double upright,
+                                     const FitOptions& options) {
+  const std::optional<double> known = Known(options, kRadius);
+  const double scale = Known(options, kAccelerationScale).value_or(1);
+  const double axis = Known(options, kAxis).value_or(upright);
+  std::vector<SensorStart> starts;
+  for (const double angle : AmplitudesOf({})) {
+    const double square = std::pow(turns.NaturalFrequency(angle), 2);
+    const double root = turns.amplitude / std::sin(0.5 * angle);
+    const double radius = known.value_or((root * root / (2 * scale) - sensor.gravity) / (2 * square));
+    if (!(radius > 0)) continue;
+    const double unit = std::sqrt(2 * scale * (sensor.gravity + 2 * radius * square));
+    SensorStart start{{0, scale, axis, radius}, turns.view};
+    for (double& value : start.view.value) value = 2 * std::asin(std::clamp((value - turns.zero) / unit, -0.9, 0.9));
+    start.view.unit = "rad";
+    starts.push_back(std::move(start));
+    if (known) break;
+  }
+  return starts;
+}
+
+}  // namespace
+
+SensorModel SensorOf(const Recording& recording, Gravity gravity) {
+  SensorModel sensor;
+  if (recording.arc) {
+    sensor.kind = SensorKind::kArc;
+    sensor.pivot_x = recording.arc->x;
+    sensor.pivot_y = recording.arc->y;
+    sensor.down = recording.arc->down;
+    return sensor;
+  }
+  if (gravity == Gravity::kLinear) return sensor;
+  if (recording.quantity == Quantity::kRate && !recording.is_calibrated()) sensor.kind = SensorKind::kScaledRate;
+  if (recording.quantity == Quantity::kPosition) sensor.kind = SensorKind::kCoordinate;
+  if (recording.quantity == Quantity::kAcceleration) {
+    sensor.kind = SensorKind::kAcceleration;
+    sensor.gravity = recording.shows_gravity ? kStandardGravity : 0;
+  }
+  return sensor;
+}
+
+ParameterPriors SensorPriors(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {
+  ParameterPriors priors;
+  const auto add = [&](const ParameterInfo& info, double mean, double std_dev) {
+    if (!options.fixed.contains(info.name) && !options.priors.contains(info.name) && std_dev > 0)
+      priors.insert_or_assign(std::string(info.name), ParameterPrior{mean, std_dev});
+  };
+  if (sensor.kind == SensorKind::kAcceleration) {
+    add(kAccelerationBias, 0, kAccelerometerBiasStdDev);
+    add(kAccelerationScale, 1, kAccelerometerScaleStdDev);
+    add(kAxis, AxisOf(recording), kAccelerometerAxisStdDev);
+  }
+  if (sensor.kind == SensorKind::kCoordinate) add(kZeroAngle, 0, kCameraLevelStdDev);
+  if (sensor.kind == SensorKind::kArc) {
+    const Eigen::Vector3d std_dev = recording.arc->covariance.diagonal().cwiseSqrt();
+    add(kPivotX, recording.arc->x, std_dev[0]);
+    add(kPivotY, recording.arc->y, std_dev[1]);
+    add(kRadius, recording.arc->radius, std_dev[2]);
+  }
+  return priors;
+}
+
+Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& options) {
+  for (const ParameterInfo& info : sensor.Parameters()) {
+    const bool is_size =
+        info.name == kRadius.name || info.name == kRateScale.name || info.name == kAccelerationScale.name;
+    const std::optional<double> value = Known(options, info);
+    if (!is_size || !value) continue;
+    const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity, at the pivot
+    if (*value == 0 ? shows_at_0 : *value >= info.lower) continue;
+    return Error(StatusCode::kInvalidArgument, std::string(info.name) + " cannot be " + NumberText(*value) +
+                                                   ": with that the sensor would show no motion; it must be " +
+                                                   (shows_at_0        ? "at least 0"
+                                                    : info.lower == 0 ? "greater than 0"
+                                                                      : "below 0 or above it"));
+  }
+  return {};
+}
+
+Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
+                                              const FitOptions& options) {
+  if (sensor.kind == SensorKind::kArc) {
+    const Arc& arc = *recording.arc;
+    return std::vector<SensorStart>{{{0, arc.x, arc.y, arc.radius}, recording}};
+  }
+  const Result<Turns> turns = FindTurnsOf(recording);
+  if (!turns) return tl::unexpected(turns.error());
+  if (sensor.kind == SensorKind::kCoordinate) return StartsOfCoordinate(*turns, options);
+  if (sensor.kind == SensorKind::kScaledRate) return StartsOfRate(recording, *turns, options);
+  return IsRadial(recording) ? StartsAlong(sensor, *turns, AxisOf(recording), options)
+                             : StartsAcross(sensor, *turns, options);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/start/start_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/QR>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/energy_balance.h"
+#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/half_swings.h"
+#include "pendulum/closed_form/period.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// What the held part of a recording says.
+struct Hold {
+  double angle = 0;           ///< rad, release angle
+  double release_time = 0;    ///< s, on the recording's clock
+  double latest_release = 0;  ///< s, on the recording's clock
+};
+
+/// The recording about its zero, with its time scale.
+struct Centred {
+  const Recording& recording;
+  const HalfSwingTable& table;
+  double natural_frequency;
+  double noise;
+
+  double Reading(Index i) const { return recording.value[i] - table.zero; }
+  double Period(double amplitude) const {
+    return 2 * kPi / natural_frequency * (table.gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
+  }
+  /// The first sample from `from` on whose reading is on the other side of zero than `sign`; N if there is none.
+  Index FirstOnOtherSide(Index from, double sign) const {
+    while (from < recording.size() && Reading(from) * sign >= 0) ++from;
+    return from;
+  }
+};
+
+/// Mean reading and largest distance from it over the samples [0, count).
+std::pair<double, double> MeanAndSpread(const Centred& data, Index count) {
+  const auto held = data.recording.value.head(count).array() - data.table.zero;
+  const double mean = held.mean();
+  return {mean, (held - mean).abs().maxCoeff()};
+}
+
+/// Index of the first sample at or after a time.
+Index SampleAt(const Recording& recording, double time) {
+  return std::lower_bound(recording.time.begin(), recording.time.end(), time) - recording.time.begin();
+}
+
+/// Where the fall from the hold is beyond doubt, and how long after the release that is: for an angle the first passage
+/// through zero, a quarter period; for a rate the first turn, half a period.
+struct Fall {
+  double time;
+  double periods;
+  double amplitude;  // rad, signed release angle
+};
+
+std::optional<Fall> FirstFall(const Centred& data) {
+  const Recording& recording = data.recording;
+  const bool is_rate = recording.quantity == Quantity::kRate;
+  Index first = 0;
+  if (is_rate) {
+    const double half_peak = 0.5 * data.table.half_swings.front().before;
+    while (first < recording.size() && std::abs(data.Reading(first)) < half_peak) ++first;
+    if (first == recording.size()) return std::nullopt;
+  }
+  const double sign = data.Reading(first) > 0 ? 1 : -1;
+  const Index after = data.FirstOnOtherSide(first, sign);
+  if (after == recording.size() || after == 0) return std::nullopt;
+  const double y0 = data.Reading(after - 1);
+  const double y1 = data.Reading(after);
+  const double step = recording.time[after] - recording.time[after - 1];
+  const double time = recording.time[after - 1] + step * y0 / (y0 - y1);
+  const double level = is_rate ? data.table.half_swings.front().before : std::abs(data.Reading(0));
+  const double amplitude = AngleAmplitude(recording.quantity, level, data.natural_frequency, data.table.gravity);
+  return Fall{time, is_rate ? 0.5 : 0.25, is_rate ? -sign * amplitude : sign * amplitude};
+}
+
+/// The held part at the start, if there is one: the reading stays within 5 % of the amplitude and five standard
+/// deviations of the noise until the release that the first fall dates, for a tenth of a period or longer. With `asked`
+/// whatever lies before that release.
+std::optional<Hold> FindHold(const Centred& data, bool asked) {
+  const std::optional<Fall> fall = FirstFall(data);
+  if (!fall) return std::nullopt;
+  const Recording& recording = data.recording;
+  const double release = fall->time - fall->periods * data.Period(fall->amplitude);
+  const Index held = SampleAt(recording, release);
+  constexpr Index kFewest = 3;
+  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest;
+  if (held < 1 || (is_short && !asked)) return std::nullopt;
+  // Strong friction makes the release look later than it was: the first part of the hold speaks for it.
+  const Index surely_held = std::max<Index>(7 * held / 10, 1);
+  const auto [mean, spread] = MeanAndSpread(data, surely_held);
+  const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
+  const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
+  if (spread > band && !asked) return std::nullopt;
+  // A pendulum at rest that is pushed was not released: the hold must be as far out as the first swing goes, or nearly.
+  const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
+  if (is_push && !asked) return std::nullopt;
+  Index moving = SampleAt(recording, fall->time) - 1;
+  while (moving > surely_held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
+  return Hold{recording.quantity == Quantity::kAngle ? mean : fall->amplitude, release, recording.time[moving]};
+}
+
+/// Reading and its slope at the first sample, from a parabola through the first sixth of a period (at least five
+/// samples).
+std::pair<double, double> InitialReading(const Centred& data) {
+  const Recording& recording = data.recording;
+  const Index count =
+      std::clamp<Index>(SampleAt(recording, recording.time[0] + data.Period(0) / 6), 5, recording.size());
+  const Eigen::ArrayXd t = recording.time.head(count).array() - recording.time[0];
+  Eigen::MatrixX3d basis(count, 3);
+  basis << Eigen::ArrayXd::Ones(count), t, t.square();
+  const Eigen::VectorXd reading = recording.value.head(count).array() - data.table.zero;
+  const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(reading);
+  return {c[0], c[1]};
+}
+
+/// Angle and rate at the first sample of a recording that begins in motion. Seen by a rate sensor the slope tells the
+/// sine of the angle, and what the rate lacks of its next peak the cosine.
+std::pair<double, double> InitialState(const Centred& data) {
+  const auto [reading, slope] = InitialReading(data);
+  if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
+  const double square = data.natural_frequency * data.natural_frequency;
+  const double torque = -slope / square;  // θ'' = -ω0² g(θ)
+  if (data.table.gravity == Gravity::kLinear) return {torque, reading};
+  const double peak = data.table.half_swings.front().before;
+  const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // of the energy at the bottom
+  return {std::atan2(torque, cosine), reading};
+}
+
+double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
+  double largest = 0;
+  for (const HalfSwing& half : table.half_swings) largest = std::max({largest, half.before, half.after});
+  return AngleAmplitude(table.quantity, largest, natural_frequency, table.gravity);
+}
+
+}  // namespace
+
+/// A held part gives release angle (its mean) and release time (a quarter period before the first crossing; half a
+/// period before the first turn of a rate); otherwise a parabola through the first samples gives angle and rate.
+Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
+                                        std::optional<StartKind> choice) {
+  Result<HalfSwingTable> table = TabulateHalfSwings(recording);
+  if (!table) return tl::unexpected(table.error());
+  table->gravity = model.gravity;
+  StartValues values;
+  values.natural_frequency = NaturalFrequency(*table);
+  const double inertia = 1 / (values.natural_frequency * values.natural_frequency);
+  if (!(inertia > 1e-30 && inertia < 1e30)) {
+    return Error(StatusCode::kFailedPrecondition, "the period is " + NumberText(2 * kPi / values.natural_frequency, 3) +
+                                                      " s, which no pendulum has; check the unit of time");
+  }
+  values.amplitude = LargestAmplitude(*table, values.natural_frequency);
+  values.parameters = {inertia};
+  values.other_balances = BalanceEnergy(model, *table, values.natural_frequency);
+  values.energy_balance = values.other_balances.front();
+  values.other_balances.erase(values.other_balances.begin());
+  const std::vector<double> friction = FrictionFrom(values.energy_balance);
+  values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
+
+  const Centred data{recording, *table, values.natural_frequency, SuccessiveDifferenceNoise(recording)};
+  const std::optional<Hold> hold =
+      choice == StartKind::kMoving ? std::nullopt : FindHold(data, choice == StartKind::kRelease);
+  if (choice == StartKind::kRelease && !hold) {
+    return Error(StatusCode::kFailedPrecondition,
+                 "no held part at the start: the first fall dates the release before the first sample; --start moving "
+                 "fits it so");
+  }
+  if (hold) {
+    values.start = StartKind::kRelease;
+    values.latest_release = hold->latest_release - recording.time[0];
+    const double release = std::min(hold->release_time - recording.time[0], values.latest_release);
+    values.short_hold = release < 0.5 * data.Period(0);
+    values.parameters.insert(values.parameters.end(), {hold->angle, release});
+  } else {
+    const auto [angle, rate] = InitialState(data);
+    values.parameters.insert(values.parameters.end(), {angle, rate});
+  }
+  values.parameters.push_back(table->zero);
+  return values;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/choose_swings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "pendulum/fitting/swing/undersampled.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// The swing's window as FindFreeSwings would have it, for ends that the user chose.
+FreeSwing GivenSwing(const Recording& part) {
+  FreeSwing swing;
+  swing.from = part.time[0];
+  swing.to = part.time[part.size() - 1];
+  swing.from_given = swing.to_given = true;
+  swing.begins = swing.ends = "as asked";
+  return swing;
+}
+
+tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int count) {
+  return Error(StatusCode::kInvalidArgument, where + "there is no free swing " + std::to_string(number) +
+                                                 " in the recording; it has " + std::to_string(count));
+}
+
+}  // namespace
+
+Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
+                                  const std::optional<Rig>& rig) {
+  const bool from_given = !std::isnan(choice.from);
+  const bool to_given = !std::isnan(choice.to);
+  std::optional<Recording> selected;
+  if (from_given || to_given) {
+    Result<Recording> part = SelectWindow(recording, choice.from, choice.to);
+    if (!part) return tl::unexpected(part.error());
+    selected = *std::move(part);
+  }
+  const Recording* const part = selected ? &*selected : &recording;
+  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  if (IsUndersampled(*part, rig)) {
+    if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
+    return ChosenSwings{{WholeRecording(*part)}, {1}};
+  }
+  if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
+  Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
+  if (!found) return Error(found.error().code, where + found.error().message);
+  ChosenSwings swings{*std::move(found), {}};
+  const auto count = static_cast<int>(swings.found.size());
+  if (choice.release > count) return NoSuchSwing(where, choice.release, count);
+  if (choice.release == SwingChoice::kAll) {
+    for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
+    return swings;
+  }
+  const auto longest =
+      std::ranges::max_element(swings.found, {}, [](const FreeSwing& swing) { return swing.to - swing.from; });
+  // An end that the user gave belongs to the swing next to it.
+  int k = from_given ? 1 : to_given ? count : static_cast<int>(longest - swings.found.begin()) + 1;
+  if (choice.release > 0) k = choice.release;
+  FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
+  if (from_given && choice.release == SwingChoice::kLongest) {
+    swing.from = part->time[0];
+    swing.from_given = true;
+    swing.begins = "as asked";
+  }
+  if (to_given && choice.release == SwingChoice::kLongest) {
+    swing.to = part->time[part->size() - 1];
+    swing.to_given = true;
+    swing.ends = "as asked";
+  }
+  swings.chosen = {k};
+  return swings;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/fit_swing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/swing/lost_counts.h"
+#include "pendulum/fitting/swing/not_a_pendulum.h"
+#include "pendulum/fitting/swing/undersampled.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// So many samples are enough to compare windows, and so many in a half swing.
+constexpr Eigen::Index kMostSamples = 3000;
+constexpr double kPerHalfSwing = 12;
+constexpr int kMostTraces = 60;
+
+/// Fits to parts of one recording by its richest law, compared by what they leave of another part.
+class WindowTrials {
+ public:
+  WindowTrials(Recording recording, const FitOptions& options)
+      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMostTraces)) {}
+
+  /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
+  double Rms(double begin, double end, double from, double to) {
+    const Trial& trial = Fit(begin, end);
+    double sum = 0;
+    double count = 0;
+    for (Eigen::Index i = 0; i < trial.residual.size(); ++i) {
+      if (trial.time[i] < from || trial.time[i] > to) continue;
+      sum += trial.residual[i] * trial.residual[i];
+      ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : kUnbounded;
+  }
+
+ private:
+  struct Trial {
+    double begin, end;
+    Eigen::VectorXd time, residual;
+  };
+
+  const Trial& Fit(double begin, double end) {
+    const auto known =
+        std::ranges::find_if(trials_, [&](const Trial& trial) { return trial.begin == begin && trial.end == end; });
+    if (known != trials_.end()) return *known;
+    Trial trial{begin, end, {}, {}};
+    if (const auto part = SelectWindow(recording_, begin, end)) {
+      if (auto fit = FitRecording(*part, options_); fit && fit->termination != Termination::kFailed) {
+        trial.time = part->time;
+        trial.residual = std::move(fit->residual);
+      }
+    }
+    return trials_.emplace_back(std::move(trial));
+  }
+
+  Recording recording_;
+  FitOptions options_;
+  std::vector<Trial> trials_;
+};
+
+/// How many turning points may be left out at an edge: none, one, two, four and so on, and a quarter of them.
+std::vector<std::size_t> Steps(std::size_t turns) {
+  const std::size_t most = std::max<std::size_t>(turns / 4, 1);
+  std::vector<std::size_t> steps = {0};
+  for (std::size_t k = 1; k < most; k *= 2) steps.push_back(k);
+  if (turns >= most + 4) steps.push_back(most);
+  return steps;
+}
+
+/// The fewest turning points to leave out at an edge such that leaving out more makes the rest fit not much better; all
+/// the steps allow where that is never so. window(k) is the window without k of them.
+template <typename Window>
+std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps, const Window& window) {
+  // No law is exact: a shorter window fits a little better, the more so the shorter it is.
+  constexpr double kDisturbed = 1.1;
+  constexpr double kInexact = 0.02;  // per turning point
+  const auto fits = [&](std::size_t less, std::size_t more) {
+    const auto [from, to] = window(less);
+    const auto [inner_from, inner_to] = window(more);
+    const double allowed = kDisturbed + kInexact * static_cast<double>(more - less - 1);
+    return trials.Rms(from, to, inner_from, inner_to) <=
+           allowed * trials.Rms(inner_from, inner_to, inner_from, inner_to);
+  };
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool enough = std::all_of(steps.begin() + static_cast<std::ptrdiff_t>(i) + 1, steps.end(),
+                                    [&](std::size_t more) { return fits(steps[i], more); });
+    if (enough) return steps[i];
+  }
+  return steps.back();
+}
+
+/// Turning points that may begin or end a window: not the hold, nor the first sample.
+std::vector<double> InnerTurns(const FreeSwing& swing) {
+  std::vector<double> turns;
+  for (const double turn : swing.turns) {
+    if (turn > swing.from + 0.6 * swing.half_period && turn < swing.to) turns.push_back(turn);
+  }
+  return turns;
+}
+
+/// Leaves out what disturbs the swing at one of its ends.
+void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
+  const Recording excerpt = Excerpt(recording, kMostSamples, kPerHalfSwing / swing.half_period, at_end);
+  const double from = excerpt.time[0];
+  const double to = excerpt.time[excerpt.size() - 1];
+  std::vector<double> turns;
+  for (const double turn : InnerTurns(swing)) {
+    if (turn > from && turn < to) turns.push_back(turn);
+  }
+  if (turns.size() < 2) return;
+  const auto window = [&](std::size_t k) {
+    if (k == 0) return std::pair(from, to);
+    return at_end ? std::pair(from, turns[turns.size() - k]) : std::pair(turns[k - 1], to);
+  };
+  WindowTrials trials(excerpt, options);
+  const std::size_t k = LeaveOut(trials, Steps(turns.size()), window);
+  if (k == 0) return;
+  const auto [inner_from, inner_to] = window(k);
+  (at_end ? swing.to : swing.from) = at_end ? inner_to : inner_from;
+  (at_end ? swing.ends : swing.begins) = at_end
+                                             ? "what follows it does not fit what is before: touched, or another law"
+                                             : "what is before it does not fit what follows: touched, or another law";
+}
+
+/// A value of the start belongs to the first sample, or to the release, that the user meant.
+bool NamesStart(const FitOptions& options) {
+  const auto names = [](const auto& map) {
+    return std::ranges::any_of(map, [](const auto& entry) {
+      return entry.first == kReleaseAngle.name || entry.first == kReleaseTime.name ||
+             entry.first == kInitialAngle.name || entry.first == kInitialRate.name;
+    });
+  };
+  return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
+}
+
+/// Leaves out what disturbs the swing at its two ends, unless the user chose them.
+void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
+  if (!(swing.half_period > 0)) return;
+  if (!swing.from_given && !NamesStart(options)) TrimEnd(recording, options, false, swing);
+  if (!swing.to_given) TrimEnd(recording, options, true, swing);
+}
+
+/// Takes whole turns over the top out of the readings, so that the zero is the sensor's own; says how many.
+std::string TakeTurnsOut(Recording& used) {
+  if (used.quantity != Quantity::kAngle || !used.is_calibrated()) return "";
+  const double mean = used.value.mean();
+  const double turns = std::abs(mean) > 1.5 * kPi ? std::round(mean / (2 * kPi)) : 0;
+  if (turns == 0) return "";
+  used.value.array() -= 2 * kPi * turns;
+  if (used.edge) *used.edge -= 2 * kPi * turns;
+  if (used.range) used.range = SensorRange{used.range->low - 2 * kPi * turns, used.range->high - 2 * kPi * turns};
+  if (used.calibration) used.calibration->coefficients[0] -= 2 * kPi * turns / used.calibration->RadFromUnit();
+  return NumberText(turns) + " whole turns were taken out of the readings: the zero is that of the swing's own turn";
+}
+
+Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const FitOptions& options) {
+  Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  used->warnings.clear();
+  const std::string turned = TakeTurnsOut(*used);
+  Result<FitReport> fit = FitRecording(*used, options);
+  if (!fit) return tl::unexpected(fit.error());
+  if (!turned.empty()) fit->warnings.push_back({"turns_taken_out", turned});
+  SwingFit result{*std::move(used), swing, *std::move(fit)};
+  // The fit has the last word on how it began.
+  const bool released = result.fit.start == StartKind::kRelease;
+  const bool held = swing.begins == kHeld;
+  if (released && swing.begins == kInMotion) result.swing.begins = kHeld;
+  if (!released && held) result.swing.begins = "in motion: held before, but its release tells less than its motion";
+  return result;
+}
+
+/// Ends the window earlier until the fit converges: near a stop it may have no minimum.
+Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
+  const std::vector<double> turns = InnerTurns(result.swing);
+  const Recording thinned =
+      Thinned(result.used,
+              std::max(kMostSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
+  FitOptions quick = options;
+  quick.search.max_traces = 5 * kMostTraces;
+  if (!IsRobust(quick.noise)) quick.noise = NoiseFamily::kGaussian;
+  quick.interval = IntervalMethod::kCovariance;
+  const auto converges = [](const Result<SwingFit>& trial) {
+    return trial && trial->fit.termination == Termination::kConverged;
+  };
+  for (const std::size_t k : Steps(turns.size())) {
+    if (k == 0) continue;
+    FreeSwing shorter = result.swing;
+    shorter.to = turns[turns.size() - k];
+    shorter.ends = "with what follows it the fit does not converge";
+    if (!converges(FitBetween(thinned, shorter, quick))) continue;
+    if (Result<SwingFit> trial = FitBetween(result.used, shorter, options); converges(trial)) return trial;
+  }
+  return result;
+}
+
+/// A swing smaller than what was left out may be the quiet end of something else.
+void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
+  constexpr double kLarger = 1.3;
+  if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
+  fit.warnings.push_back(
+      {"left_out", "outside the window the reading turns " + NumberText(swing.amplitude_outside / swing.amplitude, 2) +
+                       " times as far out as in it, but not as a free swing does; look at the "
+                       "recording, and choose with --from and --to if this is not the part you want"});
+}
+
+/// A pendulum's errors are none of something else.
+void Withdraw(const std::string& why, FitReport& fit) {
+  fit.termination = Termination::kNotConverged;
+  fit.reason = "this is not a free pendulum's swing: " + why;
+  fit.warnings.push_back({"not_a_pendulum", fit.reason});
+  WithdrawErrors("not a pendulum", fit);
+}
+
+/// Ends a window before counts are lost that cannot be told, if more than half of it is left and all that were lost in
+/// that can be.
+void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& result, ZeroJumps& jumps) {
+  constexpr int kMostTrials = 6;
+  constexpr double kLeast = 0.5, kStep = 0.05;  // of the window
+  FreeSwing shorter = swing;
+  std::optional<double> doubtful = jumps.doubtful_from;
+  const double length = swing.to - swing.from;
+  for (int trial = 0; trial < kMostTrials && doubtful; ++trial) {
+    shorter.to = std::min(std::nexttoward(*doubtful, swing.from), shorter.to - kStep * length);
+    shorter.ends = "behind it counts were lost, and how many cannot be told";
+    if (shorter.to - swing.from < kLeast * length) return;
+    Result<SwingFit> part = FitBetween(result.used, shorter, options);
+    std::optional<ZeroJumps> found = part ? FindZeroJumps(part->used, options) : std::nullopt;
+    if (!found) return;
+    doubtful = found->doubtful_from;
+    if (doubtful) continue;
+    swing = shorter;
+    result = *std::move(part);
+    jumps = *std::move(found);
+  }
+}
+
+/// Moves back the readings that counts were lost before, and fits them; says what was found.
+std::optional<ZeroJumps> MendZero(FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
+  std::optional<ZeroJumps> jumps = FindZeroJumps(result->used, options);
+  if (jumps && !swing.to_given) EndBeforeDoubt(options, swing, *result, *jumps);
+  if (jumps && jumps->AreMended()) result = FitBetween(std::exchange(jumps->corrected, {}), swing, options);
+  return jumps;
+}
+
+std::optional<std::string> WhyNoPendulum(const SwingFit& result, const std::stop_token& stop) {
+  if (result.swing.beats) return "its amplitude grows again and again, as that of two pendulums that are coupled does";
+  return WhyLinear(result.used, result.fit, stop);
+}
+
+/// Once a stop is requested, of no meaning.
+Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
+  Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
+  if (!result) return result;
+  const auto lacks = [&] {
+    return result->fit.termination != Termination::kConverged || result->fit.Warns("lack_of_fit") ||
+           result->fit.Warns("correlated_residuals");
+  };
+  std::optional<ZeroJumps> jumps;
+  if (lacks() || MayJump(result->fit)) jumps = MendZero(swing, options, result);
+  if (!result) return result;
+  if (!lacks()) {
+    WarnOfLargerMotion(swing, result->fit);
+    WarnOfJumps(jumps, false, result->fit);
+    return result;
+  }
+  if (const auto why = WhyNoPendulum(*result, options.stop)) {
+    Withdraw(*why, result->fit);
+    return result;
+  }
+  Trim(result->used, options, swing);
+  const bool disturbed = swing.from != result->swing.from || swing.to != result->swing.to;
+  if (disturbed) result = FitBetween(std::move(result->used), swing, options);
+  if (result && disturbed && !(jumps && jumps->AreMended())) jumps = MendZero(swing, options, result);
+  if (!result) return result;
+  if (result->fit.termination != Termination::kConverged && !swing.to_given) {
+    result = EndEarlier(*std::move(result), options);
+  }
+  if (disturbed) {
+    result->fit.warnings.push_back(
+        {"disturbed", "left out as disturbed: the window begins at " + NumberText(result->swing.from, 4) +
+                          " s and ends at " + NumberText(result->swing.to, 4) +
+                          " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
+  }
+  WarnOfLargerMotion(swing, result->fit);
+  WarnOfJumps(jumps, lacks(), result->fit);
+  if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit, options.stop) : std::nullopt)
+    Withdraw(*why, result->fit);
+  return result;
+}
+
+}  // namespace
+
+Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+  Result<SwingFit> result = FitUnlessStopped(std::move(recording), std::move(swing), options);
+  if (options.stop.stop_requested()) return FitStopped();
+  return result;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/not_a_pendulum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/period.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// rad/s
+double NaturalFrequencyOf(const FitReport& report) {
+  const auto found = std::ranges::find(report.derived, "natural_frequency", &DerivedQuantity::name);
+  return found == report.derived.end() ? 0 : found->estimate;
+}
+
+/// The first swings, which are the largest, in so many samples that the line of a tenth of a period can be told.
+Recording FirstSwings(const Recording& recording, const FitReport& report) {
+  constexpr Eigen::Index kMostSamples = 3000;
+  constexpr double kPerPeriod = 24;
+  const double periods_per_second = NaturalFrequencyOf(report) * recording.clock_scale / (2 * kPi);
+  return Excerpt(recording, kMostSamples, std::max(kPerPeriod * periods_per_second, 1e-9), false);
+}
+
+/// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
+std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity, const std::stop_token& stop) {
+  FitOptions options;
+  options.model = "drag";
+  options.gravity = gravity;
+  options.search.max_traces = 200;
+  options.noise = NoiseFamily::kGaussian;
+  options.interval = IntervalMethod::kCovariance;
+  options.stop = stop;
+  Result<FitReport> fit = FitRecording(recording, options);
+  if (!fit || fit->termination == Termination::kFailed) return std::nullopt;
+  return *std::move(fit);
+}
+
+std::string Percent(double share) { return NumberText(100 * share, 2) + " %"; }
+
+bool DescribesAll(const FitReport& report) {
+  return std::ranges::none_of(report.warnings, [](const Warning& warning) {
+    return warning.code == "lack_of_fit" || warning.code == "correlated_residuals";
+  });
+}
+
+/// A mass on a spring swings with one period at every amplitude. pendulum: a fit with sine gravity.
+std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum,
+                                    const std::stop_token& stop) {
+  constexpr double kSmallest = 0.2;  // rad; below it the two can hardly be told apart
+  constexpr double kMuchLess = 0.7;
+  constexpr double kSurely = 30;
+  if (recording.quantity != Quantity::kAngle) return std::nullopt;
+  const double amplitude = 0.5 * (recording.value.maxCoeff() - recording.value.minCoeff());
+  if (amplitude < kSmallest) return std::nullopt;
+  const std::optional<FitReport> linear = FitRichest(recording, Gravity::kLinear, stop);
+  if (!linear) return std::nullopt;
+  const double left = pendulum.statistics.rms_residual;
+  const double ratio = linear->statistics.rms_residual / left;
+  const double gain = -2 * static_cast<double>(recording.size()) * std::log(ratio);  // in -2 log L
+  if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
+  constexpr double kNearTop = 3.1;
+  return "the period does not depend on the amplitude as a pendulum's does, which is " +
+         Percent(PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " + NumberText(amplitude, 3) +
+         " rad: a linear oscillator leaves " + NumberText(linear->statistics.rms_residual, 3) +
+         " rad (rms), a pendulum " + NumberText(left, 3) + " rad; --model linear describes the former";
+}
+
+/// One frequency's share of the residuals.
+struct Line {
+  double frequency = 0;  // rad/s
+  double share = 0;      // of their variance
+};
+
+/// The strongest line among the frequencies up to ten times the pendulum's own, by Scargle's periodogram without its
+/// phase (Astrophys. J. 263:835, 1982), and the share of all within a fifth of it, for a mode that decays is no sharp
+/// line.
+Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
+  constexpr int kMostFrequencies = 1000;
+  constexpr double kWidth = 0.2;
+  const Eigen::ArrayXd t = time.array() - time[0];
+  const Eigen::ArrayXd& r = residual.array();
+  const Eigen::Index count = time.size();
+  const double independent = 2 * kPi / t[count - 1];
+  const double spacing = std::max(independent, 10 * natural / kMostFrequencies);
+  std::vector<Line> lines;
+  // Beyond half the sampling rate there is nothing but mirror images.
+  const double highest = std::min(10 * natural, 0.5 * independent * static_cast<double>(count - 1));
+  for (double frequency = spacing; frequency < highest; frequency += spacing) {
+    const Eigen::ArrayXd phase = frequency * t;
+    const double power = std::pow((r * phase.cos()).sum(), 2) + std::pow((r * phase.sin()).sum(), 2);
+    lines.push_back({frequency, 2 * power * spacing / (independent * static_cast<double>(count) * r.square().sum())});
+  }
+  Line strongest = *std::ranges::max_element(lines, {}, &Line::share);
+  const double centre = strongest.frequency;
+  strongest.share = 0;
+  for (const Line& line : lines) {
+    if (std::abs(line.frequency - centre) < kWidth * centre) strongest.share += line.share;
+  }
+  return strongest;
+}
+
+std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
+  constexpr double kMostOfIt = 0.4;
+  constexpr double kSmallest = 0.03;  // of the swing's rms
+  const double natural = NaturalFrequencyOf(report);
+  if (!(natural > 0)) return std::nullopt;
+  const double swing = std::sqrt((recording.value.array() - recording.value.mean()).square().mean());
+  if (!(report.statistics.rms_residual > kSmallest * swing)) return std::nullopt;
+  const Line line = StrongestLine(recording.clock_scale * recording.time, report.residual, natural);
+  const double ratio = line.frequency / natural;
+  const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);
+  if (own || line.share < kMostOfIt) return std::nullopt;
+  return Percent(line.share) + " of what the fit leaves is an oscillation with a period of " +
+         NumberText(2 * kPi / line.frequency, 4) + " s beside the pendulum's " + NumberText(2 * kPi / natural, 4) +
+         " s: two modes, of a second pendulum, a string or a loose support";
+}
+
+}  // namespace
+
+std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report, const std::stop_token& stop) {
+  if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
+  const Recording some = FirstSwings(recording, report);
+  const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
+  return richest ? IsLinear(some, *richest, stop) : std::nullopt;
+}
+
+std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report,
+                                       const std::stop_token& stop) {
+  if (report.termination == Termination::kFailed) return std::nullopt;
+  const Recording some = FirstSwings(recording, report);
+  const std::optional<FitReport> richest =
+      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear, stop);
+  return richest ? HasTwoModes(some, *richest) : std::nullopt;
+}
+
+}  // namespace pendulum

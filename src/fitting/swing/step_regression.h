@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include "fitting/residuals/burg.h"
+#include "pendulum/fitting/swing/zero_steps.h"
+
+namespace pendulum {
+
+/// Means over bins of neighbouring samples, about a hundred in a period. For M bins.
+struct Bins {
+  std::vector<Eigen::Index> first;       // M + 1: bin i has samples first[i]..first[i + 1] - 1
+  Eigen::VectorXd time, residual, rate;  // M, as in FitResiduals
+  Eigen::MatrixXd jacobian;              // M x P
+  std::vector<Stretch> stretches;        // of bins, without gaps in time
+};
+
+/// Where bins begin, and which of them follow each other without a gap in time.
+inline Bins DivideIntoBins(const FitResiduals& data) {
+  constexpr double kPerPeriod = 100;
+  constexpr double kGap = 0.25;  // of a period
+  const Eigen::Index count = data.time.size();
+  const double samples_per_second = static_cast<double>(count - 1) / (data.time[count - 1] - data.time[0]);
+  const Eigen::Index width =
+      std::max<Eigen::Index>(static_cast<Eigen::Index>(samples_per_second * data.period / kPerPeriod), 1);
+  Bins bins;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool gap = i == 0 || data.time[i] - data.time[i - 1] > kGap * data.period;
+    if (!gap && i < bins.first.back() + width) continue;
+    if (gap) bins.stretches.push_back({static_cast<Eigen::Index>(bins.first.size()), 0});
+    ++bins.stretches.back().size;
+    bins.first.push_back(i);
+  }
+  bins.first.push_back(count);
+  return bins;
+}
+
+inline Bins MakeBins(const FitResiduals& data) {
+  Bins bins = DivideIntoBins(data);
+  const auto size = static_cast<Eigen::Index>(bins.first.size()) - 1;
+  for (Eigen::VectorXd* const column : {&bins.time, &bins.residual, &bins.rate}) column->resize(size);
+  bins.jacobian.resize(size, data.jacobian.cols());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Eigen::Index begin = bins.first[static_cast<std::size_t>(i)];
+    const Eigen::Index length = bins.first[static_cast<std::size_t>(i) + 1] - begin;
+    bins.time[i] = data.time.segment(begin, length).mean();
+    bins.residual[i] = data.residual.segment(begin, length).mean();
+    bins.rate[i] = data.rate.segment(begin, length).mean();
+    bins.jacobian.row(i) = data.jacobian.middleRows(begin, length).colwise().mean();
+  }
+  return bins;
+}
+
+inline Eigen::VectorXd StepAt(Eigen::Index bin, Eigen::Index size) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(size);
+  step.tail(size - bin).setOnes();
+  return step;
+}
+
+inline Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+  Eigen::MatrixXd all(columns.rows(), columns.cols() + more.cols());
+  all << columns, more;
+  return all;
+}
+
+/// Residuals explained by K columns and an autoregression.
+struct Explained {
+  std::vector<double> memory;       // φ_1..φ_p
+  Eigen::MatrixXd basis;            // M x K, orthonormal: spans the whitened columns
+  Eigen::VectorXd rest;             // M, whitened, what these leave; 0 where a stretch begins
+  Eigen::VectorXd size, std_error;  // K
+  double sigma = 0;                 // of `rest`
+  double criterion = 0;             // -2 log L and what the order costs
+};
+
+/// Generalised least squares with the residuals' own memory.
+class StepRegression {
+ public:
+  explicit StepRegression(const FitResiduals& data) : bins_(MakeBins(data)) {
+    const auto samples = static_cast<double>(size());
+    longest_ = static_cast<int>(std::min({30.0, samples / 20, 10 * std::log10(samples)}));
+    kept_ = Eigen::VectorXd::Zero(size());
+    for (const Stretch& stretch : bins_.stretches) {
+      for (Eigen::Index i = longest_; i < stretch.size; ++i) kept_[stretch.begin + i] = 1;
+    }
+  }
+
+  Eigen::Index size() const { return bins_.time.size(); }
+
+  /// Whether there are samples to tell parameters, memory and a step from.
+  bool IsEnough() const { return kept_.sum() > 5.0 * static_cast<double>(bins_.jacobian.cols() + 1); }
+
+  const Bins& bins() const { return bins_; }
+
+  Explained Explain(const Eigen::MatrixXd& columns) const {
+    Explained explained;
+    Eigen::VectorXd left = bins_.residual - columns * columns.colPivHouseholderQr().solve(bins_.residual);
+    for (int pass = 0; pass < 2; ++pass) {
+      explained.memory = BestMemory(left);
+      Regress(columns, &explained);
+      left = bins_.residual - columns * explained.size;
+    }
+    const double kept = kept_.sum();
+    explained.criterion =
+        2 * kept * std::log(explained.sigma) + static_cast<double>(explained.memory.size()) * std::log(kept);
+    return explained;
+  }
+
+  /// The same of residuals without memory.
+  Explained ExplainAsWhite(const Eigen::MatrixXd& columns) const {
+    Explained explained;
+    Regress(columns, &explained);
+    explained.criterion = 2 * kept_.sum() * std::log(explained.sigma);
+    return explained;
+  }
+
+  /// The bin where one step more explains most, with that memory; -1: none.
+  Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
+    constexpr Eigen::Index kEdge = 3;    // bins on either side of the recording
+    constexpr double kToldApart = 1e-6;  // of a step, beside the columns
+    constexpr double kClearly = 6;       // in -2 log L
+    Explained explained;
+    explained.memory = std::move(memory);
+    Regress(columns, &explained);
+    const std::vector<double> rise = Rise(explained.memory);
+    const Eigen::VectorXd product = Along(rise, explained.rest);
+    std::vector<double> squares = rise;
+    for (double& value : squares) value *= value;
+    Eigen::VectorXd norm = Along(squares, kept_);
+    const Eigen::VectorXd smallest = kToldApart * norm;
+    for (Eigen::Index k = 0; k < explained.basis.cols(); ++k) norm -= Along(rise, explained.basis.col(k)).cwiseAbs2();
+    Eigen::Index best = -1;
+    double most = 0;
+    for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
+      if (!(norm[i] > smallest[i]) || !(product[i] * product[i] > most * norm[i])) continue;
+      most = product[i] * product[i] / norm[i];
+      best = i;
+    }
+    // Samples are lost in gaps, and counts with them: such a place is taken unless another tells clearly more.
+    for (const Stretch& stretch : bins_.stretches) {
+      const Eigen::Index i = stretch.begin;
+      const bool holds_best = i >= kEdge && i < best && best < i + stretch.size;
+      if (!holds_best || !(norm[i] > smallest[i])) continue;
+      if (most - product[i] * product[i] / norm[i] < kClearly * explained.sigma * explained.sigma) best = i;
+    }
+    return best;
+  }
+
+ private:
+  /// The order of least Schwarz criterion, by Burg's method.
+  std::vector<double> BestMemory(const Eigen::VectorXd& residual) const {
+    const std::vector<double> reflection = ReflectionCoefficients(residual, bins_.stretches, longest_);
+    const double samples = kept_.sum();
+    double criterion = 0;
+    double least = 0;
+    std::size_t best = 0;
+    for (std::size_t order = 1; order <= reflection.size(); ++order) {
+      criterion += samples * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
+      if (criterion < least) least = criterion, best = order;
+    }
+    return FromReflection({reflection.begin(), reflection.begin() + static_cast<std::ptrdiff_t>(best)});
+  }
+
+  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& columns, const std::vector<double>& memory) const {
+    Eigen::MatrixXd white = columns;
+    for (std::size_t j = 0; j < memory.size(); ++j) {
+      const auto lag = static_cast<Eigen::Index>(j) + 1;
+      white.bottomRows(size() - lag) -= memory[j] * columns.topRows(size() - lag);
+    }
+    return kept_.asDiagonal() * white;
+  }
+
+  void Regress(const Eigen::MatrixXd& columns, Explained* explained) const {
+    const Eigen::MatrixXd white = Whiten(columns, explained->memory);
+    const Eigen::VectorXd value = Whiten(bins_.residual, explained->memory);
+    const Eigen::VectorXd scale = white.colwise().norm().cwiseMax(1e-300);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(white * scale.cwiseInverse().asDiagonal());
+    explained->basis = qr.householderQ() * Eigen::MatrixXd::Identity(size(), qr.rank());
+    explained->rest = value - explained->basis * (explained->basis.transpose() * value);
+    explained->size = qr.solve(value).cwiseQuotient(scale);
+    explained->sigma = explained->rest.norm() / std::sqrt(std::max(kept_.sum() - static_cast<double>(qr.rank()), 1.0));
+    explained->std_error = explained->sigma * RootVariances(qr).cwiseQuotient(scale);
+  }
+
+  /// Standard errors of the coefficients at unit variance; infinite where a column tells nothing beside the others.
+  static Eigen::VectorXd RootVariances(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+    const Eigen::Index rank = qr.rank();
+    const Eigen::MatrixXd root = qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd inverse = root.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(rank, rank));
+    Eigen::VectorXd errors = Eigen::VectorXd::Constant(qr.cols(), std::numeric_limits<double>::infinity());
+    for (Eigen::Index k = 0; k < rank; ++k) errors[qr.colsPermutation().indices()[k]] = inverse.row(k).norm();
+    return errors;
+  }
+
+  /// What the memory makes of a step: 1, 1 - φ_1, 1 - φ_1 - φ_2, ...
+  static std::vector<double> Rise(const std::vector<double>& memory) {
+    std::vector<double> rise = {1};
+    for (const double phi : memory) rise.push_back(rise.back() - phi);
+    return rise;
+  }
+
+  /// Σ_t rise(t - i) value_t for each i, the rise staying as it ends.
+  Eigen::VectorXd Along(const std::vector<double>& rise, const Eigen::VectorXd& value) const {
+    Eigen::VectorXd sum(size());
+    double after = 0;
+    const auto length = static_cast<Eigen::Index>(rise.size()) - 1;
+    for (Eigen::Index i = size() - 1; i >= 0; --i) {
+      if (i + length < size()) after += value[i + length];
+      sum[i] = rise.back() * after;
+      for (Eigen::Index k = 0; k < std::min(length, size() - i); ++k)
+        sum[i] += rise[static_cast<std::size_t>(k)] * value[i + k];
+    }
+    return sum;
+  }
+
+  Bins bins_;
+  int longest_ = 0;
+  Eigen::VectorXd kept_;  // M: 1, or 0 where a stretch begins
+};
+
+}  // namespace pendulum

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/undersampled.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/closed_form/sampling.h"
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/start/phase_scan.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// No pendulum whose motion is recorded is shorter than 3 cm.
+constexpr double kFastestHz = 3;
+
+/// A difference of -2 log L that three standard deviations make.
+constexpr double kNearlyAsWell = 9;
+
+/// One that no misfit of a slightly wrong law makes either: ten standard deviations.
+constexpr double kFar = 100;
+
+constexpr double kTurn = 2 * kPi;
+
+/// Of a fit that is only compared: those that explain the readings need tens.
+constexpr int kMostTraces = 300;
+
+/// Where a recording's frequency may lie.
+struct Allowed {
+  FrequencyRange range;  ///< rad/s
+  bool bounded = false;  ///< By the rig or the user; else by what pendulums there are.
+};
+
+/// rad/s, small swings, of an inertia as the options have it.
+double FrequencyOf(double inertia, const FitOptions& options) {
+  return std::sqrt((options.rig ? options.rig->gravity_torque.value : 1.0) / inertia);
+}
+
+double DurationOf(const Recording& recording) {
+  return recording.clock_scale * (recording.time[recording.size() - 1] - recording.time[0]);
+}
+
+double SampleRateOf(const Recording& recording) {
+  return DescribeSampling(recording, std::nullopt, std::nullopt).rate_hz / recording.clock_scale;
+}
+
+Allowed AllowedFrequencies(const Recording& used, const FitOptions& options) {
+  Allowed allowed{{kTurn / DurationOf(used), kTurn * kFastestHz}, false};
+  if (const auto expected = ExpectedFrequency(options.rig)) {
+    allowed = {{(1 - kExpectedWithin) * kTurn * *expected, (1 + kExpectedWithin) * kTurn * *expected}, true};
+  }
+  for (const auto* values : {&options.initial, &options.fixed}) {
+    const auto inertia = values->find(kInertia.name);
+    if (inertia == values->end() || !(inertia->second > 0)) continue;
+    const double frequency = FrequencyOf(inertia->second, options);
+    allowed = {{frequency, frequency}, values == &options.fixed};
+  }
+  const auto bounds = options.bounds.find(kInertia.name);
+  if (bounds == options.bounds.end()) return allowed;
+  if (bounds->second.lower > 0) allowed.range.high = FrequencyOf(bounds->second.lower, options);
+  if (bounds->second.upper < kUnbounded) allowed.range.low = FrequencyOf(bounds->second.upper, options);
+  allowed.bounded = allowed.bounded || (bounds->second.lower > 0 && bounds->second.upper < kUnbounded);
+  return allowed;
+}
+
+/// Leaves out the readings at first that stay put, if they do: a release between two samples cannot be dated. The first
+/// may be one of them whatever the second is.
+void LeaveOutHold(Recording& used, FreeSwing& swing) {
+  const double range = used.value.maxCoeff() - used.value.minCoeff();
+  const double band = 0.05 * range + 2 * used.resolution;
+  Index held = 1;
+  while (held < used.size()) {
+    const auto first = used.value.head(held + 1);
+    if (first.maxCoeff() - first.minCoeff() > band) break;
+    ++held;
+  }
+  held = std::min(held, used.size() - kMinimumSamples);
+  if (held <= 0) return;
+  swing.from = used.time[held];
+  swing.begins += held == 1 ? ", without the first reading, before which it may have been released"
+                            : ", without the readings that stay put at first";
+  const Index left = used.size() - held;
+  used.time = used.time.tail(left).eval();
+  used.value = used.value.tail(left).eval();
+}
+
+/// A fit from one of the scan's minima.
+struct Alias {
+  StartValues start;
+  FitReport fit;
+  double frequency = 0;  ///< Hz, small swings, true seconds
+  double likelihood() const { return fit.statistics.log_likelihood; }
+};
+
+/// All minima whose frequency is allowed, the likeliest first, each once.
+Result<std::vector<Alias>> FitAliases(const Recording& used, const Allowed& allowed, FitOptions options) {
+  constexpr double kSame = 0.1;     // cycles over the recording
+  constexpr double kBeyond = 1.02;  // a range is no exact bound
+  Result<MotionModel> model = FindMotionModel(options.model);
+  if (!model) return tl::unexpected(model.error());
+  model->gravity = options.gravity.value_or(model->gravity);
+  std::optional<Status> error;
+  std::vector<Alias> aliases;
+  for (StartValues& start : ScanFrequencies(used, *model, allowed.range, options.stop)) {
+    options.search.start_values = start;
+    Result<FitReport> fit = FitRecording(used, options);
+    if (!fit) error = fit.error();
+    if (!fit || fit->termination == Termination::kFailed) continue;
+    const double frequency = FrequencyOf(fit->Find(kInertia.name)->estimate, options) / kTurn;
+    const bool inside =
+        kTurn * frequency * kBeyond > allowed.range.low && kTurn * frequency < kBeyond * allowed.range.high;
+    if (inside) aliases.push_back({std::move(start), *std::move(fit), frequency});
+  }
+  if (options.stop.stop_requested()) return FitStopped();
+  if (aliases.empty() && error) return tl::unexpected(*error);
+  std::ranges::stable_sort(aliases, std::ranges::greater(), &Alias::likelihood);
+  std::vector<Alias> distinct;
+  for (Alias& alias : aliases) {
+    const bool known = std::ranges::any_of(distinct, [&](const Alias& other) {
+      return std::abs(other.frequency - alias.frequency) * DurationOf(used) < kSame;
+    });
+    if (!known) distinct.push_back(std::move(alias));
+  }
+  return distinct;
+}
+
+std::string Hz(double frequency) { return NumberText(frequency, 3) + " Hz"; }
+
+/// "0.079 kg m^2 (0.76 Hz), 0.0456 kg m^2 (1 Hz)".
+std::string ListOf(const std::vector<const Alias*>& aliases) {
+  std::string list;
+  for (const Alias* alias : aliases) {
+    const ParameterEstimate& inertia = *alias->fit.Find(kInertia.name);
+    list += (list.empty() ? "" : ", ") + NumberText(inertia.estimate, 4) + " " + inertia.unit + " (" +
+            Hz(alias->frequency) + ")";
+  }
+  return list;
+}
+
+/// The likeliest and those that explain the readings nearly as well.
+std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double within) {
+  std::vector<const Alias*> near;
+  for (const Alias& alias : aliases) {
+    if (2 * (aliases.front().likelihood() - alias.likelihood()) <= within) near.push_back(&alias);
+  }
+  return near;
+}
+
+/// What does not describe the readings may seem noise, for nothing follows from one sample to the next.
+std::optional<std::string> WhyNotDescribed(const Recording& used, const FitReport& fit) {
+  constexpr double kMostUnexplained = 0.02;
+  constexpr Index kFewestPerParameter = 2;
+  const double variance = (used.value.array() - used.value.mean()).square().sum();
+  const double left = fit.residual.squaredNorm() / variance;
+  if (left > kMostUnexplained) {
+    return "the best trajectory leaves " + NumberText(100 * left, 2) +
+           " % of the reading's variance unexplained, and samples so far apart cannot tell noise from another motion";
+  }
+  const auto parameters = static_cast<Index>(fit.parameters.size());
+  if (used.size() >= kFewestPerParameter * parameters) return std::nullopt;
+  return std::to_string(used.size()) + " samples are too few for " + std::to_string(parameters) +
+         " parameters and a choice among frequencies; record for longer";
+}
+
+/// Where nothing bounds the frequency only the slowest pendulum may be trusted, and only where it is sampled well and
+/// no faster one is possible.
+std::optional<std::string> WhyUnbounded(const std::vector<Alias>& aliases, double rate) {
+  constexpr double kWell = 8;         // samples a period
+  constexpr double kTurnsShow = 4.5;  // where no pendulum could alias so
+  const double frequency = aliases.front().frequency;
+  const bool slowest = frequency < 0.5 * rate;
+  const bool alone = NearlyAsGood(aliases, kFar).size() == 1;
+  const bool cannot_alias = rate - frequency > kFastestHz;
+  if (slowest && alone && rate > (cannot_alias ? kTurnsShow : kWell) * frequency) return std::nullopt;
+  return "sampled at " + Hz(rate) + " the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
+         " or, seen too seldom, faster; the readings suggest " + Hz(frequency) +
+         ", but only a rig's inertia bounds it: give --rig with rod and bob or with \"inertia\", --bounds of inertia, "
+         "or sample at 6 Hz or faster";
+}
+
+/// Whether even samples come at nearly the same two phases of a swing, over all of the recording.
+bool StandsStill(const Recording& used, double frequency) {
+  constexpr double kTooNear = 1;  // cycles over the recording
+  constexpr double kEven = 0.02;  // cycles; stamps that scatter by more show other phases
+  const double jitter = used.clock_scale * DescribeSampling(used, std::nullopt, std::nullopt).jitter;
+  const double apparent = 0.5 * ApparentFrequency(2 * frequency, SampleRateOf(used));
+  return apparent * DurationOf(used) < kTooNear && jitter * frequency < kEven;
+}
+
+/// What the samples leave open, or nothing.
+std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector<Alias>& aliases,
+                                        const Allowed& allowed) {
+  const double rate = SampleRateOf(used);
+  const auto near = NearlyAsGood(aliases, kNearlyAsWell);
+  if (near.size() > 1) {
+    return "several inertias explain the readings nearly as well, for samples at " + Hz(rate) +
+           " look alike: " + ListOf(near) + "; sample faster";
+  }
+  if (const double frequency = aliases.front().frequency; StandsStill(used, frequency)) {
+    return "sampled at " + Hz(rate) + ", once or twice a swing of " + Hz(frequency) +
+           ", all readings of the pendulum come at nearly the same two phases: a frequency a little lower and one a "
+           "little higher look the same; sample at another rate";
+  }
+  return allowed.bounded ? std::nullopt : WhyUnbounded(aliases, rate);
+}
+
+/// What rests on an assumption though it is told alone.
+std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed, double rate) {
+  const std::string chosen = ListOf({&aliases.front()});
+  if (!allowed.bounded) {
+    return "sampled at " + Hz(rate) + " a pendulum faster than " + Hz(0.5 * rate) +
+           " would look slower than it is; of those up to " + Hz(kFastestHz) + " none but " + chosen +
+           " explains the readings; a rig file with masses and length would settle it";
+  }
+  return "samples at " + Hz(rate) + " tell frequencies to both sides of a multiple of " + Hz(0.5 * rate) +
+         " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";
+}
+
+/// Whether the readings fit far better at a frequency that the rig does not let expect.
+std::optional<std::string> WhyBeyondTheRig(const Recording& used, const FitReport& fit, const FitOptions& options) {
+  const auto expected = ExpectedFrequency(options.rig);
+  if (!expected || options.bounds.contains(kInertia.name) || options.fixed.contains(kInertia.name)) return std::nullopt;
+  const Allowed wide{{0.5 * kTurn * *expected, 2 * kTurn * *expected}, false};
+  const Result<std::vector<Alias>> aliases = FitAliases(used, wide, options);
+  if (!aliases || aliases->empty()) return std::nullopt;
+  const Alias& best = aliases->front();
+  if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kFar) return std::nullopt;
+  return "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " + Hz(*expected) +
+         " that the rig lets expect; check the rig, or give --bounds of inertia";
+}
+
+/// Why a fit does not stand, whatever its own errors.
+struct Refusal {
+  Termination termination;
+  std::string why;
+};
+
+std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
+                                 const FitOptions& options) {
+  if (const auto why = WhyNotDescribed(used, aliases.front().fit)) return Refusal{Termination::kNotConverged, *why};
+  auto why = WhyAmbiguous(used, aliases, allowed);
+  if (!why) why = WhyBeyondTheRig(used, aliases.front().fit, options);
+  return why ? std::optional(Refusal{Termination::kNotIdentifiable, *why}) : std::nullopt;
+}
+
+/// Takes a fit for what the samples can tell.
+void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
+              const std::optional<Refusal>& refusal, FitReport& fit) {
+  const double rate = SampleRateOf(used);
+  const bool mirrors = HoldsMirror(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
+  const bool ambiguous = refusal && refusal->termination == Termination::kNotIdentifiable;
+  if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", refusal->why});
+  if (!refusal && mirrors) fit.warnings.push_back({"ambiguous_frequency", Assumption(aliases, allowed, rate)});
+  // A start from a scan is no estimate in closed form.
+  for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
+  if (!refusal) return;
+  fit.termination = refusal->termination;
+  fit.reason = refusal->why;
+  WithdrawErrors("the fit is " + std::string(TerminationName(fit.termination)), fit);
+}
+
+/// What is expected of the rig, or else found beyond doubt, beside the sampling.
+void WarnOfSampling(const Recording& used, double frequency, const FitOptions& options, FitReport& fit) {
+  auto expected = ExpectedFrequency(options.rig);
+  if (expected && fit.termination == Termination::kConverged) expected = frequency;
+  if (expected) *expected *= used.clock_scale;
+  std::optional<double> half_period;
+  if (!expected && fit.termination == Termination::kConverged) half_period = 0.5 / (frequency * used.clock_scale);
+  for (Warning& warning : SamplingWarnings(DescribeSampling(used, half_period, expected))) {
+    fit.warnings.push_back(std::move(warning));
+  }
+}
+
+/// What makes a recording that shows each swing seem undersampled; empty where it may be.
+std::string AbsurdPeriod(const Recording& recording) {
+  constexpr double kLongest = 300;  // s: twenty kilometres of string
+  constexpr double kSeen = 20;      // samples a period, which a faster swing would hardly look like
+  const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
+  if (!swings || swings->empty()) return "";
+  const double period = 2 * swings->front().half_period * recording.clock_scale;
+  if (!(period > kLongest) || SampleRateOf(recording) * period < kSeen) return "";
+  return "the period is " + NumberText(period, 3) +
+         " s, which no pendulum has; if the times are milliseconds or microseconds, name their column time_ms or "
+         "time_us";
+}
+
+}  // namespace
+
+std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
+  if (!rig || !rig->inertia) return std::nullopt;
+  return std::sqrt(rig->gravity_torque.value / rig->inertia->value) / kTurn;
+}
+
+bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
+  // Measured: with 7.2 samples a period of the reference rig FindFreeSwings finds 600 of 600 swings, with 6.6 it misses
+  // 31 and with 5.9 most, from 0.1 to 1.2 rad.
+  constexpr double kFewestPerPeriod = 7;
+  const auto expected = ExpectedFrequency(rig);
+  const double rate = SampleRateOf(recording);
+  if (expected) return rate < kFewestPerPeriod * (1 + kExpectedWithin) * *expected;
+  if (rate >= 2 * kFastestHz) return false;
+  const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
+  return !swings || std::ranges::any_of(*swings, [&](const FreeSwing& swing) {
+    const double seen = 0.5 / (swing.half_period * recording.clock_scale);
+    return rate < kFewestPerPeriod * seen || rate - seen <= kFastestHz;
+  });
+}
+
+FreeSwing WholeRecording(const Recording& recording) {
+  FreeSwing swing;
+  swing.from = recording.time[0];
+  swing.to = recording.time[recording.size() - 1];
+  swing.begins = "sampled too slowly to see half swings: the whole recording";
+  swing.ends = "the end of the recording";
+  swing.undersampled = true;
+  return swing;
+}
+
+Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (options.start == StartKind::kRelease) {
+    return Error(StatusCode::kFailedPrecondition,
+                 "sampled too slowly to date a release; --start moving fits what follows it");
+  }
+  if (!ExpectedFrequency(options.rig)) {
+    if (const std::string absurd = AbsurdPeriod(recording); !absurd.empty()) {
+      return Error(StatusCode::kFailedPrecondition, absurd);
+    }
+  }
+  Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  used->warnings.clear();
+  if (used->value.maxCoeff() == used->value.minCoeff()) {
+    return Error(StatusCode::kFailedPrecondition, "the reading is constant: no swing");
+  }
+  LeaveOutHold(*used, swing);
+  const Allowed allowed = AllowedFrequencies(*used, options);
+  FitOptions moving = options;
+  moving.start = StartKind::kMoving;
+  moving.interval = IntervalMethod::kCovariance;
+  moving.search.max_traces = std::min(options.search.max_traces, kMostTraces);
+  Result<std::vector<Alias>> aliases = FitAliases(*used, allowed, moving);
+  if (!aliases) return tl::unexpected(aliases.error());
+  if (aliases->empty()) {
+    return Error(StatusCode::kFailedPrecondition, "no pendulum of " + Hz(allowed.range.low / kTurn) + " to " +
+                                                      Hz(allowed.range.high / kTurn) +
+                                                      " swings as the readings do; look at --rig, or sample faster");
+  }
+  const std::optional<Refusal> refusal = RefusalOf(*used, *aliases, allowed, moving);
+  FitReport fit = aliases->front().fit;
+  if (!refusal) {
+    moving = options;
+    moving.start = StartKind::kMoving;
+    moving.search.start_values = aliases->front().start;
+    Result<FitReport> best = FitRecording(*used, moving);
+    if (!best) return tl::unexpected(best.error());
+    fit = *std::move(best);
+  }
+  const double frequency = aliases->front().frequency;
+  swing.half_period = 0.5 / (frequency * used->clock_scale);
+  Conclude(*used, *aliases, allowed, refusal, fit);
+  WarnOfSampling(*used, frequency, options, fit);
+  return SwingFit{*std::move(used), std::move(swing), std::move(fit)};
+}
+
+}  // namespace pendulum

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/zero_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "fitting/swing/step_regression.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// Powers of time, from -1 to 1, without the zeroth.
+Eigen::MatrixXd Drift(const Bins& bins, int degree) {
+  const Index size = bins.time.size();
+  const Eigen::ArrayXd t = (bins.time.array() - bins.time[0]) / (bins.time[size - 1] - bins.time[0]) * 2 - 1;
+  Eigen::MatrixXd drift(size, degree);
+  for (int k = 0; k < degree; ++k) drift.col(k) = t.pow(k + 1);
+  return drift;
+}
+
+/// Other explanations of what looks like a step at a bin: a zero that drifts, a spike, a kink, a pendulum that was
+/// touched then, a clock that slipped.
+std::vector<Eigen::MatrixXd> Rivals(const Bins& bins, Index bin) {
+  const Index size = bins.time.size();
+  const Eigen::ArrayXd t = bins.time.array() - bins.time[0];
+  std::vector<Eigen::MatrixXd> rivals = {Drift(bins, 3)};
+  Eigen::MatrixXd spike = Eigen::MatrixXd::Zero(size, 2);
+  spike(bin, 0) = spike(std::max<Index>(bin - 1, 0), 1) = 1;
+  rivals.push_back(spike);
+  for (const Index kink : {bin - 1, bin}) rivals.emplace_back((t - t[std::max<Index>(kink, 0)]).max(0).matrix());
+  Eigen::MatrixXd touched = bins.jacobian.leftCols(bins.jacobian.cols() - 1);
+  touched.topRows(bin).setZero();
+  rivals.push_back(touched);
+  Eigen::VectorXd slipped = bins.rate;
+  slipped.head(bin).setZero();
+  rivals.emplace_back(slipped);
+  return rivals;
+}
+
+/// The sample of a step that was found at a bin: where residuals change from their mean in the bin before those next to
+/// it to that and the step.
+Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double size) {
+  const auto first = [&](Index k) {
+    return bins.first[static_cast<std::size_t>(std::clamp<Index>(k, 0, bins.time.size()))];
+  };
+  const Index begin = first(bin - 1), end = first(bin + 1);
+  if (end - begin <= 2 || bin < 2) return first(bin);
+  const double before = bins.residual[bin - 2];
+  double sum = 0;  // of squares, over those if the step were at `begin`
+  double least = 0;
+  Index best = begin;
+  for (Index i = begin; i < end; ++i) {
+    const double left = data.residual[i] - before;
+    sum += left * left - (left - size) * (left - size);
+    if (sum < least) least = sum, best = i + 1;
+  }
+  return best;
+}
+
+/// Steps found one after the other, and what they and the fit's parameters leave.
+class Pursuit {
+ public:
+  explicit Pursuit(const StepRegression& regression)
+      : regression_(regression), now_(regression.Explain(regression.bins().jacobian)) {}
+
+  std::size_t size() const { return places_.size(); }
+
+  /// -2 log L, with what memory and steps cost.
+  double criterion() const { return now_.criterion + kPerStep * static_cast<double>(size()); }
+
+  /// Takes all at once the steps that leave white noise; false where none do. Steps that are many hide each other: each
+  /// alone is no more than part of a slow memory.
+  bool AddAll(int most) {
+    if (!AddAsWhite(most)) return false;
+    EraseDoubtful();
+    Settle();
+    return size() > 0 && now_.memory.empty() && BeatDrift();
+  }
+
+  /// Adds the step that explains most, if it is one.
+  bool Add() {
+    const std::optional<Trial> best = BestTrial();
+    if (!best) return false;
+    const double gain = now_.criterion - best->explained.criterion;
+    if (!(gain > kSure)) return false;
+    if (!(gain > kClearly + BestRival(best->place))) return false;
+    places_.push_back(best->place);
+    now_ = best->explained;
+    Settle();
+    return true;
+  }
+
+  std::vector<ZeroStep> Steps(const FitResiduals& data) const {
+    std::vector<ZeroStep> steps;
+    const Index first = regression_.bins().jacobian.cols();
+    for (std::size_t k = 0; k < size(); ++k) {
+      const Index column = first + static_cast<Index>(k);
+      const Index sample = SampleOf(data, regression_.bins(), places_[k], now_.size[column]);
+      steps.push_back({sample, now_.size[column], now_.std_error[column]});
+    }
+    return steps;
+  }
+
+ private:
+  static constexpr double kSure = 36;     // in -2 log L
+  static constexpr double kClearly = 10;  // likewise
+  static constexpr double kPerStep = 20;  // likewise
+
+  struct Trial {
+    Index place = 0;
+    Explained explained;
+  };
+
+  Eigen::MatrixXd Columns(const std::vector<Index>& places) const {
+    const Index parameters = regression_.bins().jacobian.cols();
+    Eigen::MatrixXd columns(regression_.size(), parameters + static_cast<Index>(places.size()));
+    columns.leftCols(parameters) = regression_.bins().jacobian;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      columns.col(parameters + static_cast<Index>(k)) = StepAt(places[k], regression_.size());
+    }
+    return columns;
+  }
+
+  /// Steps that explain most one after the other; false where so many are not enough.
+  bool AddAsWhite(int most) {
+    Explained white = regression_.ExplainAsWhite(Columns(places_));
+    while (static_cast<int>(size()) < most) {
+      const Index place = regression_.BestPlace(Columns(places_), {});
+      if (place < 0) return true;
+      places_.push_back(place);
+      Explained next = regression_.ExplainAsWhite(Columns(places_));
+      if (!(white.criterion - next.criterion > kSure)) {
+        places_.pop_back();
+        return true;
+      }
+      white = std::move(next);
+    }
+    return false;
+  }
+
+  /// Takes steps out again that are not told from none beside the others, one by one.
+  void EraseDoubtful() {
+    now_ = regression_.Explain(Columns(places_));
+    while (size() > 0) {
+      const auto steps = static_cast<Index>(size());
+      Index least = 0;
+      const Eigen::ArrayXd deviations = (now_.size.tail(steps).array() / now_.std_error.tail(steps).array()).abs();
+      if (deviations.minCoeff(&least) > std::sqrt(kSure)) return;
+      places_.erase(places_.begin() + least);
+      now_ = regression_.Explain(Columns(places_));
+    }
+  }
+
+  /// Whether all steps together explain more than a zero that drifts slowly, which small ones imitate.
+  bool BeatDrift() const {
+    constexpr int kDegree = 6;
+    const Bins& bins = regression_.bins();
+    const double drift = regression_.Explain(WithColumns(bins.jacobian, Drift(bins, kDegree))).criterion;
+    const double each = std::log(static_cast<double>(regression_.size()));
+    return criterion() + kClearly < drift + each * kDegree;
+  }
+
+  /// What the best of the other explanations gains, by Schwarz's criterion beside a step's.
+  double BestRival(Index place) const {
+    const Eigen::MatrixXd columns = Columns(places_);
+    const double each = std::log(static_cast<double>(regression_.size()));
+    double most = 0;
+    for (const Eigen::MatrixXd& rival : Rivals(regression_.bins(), place)) {
+      const double gain = now_.criterion - regression_.Explain(WithColumns(columns, rival)).criterion;
+      most = std::max(most, gain - each * static_cast<double>(rival.cols() - 1));
+    }
+    return most;
+  }
+
+  /// One step more, at the best place for independent residuals or for those with the memory that is left now.
+  std::optional<Trial> BestTrial() const {
+    const Eigen::MatrixXd columns = Columns(places_);
+    std::optional<Trial> best;
+    for (const auto& memory : {std::vector<double>{}, now_.memory}) {
+      const Index place = regression_.BestPlace(columns, memory);
+      if (place < 0) continue;
+      Explained with = regression_.Explain(WithColumns(columns, StepAt(place, regression_.size())));
+      if (!best || with.criterion < best->explained.criterion) best = {place, std::move(with)};
+    }
+    return best;
+  }
+
+  /// Moves the newest step and its neighbours where they explain most beside the others.
+  void Settle() {
+    constexpr int kMostPasses = 3;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      std::ranges::sort(places_);
+      bool moved = false;
+      for (std::size_t k = 0; k < size(); ++k) moved = Move(k) || moved;
+      if (!moved) break;
+    }
+    now_ = regression_.Explain(Columns(places_));
+  }
+
+  bool Move(std::size_t k) {
+    std::vector<Index> others = places_;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const Index place = regression_.BestPlace(Columns(others), now_.memory);
+    if (place < 0 || place == places_[k]) return false;
+    std::vector<Index> moved = places_;
+    moved[k] = place;
+    Explained with = regression_.Explain(Columns(moved));
+    if (!(with.criterion < now_.criterion)) return false;
+    places_ = std::move(moved);
+    now_ = std::move(with);
+    return true;
+  }
+
+  const StepRegression& regression_;
+  std::vector<Index> places_;  // bins
+  Explained now_;
+};
+
+}  // namespace
+
+std::vector<ZeroStep> FindZeroSteps(const FitResiduals& residuals, int most, const std::stop_token& stop) {
+  const StepRegression regression(residuals);
+  if (!regression.IsEnough()) return {};
+  Pursuit pursuit(regression);
+  while (static_cast<int>(pursuit.size()) < most && !stop.stop_requested() && pursuit.Add()) {
+  }
+  constexpr int kMostAtOnce = 24;
+  Pursuit all(regression);
+  const bool better = all.AddAll(std::min(most, kMostAtOnce)) && all.criterion() < pursuit.criterion();
+  return (better ? all : pursuit).Steps(residuals);
+}
+
+}  // namespace pendulum

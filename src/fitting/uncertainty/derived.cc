@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/uncertainty/derived.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/model/friction/viscous.h"
+
+namespace pendulum {
+namespace {
+
+/// factor · inertia^a · p^b: every derived quantity is such a product (b is -1, 0 or 1).
+struct PowerProduct {
+  std::string name;
+  std::string unit;
+  double factor;
+  double inertia_power;
+  int other;  // index of p
+  int other_power;
+};
+
+double Estimate(const PowerProduct& product, const std::vector<double>& p) {
+  return product.factor * std::pow(p[0], product.inertia_power) * std::pow(p[product.other], product.other_power);
+}
+
+double StdError(const PowerProduct& product, const std::vector<double>& p, const Eigen::MatrixXd& covariance) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance.rows());
+  gradient[0] = product.inertia_power * Estimate(product, p) / p[0];
+  if (product.other_power != 0) {
+    PowerProduct lowered = product;
+    lowered.factor *= product.other_power;
+    lowered.other_power -= 1;
+    gradient[product.other] = Estimate(lowered, p);
+  }
+  return std::sqrt(gradient.dot(covariance * gradient));
+}
+
+/// Unit of (parameter / inertia), from the parameter's unit per G over s^2.
+std::string UnitOverInertia(const ParameterInfo& info) {
+  if (info.relative_unit == "s") return "1/s";
+  if (info.relative_unit == "1") return "1/s^2";
+  if (info.relative_unit == "s^2") return "1";
+  return std::string(info.relative_unit) + "/s^2";
+}
+
+std::vector<PowerProduct> PowerProducts(const std::vector<ParameterInfo>& infos,
+                                        const std::vector<double>& parameters) {
+  std::vector<PowerProduct> products = {{"natural_frequency", "rad/s", 1, -0.5, 0, 0},
+                                        {"small_angle_period", "s", 2 * kPi, 0.5, 0, 0},
+                                        {"gravity_over_inertia", "1/s^2", 1, -1, 0, 0}};
+  for (int i = 1; i < static_cast<int>(infos.size()); ++i) {
+    if (!infos[i].scales_with_gravity()) continue;
+    products.push_back({std::string(infos[i].name) + "_over_inertia", UnitOverInertia(infos[i]), 1, -1, i, 1});
+    if (infos[i].name != kViscous.name) continue;
+    products.push_back({"damping_ratio", "1", 0.5, -0.5, i, 1});
+    if (parameters[i] > 0) products.push_back({"quality_factor", "1", 1, 0.5, i, -1});
+  }
+  return products;
+}
+
+/// Signed distances from the estimate, of the ends of a derived quantity's interval.
+class Distances {
+ public:
+  /// Carries one end of parameter i over; an end that is missing is infinitely far on the side it lies on.
+  void Add(const PowerProduct& product, std::vector<double> p, int i, const IntervalEnds& ends) {
+    const double at = Estimate(product, p);
+    const double power = i == 0 ? product.inertia_power : product.other_power;
+    for (const bool low : {true, false}) {
+      const std::optional<double>& end = low ? ends.lower : ends.upper;
+      p[i] = end.value_or(0);
+      const double distance = end ? Estimate(product, p) - at : kUnbounded;
+      double& square = (power > 0) == low ? below_ : above_;
+      square += distance * distance;
+    }
+  }
+
+  std::optional<double> Below(double estimate) const { return End(estimate, -std::sqrt(below_)); }
+  std::optional<double> Above(double estimate) const { return End(estimate, std::sqrt(above_)); }
+
+ private:
+  static std::optional<double> End(double estimate, double distance) {
+    return std::isfinite(distance) ? std::optional(estimate + distance) : std::nullopt;
+  }
+
+  double below_ = 0;
+  double above_ = 0;
+};
+
+}  // namespace
+
+std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
+                                               const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
+                                               const std::vector<int>& at_bound) {
+  std::vector<DerivedQuantity> derived;
+  for (const PowerProduct& product : PowerProducts(infos, parameters)) {
+    derived.push_back({product.name, product.unit, Estimate(product, parameters), {}, {}, {}});
+    const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
+    if (covariance == nullptr || bounded) continue;
+    const double error = StdError(product, parameters, *covariance);
+    if (error > 0) derived.back().std_error = error;
+  }
+  return derived;
+}
+
+/// Each end of a parameter is carried over with the others at their estimates, and the distances are added in squares.
+void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
+                         const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
+  const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
+  for (std::size_t k = 0; k < derived.size(); ++k) {
+    const PowerProduct& product = products[k];
+    Distances distances;
+    distances.Add(product, parameters, 0, intervals[0]);
+    if (product.other_power != 0) distances.Add(product, parameters, product.other, intervals[product.other]);
+    derived[k].lower95 = distances.Below(derived[k].estimate);
+    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // of what is not negative
+    derived[k].upper95 = distances.Above(derived[k].estimate);
+  }
+}
+
+}  // namespace pendulum

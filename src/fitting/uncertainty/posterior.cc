@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/uncertainty/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <boost/random/exponential_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+
+#include "fitting/likelihood/line_likelihood.h"
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/solve/covariance.h"
+#include "pendulum/fitting/start/fit_options.h"
+
+namespace pendulum {
+namespace {
+
+tl::unexpected<Status> Invalid(std::string message) { return Error(StatusCode::kInvalidArgument, std::move(message)); }
+
+Result<void> CheckSizes(const LinearizedFit& fit) {
+  const Eigen::Index samples = fit.value.size();
+  const Eigen::Index parameters = fit.jacobian.cols();
+  if (samples == 0 || parameters == 0) return Invalid("a posterior needs samples and parameters; there are none");
+  if (fit.readings.size() != samples || fit.jacobian.rows() != samples) {
+    return Invalid("there are " + std::to_string(samples) + " values, " + std::to_string(fit.readings.size()) +
+                   " readings and " + std::to_string(fit.jacobian.rows()) + " rows of the Jacobian; they must agree");
+  }
+  for (const Eigen::VectorXd* vector : {&fit.lower, &fit.upper, &fit.prior_mean, &fit.prior_weight}) {
+    if (vector->size() == parameters) continue;
+    return Invalid("bounds and priors must be given for each of " + std::to_string(parameters) + " parameters, not " +
+                   std::to_string(vector->size()));
+  }
+  return {};
+}
+
+Result<void> CheckValues(const LinearizedFit& fit) {
+  if (!fit.value.allFinite() || !fit.readings.allFinite() || !fit.jacobian.allFinite() || !fit.prior_mean.allFinite() ||
+      !fit.prior_weight.allFinite()) {
+    return Invalid("values, readings, Jacobian and priors must be finite numbers");
+  }
+  const NoiseModel& noise = fit.noise;
+  if (noise.family != NoiseFamily::kQuantized || !(noise.resolution > 0) || !std::isfinite(noise.resolution)) {
+    return Invalid("the noise is " + std::string(NoiseFamilyName(noise.family)) + " with resolution " +
+                   NumberText(noise.resolution) + "; a posterior is drawn of quantized noise with a resolution");
+  }
+  if (!(noise.sigma >= 0)) return Invalid("sigma is " + NumberText(noise.sigma) + "; it must be 0 or more");
+  for (Eigen::Index j = 0; j < fit.lower.size(); ++j) {
+    if (fit.lower[j] <= 0 && fit.upper[j] >= 0 && fit.lower[j] < fit.upper[j]) continue;
+    return Invalid("parameter " + std::to_string(j) + " is bound to " + NumberText(fit.lower[j]) + " .. " +
+                   NumberText(fit.upper[j]) + " of its fitted value; that must be an interval about 0");
+  }
+  return {};
+}
+
+/// Coordinates in which the posterior is about white: δ = centre + root · w.
+struct Frame {
+  Eigen::VectorXd centre;
+  Eigen::MatrixXd root;  // F x F
+};
+
+/// From the information that the readings would have at a σ no smaller than a tenth of a count. As at the fitted values
+/// there may be next to none, a little is added for every level.
+Result<Frame> FirstFrame(const LinearizedFit& fit) {
+  constexpr double kLeastSigma = 0.1;
+  constexpr double kLeastWeight = 0.01;
+  NoiseModel noise = fit.noise;
+  noise.sigma = std::max(noise.sigma, kLeastSigma * noise.resolution);
+  Eigen::VectorXd weight(fit.value.size());
+  for (Eigen::Index i = 0; i < weight.size(); ++i) {
+    const double least = noise.IsCensored(fit.value[i]) ? 0 : kLeastWeight / (noise.resolution * noise.resolution);
+    weight[i] = noise.LikelihoodAt(fit.value[i], fit.readings[i]).information + least;
+  }
+  Eigen::MatrixXd information = fit.jacobian.transpose() * weight.asDiagonal() * fit.jacobian;
+  information.diagonal() += fit.prior_weight.cwiseAbs2();
+  std::vector<int> all(static_cast<std::size_t>(fit.jacobian.cols()));
+  std::iota(all.begin(), all.end(), 0);
+  const InformationInverse inverse = InvertInformation(information, all);
+  if (!inverse.identifiable) {
+    std::string names;
+    for (const int j : inverse.direction) names.append(" ").append(std::to_string(j));
+    return Error(StatusCode::kFailedPrecondition, "some combination of the parameters" + names +
+                                                      " leaves no trace in the readings; hold one of them fixed");
+  }
+  return Frame{Eigen::VectorXd::Zero(fit.lower.size()), inverse.matrix.llt().matrixL()};
+}
+
+/// A stretch of a line, and where on it to begin.
+struct Stretch {
+  double from = -kInfinity;
+  double to = kInfinity;
+  double start = 0;
+  double width = 1;  // typical of a slice
+};
+
+using Generator = std::mt19937_64;
+
+/// Where on a line, and the log-density there.
+struct Point {
+  double x, log;
+};
+
+/// One step of slice sampling. density(x, floor) may return anything less than `floor` where it is less.
+template <typename LogDensity>
+Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDensity density) {
+  constexpr int kMostSteps = 40;
+  boost::random::uniform_01<double> uniform;
+  const double level = log_here - boost::random::exponential_distribution<double>()(generator);
+  double left = stretch.start - uniform(generator) * stretch.width;
+  double right = left + stretch.width;
+  int steps_left = static_cast<int>(kMostSteps * uniform(generator));
+  int steps_right = kMostSteps - 1 - steps_left;
+  while (left > stretch.from && steps_left-- > 0 && density(left, level) >= level) left -= stretch.width;
+  while (right < stretch.to && steps_right-- > 0 && density(right, level) >= level) right += stretch.width;
+  left = std::max(left, stretch.from);
+  right = std::min(right, stretch.to);
+  constexpr int kMostHalvings = 200;  // rounding may hide the slice
+  for (int k = 0; k < kMostHalvings; ++k) {
+    const double x = left + uniform(generator) * (right - left);
+    const double log = density(x, level);
+    if (log >= level) return {x, log};
+    (x < stretch.start ? left : right) = x;
+  }
+  return {stretch.start, log_here};
+}
+
+/// R x (F + 1): δ and σ, the latter in units of the resolution.
+using Draws = Eigen::MatrixXd;
+
+constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolution
+
+/// The Markov chain: slice sampling along orthogonal directions, turned at random before every round, of coordinates in
+/// which earlier draws are white, for without noise the posterior is uniform on a polytope; then along log σ. Lengths
+/// of readings in units of the resolution.
+class Chain {
+ public:
+  Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop);
+  Draws Run(int rounds);  ///< Without meaning when stopped.
+
+  /// Turns to coordinates in which these draws are white.
+  void Whiten(const Draws& draws);
+
+  double work() const { return likelihood_.work(); }
+  bool is_stopped() const { return stop_.stop_requested(); }
+
+ private:
+  void Round();
+  void MoveAlong(const Eigen::VectorXd& direction);
+  void MoveSigma();
+  Stretch WithinBounds(const Eigen::VectorXd& step) const;
+  Eigen::VectorXd Delta() const { return frame_.centre + frame_.root * w_; }
+  double LogPrior(const Eigen::VectorXd& delta) const;
+  double LogEverywhere(const Eigen::VectorXd& w, double floor);
+  void EnterFrame(Frame frame, const Eigen::VectorXd& delta);
+
+  const LinearizedFit& fit_;
+  const std::stop_token& stop_;
+  Generator generator_;
+  LevelSamples samples_;  // slopes by δ
+  Frame frame_;
+  LevelSamples whitened_;       // slopes by w
+  LevelSamples active_;         // those of them that may leave their level within these:
+  double most_distance_ = 1e9;  // of w from 0
+  double most_sigma_ = kMostSigma;
+  LineLikelihood likelihood_;
+  Eigen::VectorXd w_;
+  double log_sigma_;
+  double log_ = 0;             // likelihood and prior of δ
+  Eigen::VectorXd positions_;  // of the active samples
+};
+
+Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop)
+    : fit_(fit),
+      stop_(stop),
+      generator_(seed),
+      samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
+  constexpr double kLeastStart = 0.05;  // a smaller one would hold the chain where it begins
+  log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kLeastStart, kMostSigma));
+  EnterFrame(std::move(frame), Eigen::VectorXd::Zero(fit.jacobian.cols()));
+}
+
+void Chain::EnterFrame(Frame frame, const Eigen::VectorXd& delta) {
+  frame_ = std::move(frame);
+  w_ = frame_.root.triangularView<Eigen::Lower>().solve(delta - frame_.centre);
+  whitened_ = samples_;
+  whitened_.position += samples_.slope * frame_.centre;
+  whitened_.slope = samples_.slope * frame_.root;
+  constexpr double kCertain = 8.5;  // σ within the edge: the probability is 1 to rounding
+  active_ = whitened_.Near(kCertain * most_sigma_, most_distance_);
+  likelihood_.SetSigma(std::exp(log_sigma_));
+  log_ = LogEverywhere(w_, -kInfinity);
+}
+
+double Chain::LogPrior(const Eigen::VectorXd& delta) const {
+  return -0.5 * (delta - fit_.prior_mean).cwiseProduct(fit_.prior_weight).squaredNorm();
+}
+
+double Chain::LogEverywhere(const Eigen::VectorXd& w, double floor) {
+  const double prior = LogPrior(frame_.centre + frame_.root * w);
+  const Eigen::VectorXd positions = whitened_.position + whitened_.slope * w;
+  return prior + likelihood_.Sum(whitened_, positions, positions, 0, floor - prior);
+}
+
+Stretch Chain::WithinBounds(const Eigen::VectorXd& step) const {
+  constexpr double kWidth = 3;  // standard deviations
+  Stretch stretch;
+  stretch.width = kWidth;
+  const Eigen::VectorXd delta = Delta();
+  for (Eigen::Index j = 0; j < step.size(); ++j) {
+    if (step[j] == 0) continue;
+    const double to_lower = (fit_.lower[j] - delta[j]) / step[j];
+    const double to_upper = (fit_.upper[j] - delta[j]) / step[j];
+    stretch.from = std::max(stretch.from, std::min(to_lower, to_upper));
+    stretch.to = std::min(stretch.to, std::max(to_lower, to_upper));
+  }
+  stretch.from = std::min(stretch.from, 0.0);  // rounding may put δ past its bound
+  stretch.to = std::max(stretch.to, 0.0);
+  return stretch;
+}
+
+void Chain::MoveAlong(const Eigen::VectorXd& direction) {
+  const Eigen::VectorXd step = frame_.root * direction;
+  const Eigen::VectorXd delta = Delta();
+  const Eigen::VectorXd slope = active_.slope * direction;
+  const bool quiet = std::exp(log_sigma_) <= most_sigma_;
+  const auto density = [&](double x, double floor) {
+    const Eigen::VectorXd w = w_ + x * direction;
+    if (!quiet || w.norm() > most_distance_) return LogEverywhere(w, floor);
+    const double prior = LogPrior(delta + x * step);
+    return prior + likelihood_.Sum(active_, positions_, slope, x, floor - prior);
+  };
+  const Point next = Slice(WithinBounds(step), log_, generator_, density);
+  w_ += next.x * direction;
+  positions_ += next.x * slope;
+  log_ = next.log;
+}
+
+void Chain::MoveSigma() {
+  const double prior = LogPrior(Delta());
+  const bool near = w_.norm() <= most_distance_;
+  double log = log_;
+  const auto density = [&](double log_sigma, double floor) {
+    const double sigma = std::exp(log_sigma);
+    likelihood_.SetSigma(sigma);
+    floor -= log_sigma;  // flat in σ is σ in log σ
+    log = near && sigma <= most_sigma_ ? prior + likelihood_.Sum(active_, positions_, positions_, 0, floor - prior)
+                                       : LogEverywhere(w_, floor);
+    return log + log_sigma;
+  };
+  Stretch stretch{-kInfinity, std::log(kMostSigma), log_sigma_, 1};
+  const Point next = Slice(stretch, log_ + log_sigma_, generator_, density);
+  log_sigma_ = next.x;
+  log_ = next.log - next.x;
+  likelihood_.SetSigma(std::exp(log_sigma_));
+}
+
+void Chain::Round() {
+  const Eigen::Index parameters = w_.size();
+  boost::random::normal_distribution<double> normal;
+  Eigen::MatrixXd random(parameters, parameters);
+  for (double& entry : random.reshaped()) entry = normal(generator_);
+  const Eigen::MatrixXd directions = Eigen::HouseholderQR<Eigen::MatrixXd>(random).householderQ();
+  positions_ = active_.position + active_.slope * w_;
+  for (Eigen::Index k = 0; k < parameters && !is_stopped(); ++k) MoveAlong(directions.col(k));
+  MoveSigma();
+}
+
+Draws Chain::Run(int rounds) {
+  Draws draws(rounds, w_.size() + 1);
+  for (Eigen::Index k = 0; k < rounds && !is_stopped(); ++k) {
+    Round();
+    draws.row(k) << Delta().transpose(), std::exp(log_sigma_);
+  }
+  return draws;
+}
+
+void Chain::Whiten(const Draws& draws) {
+  constexpr double kAsDraws = 2;  // as many draws tell the old coordinates
+  const Eigen::Index parameters = w_.size();
+  const Eigen::MatrixXd deltas = draws.leftCols(parameters);
+  const Eigen::VectorXd mean = deltas.colwise().mean().transpose();
+  const Eigen::MatrixXd centred = (deltas.rowwise() - mean.transpose()).transpose();
+  const Eigen::MatrixXd w = frame_.root.triangularView<Eigen::Lower>().solve(centred);
+  Eigen::MatrixXd covariance = w * w.transpose();
+  const double scale = covariance.trace() / static_cast<double>(parameters * draws.rows());
+  covariance.diagonal().array() += kAsDraws * scale;
+  covariance /= static_cast<double>(draws.rows()) + kAsDraws;
+  most_distance_ = 4 * std::sqrt(static_cast<double>(parameters));
+  most_sigma_ = 1.5 * draws.col(parameters).maxCoeff();
+  const Eigen::MatrixXd turn = covariance.llt().matrixL();
+  const Eigen::MatrixXd root = frame_.root * turn;
+  EnterFrame({mean, root}, Delta());
+}
+
+/// Of one quantity's draws: the initial monotone sequence (C. J. Geyer, Stat. Sci. 7:473, 1992).
+double EffectiveDraws(const Eigen::VectorXd& draws) {
+  const Eigen::Index n = draws.size();
+  const Eigen::VectorXd centred = draws.array() - draws.mean();
+  const auto covariance = [&](Eigen::Index lag) {
+    return centred.head(n - lag).dot(centred.tail(n - lag)) / static_cast<double>(n);
+  };
+  const double variance = covariance(0);
+  if (!(variance > 0)) return 0;
+  double sum = -variance;
+  double pair = kInfinity;
+  for (Eigen::Index lag = 0; lag + 1 < n; lag += 2) {
+    pair = std::min(pair, covariance(lag) + covariance(lag + 1));
+    if (pair <= 0) break;
+    sum += 2 * pair;
+  }
+  return static_cast<double>(n) * std::min(1.0, variance / sum);
+}
+
+double LeastEffectiveDraws(const Draws& draws) {
+  double least = kInfinity;
+  for (const auto& column : draws.colwise()) least = std::min(least, EffectiveDraws(column));
+  return least;
+}
+
+/// Between sorted values, so that of n independent draws the next one is below it with probability p.
+double Quantile(const std::vector<double>& values, double p) {
+  const auto n = static_cast<double>(values.size());
+  const double rank = std::clamp(p * (n + 1) - 1, 0.0, n - 1);
+  const auto below = static_cast<std::size_t>(rank);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (rank - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+Posterior Summarize(Draws draws, double resolution) {
+  const Eigen::Index parameters = draws.cols() - 1;
+  const auto n = static_cast<double>(draws.rows());
+  draws.col(parameters) *= resolution;
+  const Eigen::VectorXd mean = draws.colwise().mean().transpose();
+  const Eigen::MatrixXd centred = draws.rowwise() - mean.transpose();
+  Posterior posterior;
+  posterior.mean = mean.head(parameters);
+  posterior.covariance = centred.leftCols(parameters).transpose() * centred.leftCols(parameters) / (n - 1);
+  posterior.lower95.resize(parameters);
+  posterior.upper95.resize(parameters);
+  for (Eigen::Index j = 0; j < parameters; ++j) {
+    std::vector<double> values(draws.col(j).begin(), draws.col(j).end());
+    std::sort(values.begin(), values.end());
+    posterior.lower95[j] = Quantile(values, 0.025);
+    posterior.upper95[j] = Quantile(values, 0.975);
+  }
+  posterior.sigma = mean[parameters];
+  posterior.sigma_std_dev = std::sqrt(centred.col(parameters).squaredNorm() / (n - 1));
+  posterior.effective_draws = LeastEffectiveDraws(draws);
+  posterior.draws = std::move(draws);
+  return posterior;
+}
+
+// Samples looked at. It is little for 1e5 samples with a σ that leaves few of them certain, but the posterior is then
+// normal, and need not be sampled.
+constexpr double kMostWork = 1e9;
+
+/// Runs ever longer, whitening in between, until the coordinates fit; what was drawn on the way is not used.
+void WarmUp(Chain& chain) {
+  for (const int rounds : {10, 20, 40, 80, 160}) {
+    const Draws draws = chain.Run(rounds);
+    if (chain.is_stopped()) return;
+    chain.Whiten(draws.bottomRows(rounds * 3 / 4));
+    if (chain.work() > kMostWork / 8) break;  // where samples are that many, the first coordinates are good
+  }
+}
+
+Draws RunUntilEnough(Chain& chain) {
+  constexpr int kRounds = 150;
+  constexpr double kEnoughDraws = 500;
+  Draws draws = chain.Run(kRounds);
+  while (!chain.is_stopped() && LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
+    draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
+    draws.bottomRows(kRounds) = chain.Run(kRounds);
+  }
+  return draws;
+}
+
+}  // namespace
+
+Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed, const std::stop_token& stop) {
+  for (const auto check : {CheckSizes, CheckValues}) {
+    if (Result<void> checked = check(fit); !checked) return tl::unexpected(checked.error());
+  }
+  Result<Frame> frame = FirstFrame(fit);
+  if (!frame) return tl::unexpected(frame.error());
+  Chain chain(fit, std::move(*frame), seed, stop);
+  WarmUp(chain);
+  Draws draws = RunUntilEnough(chain);
+  if (chain.is_stopped()) return FitStopped();
+  return Summarize(std::move(draws), fit.noise.resolution);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/uncertainty/profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendulum/fitting/residuals/autocorrelation.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The likelihood along one parameter, the others following. The interval ends where the deviance, the others solved
+/// anew, has risen by Student's t², as MINOS does, times the variance of ComputeErrors over that of the likelihood at
+/// fixed σ, which accounts for σ and for residuals that remember.
+class Profile {
+ public:
+  Profile(LeastSquares& cost, const SolveOptions& options, const Solution& solution, Optimum optimum,
+          const ErrorsOf& errors_of, double samples, int k)
+      : cost_(cost), options_(options), solution_(solution), optimum_(std::move(optimum)), samples_(samples), k_(k) {
+    if (std::ranges::find(optimum_.free, k) == optimum_.free.end()) {
+      optimum_.free.push_back(k);
+      optimum_.inverse = InvertInformation(optimum_.information, optimum_.free);
+    }
+    if (!optimum_.inverse.identifiable) return;
+    const Index row = std::ranges::find(optimum_.free, k) - optimum_.free.begin();
+    const Errors errors = errors_of(optimum_);
+    const double naive = optimum_.inverse.matrix(row, row);
+    length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
+    last_trace_ = cost.traces() + Budget();
+    threshold_ = length_ * length_ / naive;
+    t95_ = errors.t95[row];
+    points_.push_back({At(), 0});
+    direction_ = optimum_.inverse.matrix.col(row) / naive;
+  }
+
+  bool is_defined() const { return threshold_ > 0 && std::isfinite(threshold_); }
+
+  /// How far the likelihood reaches on a side (-1 or 1), or nothing.
+  std::optional<double> Reach(double side) {
+    const auto index = static_cast<std::size_t>(k_);
+    const double bound = side < 0 ? options_.lower[index] : options_.upper[index];
+    const double farthest = std::min(std::abs(bound - At()), kFarthest * length_);
+    if (farthest == 0) return 0;
+    return Find(side, farthest);
+  }
+
+  /// Whether the solves took so many trajectories that the ends are not known.
+  bool is_exhausted() const { return cost_.traces() >= last_trace_; }
+
+  /// Whether the profile came below the optimum: it belongs to another minimum.
+  bool found_lower() const { return found_lower_; }
+
+  /// The points so far and those that make them even between the ends, which are so far below and above the estimate;
+  /// those that the search for the ends left far beyond them apart.
+  std::vector<ProfilePoint> SpreadPoints(double down, double up) {
+    constexpr double kFarBeyond = 4;  // thresholds
+    last_trace_ = cost_.traces() + Budget();
+    SpreadOver(-down);
+    SpreadOver(up);
+    std::erase_if(points_, [&](const ProfilePoint& p) { return p.statistic > kFarBeyond * threshold(); });
+    std::ranges::sort(points_, {}, &ProfilePoint::value);
+    return points_;
+  }
+
+  /// How far the search for the end on a side went.
+  double Sought(double side) const {
+    double farthest = 0;
+    for (const ProfilePoint& point : points_) farthest = std::max(farthest, side * (point.value - At()));
+    return farthest;
+  }
+
+  double threshold() const { return t95_ * t95_; }
+
+  double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
+
+ private:
+  static constexpr double kFarthest = 100;  // lengths
+  static constexpr double kNegligible = 0.05;
+
+  /// Trajectories for one parameter: a profile that can be followed takes some tens of each recording.
+  int Budget() const {
+    constexpr double kSamples = 2e6;
+    const double runs = cost_.runs();
+    return static_cast<int>(runs * std::clamp(kSamples * runs / samples_, 100.0, 400.0));
+  }
+
+  /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
+  double RootAt(double distance, double side) {
+    SolveOptions options = options_;
+    options.fixed[static_cast<std::size_t>(k_)] = true;
+    options.max_traces = last_trace_;
+    std::vector<double> start = solution_.parameters;
+    for (std::size_t j = 0; j < optimum_.free.size(); ++j) {
+      const auto i = static_cast<std::size_t>(optimum_.free[j]);
+      const double moved = start[i] + side * distance * direction_[static_cast<Index>(j)];
+      start[i] = std::clamp(moved, options.lower[i], options.upper[i]);
+    }
+    start[static_cast<std::size_t>(k_)] = At() + side * distance;
+    const Solution other = Solve(cost_, start, options);
+    if (!other.usable) return kUnbounded;
+    found_lower_ = found_lower_ || other.sum < solution_.sum - kNegligible * threshold_;
+    const double root = std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
+    points_.push_back({start[static_cast<std::size_t>(k_)], root * root * threshold()});
+    return root;
+  }
+
+  /// Points on one side up to a distance (signed) from the estimate, where none is near yet.
+  void SpreadOver(double farthest) {
+    constexpr int kParts = 4;
+    constexpr double kNear = 0.25;  // parts
+    if (farthest == 0) return;
+    const double part = farthest / kParts;
+    for (int i = 1; i <= kParts; ++i) {
+      const double value = At() + i * part;
+      const auto is_near = [&](const ProfilePoint& p) { return std::abs(p.value - value) < kNear * std::abs(part); };
+      if (std::ranges::none_of(points_, is_near)) RootAt(std::abs(i * part), farthest < 0 ? -1 : 1);
+    }
+  }
+
+  /// Where the root is 1, by regula falsi between points on both sides; nothing when it stays below.
+  std::optional<double> Find(double side, double farthest) {
+    constexpr int kMostSolves = 25;
+    constexpr double kAccuracy = 0.01;
+    constexpr double kLongestStretch = 4;
+    double inside = 0;
+    double root_inside = 0;
+    double outside = kUnbounded;
+    double root_outside = kUnbounded;
+    double distance = std::min(length_, farthest);
+    for (int solve = 0; solve < kMostSolves && !is_exhausted(); ++solve) {
+      const double root = RootAt(distance, side);
+      if (std::abs(root - 1) < kAccuracy) return distance;
+      if (root < 1) {
+        if (distance == farthest) return std::nullopt;
+        inside = distance;
+        root_inside = root;
+      } else {
+        outside = distance;
+        root_outside = root;
+      }
+      distance = Next(inside, root_inside, outside, root_outside, kLongestStretch);
+      distance = std::min(distance, farthest);
+    }
+    return distance;
+  }
+
+  static double Next(double inside, double root_inside, double outside, double root_outside, double longest_stretch) {
+    if (!std::isfinite(outside)) return inside * std::min(1 / std::max(root_inside, 1e-3), longest_stretch);
+    if (!std::isfinite(root_outside)) return 0.5 * (inside + outside);
+    const double share = (1 - root_inside) / (root_outside - root_inside);
+    return inside + std::clamp(share, 0.05, 0.95) * (outside - inside);
+  }
+
+  LeastSquares& cost_;
+  const SolveOptions& options_;
+  const Solution& solution_;
+  Optimum optimum_;
+  double samples_;
+  int k_;
+  bool found_lower_ = false;
+  int last_trace_ = 0;
+  double length_ = 0;     // of half the interval, were the likelihood a parabola
+  double threshold_ = 0;  // of the deviance's rise
+  double t95_ = 0;
+  std::vector<ProfilePoint> points_;
+  Eigen::VectorXd direction_;  // how the free parameters follow
+};
+
+}  // namespace
+
+ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
+                                 const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k) {
+  const auto index = static_cast<std::size_t>(k);
+  Profile profile(cost, options, solution, optimum, errors_of, samples, k);
+  ProfileInterval interval;
+  if (!profile.is_defined()) {
+    interval.open = "the recording does not determine it beside the others";
+    return interval;
+  }
+  const double lower = options.lower[index];
+  const double upper = options.upper[index];
+  const std::optional<double> down = profile.Reach(-1);
+  const std::optional<double> up = profile.Reach(1);
+  if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
+  if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
+  if (!interval.lower || !interval.upper) {
+    interval.open = "the likelihood does not fall far enough on that side, however far out";
+  }
+  if (profile.is_exhausted()) {
+    interval.lower = interval.upper = std::nullopt;
+    interval.open = "its profile could not be followed; try --interval bootstrap";
+  }
+  if (profile.found_lower()) {
+    interval.lower = interval.upper = std::nullopt;
+    interval.open = kBetterMinimum;
+  }
+  if (profile.is_exhausted() || profile.found_lower()) return interval;
+  interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));
+  if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();  // no curve, but the ends hold
+  interval.threshold = profile.threshold();
+  return interval;
+}
+
+ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
+                                 const Optimum& optimum, const Autocorrelation& correlation, int k) {
+  const auto errors_of = [&](const Optimum& freed) {
+    return ComputeErrors(problem, cost, solution, freed, correlation);
+  };
+  return ProfileParameter(cost, problem.solve, solution, optimum, errors_of,
+                          static_cast<double>(problem.data.time.size()), k);
+}
+
+}  // namespace pendulum

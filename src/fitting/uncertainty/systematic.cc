@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/uncertainty/systematic.h"
+
+#include <cmath>
+#include <optional>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/start/fit_options.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+/// The power of the clock's scale in a parameter's estimate. A rate sensor's clock is its own: what follows from its
+/// readings alone does not scale, and angles, which it tells as rate times time, do.
+int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
+  const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
+  const bool rate = quantity == Quantity::kRate;
+  if (is_one_of(kZeroDrift, kBiasDrift)) return -1;
+  if (is_one_of(kInitialRate)) return rate ? 0 : -1;
+  if (is_one_of(kReleaseAngle, kInitialAngle)) return rate ? 1 : 0;
+  if (!info.scales_with_gravity()) return 0;
+  if (is_one_of(kInertia)) return 2;
+  if (rate) return 1;
+  return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
+}
+
+/// How the scores (P) change with the calibration's K coefficients: Σ w ∇m ∂value/∂c.
+Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem& problem, const TrajectoryCost& cost,
+                                const Solution& solution) {
+  const auto size = static_cast<Index>(calibration.coefficients.size());
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(static_cast<Index>(problem.infos.size()), size);
+  Eigen::VectorXd readings;
+  Eigen::MatrixXd jacobian;
+  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
+  double input = 0;
+  for (Index i = 0; i < readings.size(); ++i) {
+    const double value = problem.data.value[static_cast<std::size_t>(i)];
+    input = calibration.Reading(value, input);
+    double power = solution.noise.ForSample(i).At(value, readings[i]).weight * calibration.RadFromUnit();
+    for (Index k = 0; k < size; ++k, power *= input) pull.col(k) += power * jacobian.row(i).transpose();
+  }
+  return pull;
+}
+
+/// How the scores follow ε, where what parameter i means is multiplied by 1 + n_i ε: A n p, A of the samples alone.
+Eigen::VectorXd ScalePull(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
+  const Index size = powers.size();
+  Eigen::MatrixXd sums;
+  if (!cost.Sums(solution.parameters, &sums)) return Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  AddPriors(cost.priors(), solution.parameters, &priors);
+  const Eigen::Map<const Eigen::VectorXd> p(solution.parameters.data(), size);
+  return (sums - priors).topLeftCorner(size, size) * powers.cwiseProduct(p);
+}
+
+/// How the estimates follow such a factor, were it that of all recordings: n_i p_i, were all of them free. A value that
+/// is held, or known beforehand, in the report's units stays where it is and draws the others along.
+Eigen::VectorXd FollowScale(const Eigen::VectorXd& powers, const SourceContext& context) {
+  const auto size = static_cast<Index>(context.parameters.size());
+  const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
+  const Optimum& optimum = context.optimum;
+  const Eigen::VectorXd scaled = powers.cwiseProduct(p);
+  Eigen::VectorXd follows = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
+  for (Index i = 0; i < size; ++i) {
+    if (!context.fixed[static_cast<std::size_t>(i)]) continue;
+    pull -= optimum.information.col(i) * scaled[i];
+  }
+  for (const PriorTerm& prior : context.priors) {
+    const int k = prior.parameter;
+    pull[k] += prior.weight * prior.weight * powers[k] * (2 * (p[k] - prior.mean) + prior.mean);
+  }
+  if (!optimum.free.empty()) follows(optimum.free) = -optimum.inverse.matrix * pull(optimum.free);
+  for (const int i : optimum.free) follows[i] += scaled[i];
+  return follows;
+}
+
+}  // namespace
+
+/// The rig's gravity torque is a common factor of inertia and friction; the clock's scale enters by the powers of time
+/// in a parameter; the calibration's coefficients move every reading.
+std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
+                                                const FitProblem& problem, const TrajectoryCost& cost,
+                                                const Solution& solution) {
+  const auto size = static_cast<Index>(problem.infos.size());
+  Eigen::VectorXd gravity = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd time(size);
+  for (Index i = 0; i < size; ++i) {
+    const ParameterInfo& info = problem.infos[static_cast<std::size_t>(i)];
+    time[i] = PowerOfTime(info, recording.quantity);
+    if (options.rig && info.scales_with_gravity()) gravity[i] = 1;
+  }
+  std::vector<SystematicSource> sources;
+  const auto add_scale = [&](const std::string& identity, const Eigen::VectorXd& powers, double relative) {
+    if (!(relative > 0)) return;
+    sources.push_back(
+        {identity, powers, ScalePull(powers, cost, solution), Eigen::MatrixXd::Constant(1, 1, relative * relative)});
+  };
+  if (options.rig) add_scale("rig", gravity, options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value);
+  add_scale("clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
+            recording.clock_scale_std_dev / recording.clock_scale);
+  const std::optional<Calibration>& calibration = recording.calibration;
+  if (calibration && calibration->covariance.size() > 0) {
+    sources.push_back({"calibration " + calibration->source.dump(),
+                       {},
+                       CalibrationPull(*calibration, problem, cost, solution),
+                       calibration->covariance});
+  }
+  return sources;
+}
+
+Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, const SourceContext& context) {
+  const auto size = static_cast<Index>(context.parameters.size());
+  const Optimum& optimum = context.optimum;
+  Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(size, source.pull.cols());
+  if (of_all && source.powers.size() > 0) {
+    moved = FollowScale(source.powers, context);
+  } else if (!optimum.free.empty()) {
+    moved(optimum.free, Eigen::all) = optimum.inverse.matrix * source.pull(optimum.free, Eigen::all);
+  }
+  return moved * source.covariance * moved.transpose();
+}
+
+Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                                     const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum) {
+  const auto size = static_cast<Index>(problem.infos.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (!optimum.inverse.identifiable) return covariance;
+  const SourceContext context{solution.parameters, problem.solve.fixed, cost.priors(), optimum};
+  for (const SystematicSource& source : SystematicSources(recording, options, problem, cost, solution)) {
+    covariance += SourceCovariance(source, true, context);
+  }
+  return covariance;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/status.h"
+#include "pendulum/recording/readers/columns/line_reader.h"
+
+/// The grammar of CSV text, without a copy of a field: blanks, quotes, numbers, separators.
+namespace pendulum::csv {
+
+constexpr bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+inline std::string_view Trim(std::string_view text) {
+  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+inline std::string_view Unquote(std::string_view text) {
+  text = Trim(text);
+  return text.size() < 2 || text.front() != '"' || text.back() != '"' ? text : Trim(text.substr(1, text.size() - 2));
+}
+
+/// A line of a file, for messages.
+struct Line {
+  std::string_view file;
+  std::string_view text;
+  std::size_t number = 0;
+
+  static constexpr std::size_t kNoNumber = static_cast<std::size_t>(-1);  // Of a file that has no lines.
+
+  /// An error at the byte `at` of the text.
+  tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
+                               StatusCode code = StatusCode::kDataLoss) const {
+    if (number == kNoNumber) return Error(code, std::string(file) + ": " + sentence);
+    return Error(code, std::string(file) + ":" + std::to_string(std::max<std::size_t>(number, 1)) + ":" +
+                           std::to_string(at - text.data() + 1) + ": " + sentence);
+  }
+};
+
+/// Calls take() for each line of a file, as `line`, until one is refused.
+template <typename Take>
+Result<void> ForEachLine(LineReader& lines, Line& line, const Take& take) {
+  line.file = lines.name();
+  while (true) {
+    const Result<bool> next = lines.Next();
+    if (!next) return tl::unexpected(next.error());
+    if (!*next) return {};
+    line.text = lines.line();
+    line.number = lines.number();
+    if (Result<void> taken = take(); !taken) return taken;
+  }
+}
+
+/// std::from_chars, and a leading plus sign.
+inline std::from_chars_result FromChars(const char* begin, const char* end, double& number) {
+  if (end - begin > 1 && begin[0] == '+' && begin[1] != '-') ++begin;
+  return std::from_chars(begin, end, number);
+}
+
+/// std::from_chars for a number with a decimal comma.
+inline std::from_chars_result FromCharsWithComma(const char* begin, const char* end, double& number) {
+  constexpr std::size_t kLongest = 128;
+  std::array<char, kLongest> point;  // The number with a decimal point.
+  const char* stop = begin;
+  std::size_t size = 0, commas = 0;
+  for (; stop != end && size < kLongest; ++stop) {
+    const bool is_comma = *stop == ',';
+    if (is_comma && ++commas > 1) break;
+    if (!is_comma && (*stop == '\0' || std::strchr("0123456789+-eE", *stop) == nullptr)) break;
+    point.at(size++) = is_comma ? '.' : *stop;
+  }
+  const auto [read_to, error] = FromChars(point.data(), point.data() + size, number);
+  return {begin + (read_to - point.data()), error};
+}
+
+/// Reads the numbers of one file, all with a decimal point or all with a decimal comma: the first that has a mark
+/// tells.
+class Numbers {
+ public:
+  explicit Numbers(bool may_have_comma = false) : mark_(may_have_comma ? kUnknown : '.') {}
+
+  /// As std::from_chars.
+  std::from_chars_result From(const char* begin, const char* end, double& number) {
+    if (mark_ == '.') return FromChars(begin, end, number);
+    const std::from_chars_result plain = FromChars(begin, end, number);
+    if (mark_ == kUnknown && plain.ec == std::errc() && std::find(begin, plain.ptr, '.') != plain.ptr) {
+      mark_ = '.';
+      return plain;
+    }
+    const std::from_chars_result comma = FromCharsWithComma(begin, end, number);
+    if (comma.ec == std::errc() && std::find(begin, comma.ptr, ',') != comma.ptr) mark_ = ',';
+    return comma;
+  }
+
+  /// True when the whole of it is a finite number.
+  bool Parse(std::string_view text, double& number) {
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = From(text.data(), end, number);
+    return error == std::errc() && stop == end && std::isfinite(number);
+  }
+
+  /// What is wrong with a field that Parse refuses, and what to do.
+  std::string WhyNot(std::string_view text) const;
+
+ private:
+  static constexpr char kUnknown = '?';
+
+  char mark_;
+};
+
+inline std::string Numbers::WhyNot(std::string_view text) const {
+  if (text.empty()) return "is empty where a number is needed; complete the row or delete it";
+  const std::string holds = "holds " + Quoted(text);
+  double number = 0;
+  const auto [stop, error] = Numbers(*this).From(text.data(), text.data() + text.size(), number);
+  const std::string_view rest = text.substr(stop - text.data());
+  if (error == std::errc::result_out_of_range) {
+    return holds + ", beyond what a number can be (about 1e-308 to 1e308); correct the field or delete the row";
+  }
+  if (error != std::errc()) return holds + ", which is not a number; correct the field or delete the row";
+  if (!std::isfinite(number)) return holds + ", and a sample must be finite; delete the row";
+  if (mark_ == '.' && rest.front() == ',') {
+    return holds + ", a number with a decimal comma in a file of decimal points; write decimals with a point";
+  }
+  if (mark_ == ',' && rest.front() == '.') {
+    return holds + ", a number with a decimal point in a file of decimal commas; write decimals with a comma";
+  }
+  return holds + ", a number followed by " + Quoted(rest) + "; correct the field or delete the row";
+}
+
+/// Parses a number with a decimal point: what metadata and flags have.
+inline bool ParseNumber(std::string_view text, double& number) { return Numbers().Parse(text, number); }
+
+/// std::find at the speed of memchr.
+inline const char* Find(const char* from, const char* end, char wanted) {
+  const void* found = from == end ? nullptr : std::memchr(from, wanted, end - from);
+  return found == nullptr ? end : static_cast<const char*>(found);
+}
+
+/// Cuts a line into fields. A separator inside a field that begins with a double quote does not end it; a run of blanks
+/// is one separator where the separator is a blank.
+class FieldCutter {
+ public:
+  FieldCutter(std::string_view line, char separator)
+      : at_(line.data()), end_(line.data() + line.size()), separator_(separator) {
+    if (separator_ != ' ') return;
+    while (at_ != end_ && IsBlank(end_[-1])) --end_;
+    SkipSeparators();
+  }
+
+  bool done() const { return done_; }
+
+  /// Where the text of the next field begins.
+  const char* at() const { return SkipBlanks(at_); }
+
+  /// The next field with its blanks and quotes, found without looking at each byte of it.
+  std::string_view Next() {
+    const char* begin = at_;
+    const char* from = SkipBlanks(begin);
+    if (from != end_ && *from == '"') from = ClosingQuote(from);
+    const char* stop = Find(from, end_, separator_);
+    Advance(stop);
+    return {begin, static_cast<std::size_t>(stop - begin)};
+  }
+
+  /// The next field when it is an unquoted finite number, read without finding its end first; otherwise stays in front
+  /// of it.
+  bool NextNumber(Numbers& numbers, double& number) {
+    const auto [stop, error] = numbers.From(SkipBlanks(at_), end_, number);
+    const char* next = SkipBlanks(stop);
+    if (error != std::errc() || !std::isfinite(number) || (next != end_ && *next != separator_)) return false;
+    Advance(next);
+    return true;
+  }
+
+ private:
+  const char* SkipBlanks(const char* at) const {
+    while (at != end_ && IsBlank(*at) && *at != separator_) ++at;
+    return at;
+  }
+
+  /// A doubled quote stands for a quote; one that is never closed runs to the end of the line.
+  const char* ClosingQuote(const char* opening) const {
+    const char* quote = Find(opening + 1, end_, '"');
+    while (end_ - quote > 1 && quote[1] == '"') quote = Find(quote + 2, end_, '"');
+    return quote;
+  }
+
+  void Advance(const char* stop) {
+    done_ = stop == end_;
+    at_ = done_ ? end_ : stop + 1;
+    if (separator_ == ' ') SkipSeparators();
+  }
+
+  void SkipSeparators() {
+    while (at_ != end_ && IsBlank(*at_)) ++at_;
+  }
+
+  const char* at_;
+  const char* end_;
+  char separator_;
+  bool done_ = false;
+};
+
+}  // namespace pendulum::csv

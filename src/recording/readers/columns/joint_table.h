@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pendulum/recording/clock.h"
+#include "recording/readers/columns/table.h"
+
+/// Tables of which each row is one joint's.
+namespace pendulum::csv {
+
+/// What --value_column says of such a table: JOINT, COLUMN or JOINT/COLUMN; empty where it says nothing.
+struct JointChoice {
+  std::string joint, column;
+};
+
+JointChoice ChoiceOf(const std::vector<TableColumn>& columns, const std::string& value_column);
+
+/// The rows of one joint.
+struct JointRows {
+  std::string joint;
+  std::vector<double> time, value;
+  LineNumbers lines;
+};
+
+class JointTable {
+ public:
+  static constexpr std::size_t kMostJoints = 1000;
+
+  /// False beyond kMostJoints.
+  bool Add(std::string_view joint, double time, double value, std::size_t line);
+
+  /// The joint that is asked for, the only one or the only one that moves; nullptr without rows. `line` is that of the
+  /// names, `column` the
+  /// name of the column of values. kDataLoss: there are several. kInvalidArgument: there is no such joint.
+  Result<JointRows*> Choose(const Line& line, const std::string& joint, const std::string& column);
+
+ private:
+  std::vector<JointRows> joints_;
+  std::size_t last_ = 0;  // That of the row before.
+};
+
+}  // namespace pendulum::csv

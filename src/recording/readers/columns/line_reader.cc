@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/readers/columns/line_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+/// The first such byte, or nullptr.
+const char* Find(const char* from, const char* end, char wanted) {
+  return from == end ? nullptr : static_cast<const char*>(std::memchr(from, wanted, end - from));
+}
+
+}  // namespace
+
+LineReader::LineReader(std::string_view text, std::string name)
+    : name_(std::move(name)), at_(text.data()), end_(text.data() + text.size()) {}
+
+LineReader::LineReader(InputFile file, std::string_view begin)
+    : name_(file.name()),
+      file_(std::make_unique<InputFile>(std::move(file))),
+      block_(std::make_unique_for_overwrite<Block>()),
+      at_(block_->data()),
+      end_(std::copy_n(begin.data(), std::min(begin.size(), kLongestLine), block_->data())) {}
+
+LineReader::LineReader(LineReader&& other) noexcept = default;
+LineReader::~LineReader() = default;
+
+Result<void> LineReader::Begin() {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  has_begun_ = true;
+  if (Result<void> taken = Take({at_, end_}); !taken) return taken;
+  if (file_ != nullptr) {
+    if (Result<void> filled = Refill(); !filled) return filled;
+  }
+  is_empty_ = at_ == end_;
+  if (std::string_view(at_, end_).starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
+  return {};
+}
+
+/// Moves what is left of the block to its front and reads behind it.
+Result<void> LineReader::Refill() {
+  const std::size_t left = end_ - at_;
+  std::memmove(block_->data(), at_, left);
+  const Result<std::size_t> got = file_->Read({block_->data() + left, block_->size() - left});
+  if (!got) return tl::unexpected(got.error());
+  at_ = block_->data();
+  end_ = at_ + left + *got;
+  if (left + *got < block_->size()) file_.reset();
+  return Take({at_ + left, *got});
+}
+
+/// Hashes bytes that came into memory, and looks for what a logger leaves that lost its power, or an encoding of two
+/// bytes a character.
+Result<void> LineReader::Take(std::string_view bytes) {
+  if (auto added = digest_.Add(bytes); !added) return added;
+  const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
+  if (nul == nullptr) return {};
+  const std::string_view before(at_, nul);
+  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the line that at_ begins.
+  return Error(
+      StatusCode::kDataLoss,
+      name_ + ":" + std::to_string(number_ + 1 + std::ranges::count(before, '\n')) + ":" +
+          std::to_string(before.size() - line_begin + 1) +
+          ": a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8");
+}
+
+tl::unexpected<Status> LineReader::TooLong() const {
+  return Error(StatusCode::kDataLoss, name_ + ":" + std::to_string(number_ + 1) +
+                                          ":1: this line is longer than 1 MiB and begins with " + Quoted({at_, end_}) +
+                                          ", so this is not CSV text; name a CSV file");
+}
+
+/// The next line when all of it is in memory.
+bool LineReader::GoOn() {
+  const char* line_end = Find(at_, end_, '\n');
+  if (line_end == nullptr || !has_begun_ || static_cast<std::size_t>(line_end - at_) > kLongestLine) return false;
+  is_terminated_ = true;
+  TakeLine(line_end);
+  at_ = line_end + 1;
+  return true;
+}
+
+void LineReader::TakeLine(const char* line_end) {
+  line_ = {at_, line_end};
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  ++number_;
+}
+
+/// The next line when more has to be read, or the last, or a fault.
+Result<bool> LineReader::NextBlock() {
+  if (!has_begun_) {
+    if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
+  }
+  while (!GoOn()) {
+    if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLong();
+    if (file_ == nullptr) {
+      if (at_ == end_) return false;
+      is_terminated_ = false;
+      TakeLine(end_);
+      at_ = end_;
+      return true;
+    }
+    if (const Result<void> filled = Refill(); !filled) return tl::unexpected(filled.error());
+  }
+  return true;
+}
+
+}  // namespace pendulum

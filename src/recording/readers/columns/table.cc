@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/table.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "recording/readers/columns/name_list.h"
+
+namespace pendulum::csv {
+namespace {
+
+/// The length of a vector has lost its sign, so that it swings twice as often.
+bool IsLengthOfVector(const TableColumn& column) {
+  constexpr std::string_view kWord = "absolute";
+  const std::string canonical = CanonicalName(column.meaning);
+  const Unit* unit = FindUnit(column.meaning);
+  if (unit == nullptr || (unit->kind != Kind::kRate && !IsSecondChoice(*unit))) return false;
+  return canonical.starts_with(kWord) && (canonical[kWord.size()] == '_' || IsBlank(canonical[kWord.size()]));
+}
+
+/// The run whose columns are read; none where that is for the chooser to say.
+Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector<TableColumn>& columns,
+                                             const ReadOptions& options) {
+  for (const std::string& flag : {options.value_column, TimeFlagOf(columns, options.time_column).column}) {
+    const std::size_t chosen = flag.empty() ? columns.size() : IndexOf(columns, flag);
+    if (chosen < columns.size() && !columns[chosen].run.empty()) return columns[chosen].run;
+  }
+  if (!options.value_column.empty()) return std::nullopt;
+  const std::vector<std::size_t> candidates = CandidatesOf(columns, options.unit);
+  std::set<std::string_view> runs;
+  for (const std::size_t i : candidates) runs.insert(columns[i].run);
+  if (runs.size() == 1) return columns[candidates.front()].run;
+  if (candidates.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  names.reserve(candidates.size());
+  for (const std::size_t i : candidates) names.push_back(Quoted(columns[i].written));
+  return line.Fault(columns[candidates[1]].at, "columns " + SeveralQuantities(names));
+}
+
+}  // namespace
+
+std::size_t IndexOf(const std::vector<TableColumn>& columns, const std::string& name) {
+  const auto found = std::ranges::find(columns, name, &TableColumn::written);
+  double number = 0;
+  if (found != columns.end() || !ParseNumber(name, number)) return found - columns.begin();
+  if (number < 1 || number > static_cast<double>(columns.size())) return columns.size();
+  return static_cast<std::size_t>(number) - 1;
+}
+
+TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& time_column) {
+  const std::size_t colon = time_column.rfind(':');
+  if (colon == std::string::npos || IndexOf(columns, time_column) < columns.size()) return {time_column};
+  const Unit* unit = UnitOfSuffix(time_column.substr(colon + 1));
+  if (unit == nullptr || unit->kind != Kind::kTime) return {time_column};
+  return {time_column.substr(0, colon), unit};
+}
+
+std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit) {
+  std::vector<std::size_t> candidates, others, asked;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Unit* own = FindUnit(columns[i].meaning);
+    if (own == nullptr || own->kind == Kind::kTime || IsLengthOfVector(columns[i])) continue;
+    (IsSecondChoice(*own) ? others : candidates).push_back(i);
+    if (own->suffix == unit) asked.push_back(i);
+  }
+  if (!asked.empty()) return asked;
+  return candidates.empty() ? others : candidates;
+}
+
+Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColumn>& columns,
+                                  const ReadOptions& options) {
+  const std::size_t chosen = options.value_column.empty() ? columns.size() : IndexOf(columns, options.value_column);
+  if (chosen < columns.size() && IsLengthOfVector(columns[chosen])) {
+    return line.Fault(columns[chosen].at,
+                      "column " + Quoted(columns[chosen].written) +
+                          " is the length of a vector, which has lost the sign of the swing; choose one of the "
+                          "vector's components with --value_column",
+                      StatusCode::kInvalidArgument);
+  }
+  std::set<std::string_view> runs;
+  for (const TableColumn& column : columns) runs.insert(column.run);
+  runs.erase("");
+  std::optional<std::string> run;
+  if (runs.size() > 1) {
+    auto one = ChooseRun(line, columns, options);
+    if (!one) return tl::unexpected(std::move(one).error());
+    run = *std::move(one);
+  }
+  const std::string flag = TimeFlagOf(columns, options.time_column).column;
+  const std::size_t time = flag.empty() ? columns.size() : IndexOf(columns, flag);
+  std::vector<Name> names;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const TableColumn& column = columns[i];
+    const bool is_other_run = run && !column.run.empty() && column.run != *run && i != time;
+    const bool is_hidden = is_other_run || IsLengthOfVector(column);
+    names.push_back({is_hidden ? std::string_view() : std::string_view(column.meaning), column.at, column.written});
+  }
+  return names;
+}
+
+}  // namespace pendulum::csv

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/recording/arc.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/recording/resolution.h"
+#include "recording/readers/columns/column_choice.h"
+#include "recording/readers/columns/metadata.h"
+
+/// From the numbers of a file's value column to what a Recording holds.
+namespace pendulum::csv {
+
+/// The calibration that applies to a column of counts or volts, if any: the user's before the file's own.
+inline const std::optional<Calibration>& ChosenCalibration(const ReadOptions& options, const Metadata& metadata) {
+  return options.calibration ? options.calibration : metadata.calibration;
+}
+
+/// A calibration must be of the column's unit; the file's own may be about another column than that of angles.
+inline Result<void> CheckCalibration(const Line& header, const Column& column, const ReadOptions& options,
+                                     const Metadata& metadata, std::vector<Warning>& warnings) {
+  const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
+  if (!calibration || calibration->input == column.unit->name) return {};
+  const bool is_raw = column.unit->kind == Kind::kRaw;
+  const std::string unit(column.unit->name);
+  if (!is_raw && !options.calibration) {
+    warnings.push_back({"metadata_not_applied", std::string(header.file) + ":" +
+                                                    std::to_string(metadata.calibration_line) +
+                                                    ": the metadata calibration is not applied to column " +
+                                                    column.name + ", which is in " + unit + " already"});
+    return {};
+  }
+  return header.Fault(header.text.data(), "column " + column.name + " is in " + unit +
+                                              ", and the calibration is one of " + calibration->input +
+                                              (is_raw ? "; give that of this sensor" : "; leave --calibration out"));
+}
+
+inline bool AllWhole(const Eigen::VectorXd& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
+}
+
+/// A resolution that the values contradict is believed, and said.
+inline void WarnOfResolution(double found, Recording& recording) {
+  constexpr double kAlike = 0.1;
+  if (found == 0 || std::abs(recording.resolution - found) <= kAlike * found) return;
+  const std::string who = recording.resolution_source == "given" ? "as given" : "as the file says";
+  recording.warnings.push_back(
+      {"resolution_disagrees", "the resolution is taken as " + NumberText(recording.resolution, 4) + ", " + who +
+                                   ", but the values are " + NumberText(found, 4) +
+                                   " apart (in the file's unit): a wrong one makes the error bars wrong"});
+}
+
+/// The spacing of the values and who tells it: the user, the file, or the values themselves; whole counts are levels.
+inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
+                          Recording& recording) {
+  if (options.resolution || metadata.resolution) {
+    recording.resolution = options.resolution ? *options.resolution : *metadata.resolution;
+    recording.resolution_source = options.resolution ? "given" : "file";
+    WarnOfResolution(FindResolution(recording.value), recording);
+    return;
+  }
+  recording.resolution = FindResolution(recording.value);
+  if (recording.resolution == 0 && unit.name == "counts" && AllWhole(recording.value)) recording.resolution = 1;
+  recording.resolution_source = "found";
+}
+
+/// The range of a converter whose counts reach an end of it again and again.
+inline std::optional<SensorRange> ConverterRange(const Eigen::VectorXd& counts) {
+  constexpr std::array kFullScales = {1023.0, 4095.0, 16383.0, 65535.0};
+  constexpr Eigen::Index kOften = 2;
+  const double largest = counts.maxCoeff();
+  const auto* const full = std::ranges::find_if(kFullScales, [&](double scale) { return largest <= scale; });
+  if (full == kFullScales.end() || counts.minCoeff() < 0 || !AllWhole(counts)) return std::nullopt;
+  const bool reached = (counts.array() == 0).count() >= kOften || (counts.array() == *full).count() >= kOften;
+  return reached ? std::optional(SensorRange{0, *full}) : std::nullopt;
+}
+
+inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadata& metadata, Recording& recording) {
+  if (options.range) {
+    recording.range = options.range;
+  } else if (metadata.range) {
+    recording.range = SensorRange{metadata.range->low, metadata.range->high};
+  } else if (unit.name == "counts") {
+    recording.range = ConverterRange(recording.value);
+  }
+  if (!recording.range) return;
+  const auto [low, high] = *recording.range;
+  const double slack = recording.resolution + 1e-6 * (high - low);
+  const auto outside = (recording.value.array() < low - slack || recording.value.array() > high + slack).count();
+  if (outside == 0) return;
+  recording.warnings.push_back({"range_disagrees", std::to_string(outside) + " readings lie outside the range " +
+                                                       NumberText(low, 4) + " to " + NumberText(high, 4) +
+                                                       " (in the file's unit): it is not applied"});
+  recording.range.reset();
+}
+
+/// Values that a unit alone turns into SI, or counts and volts as they are.
+inline void ScaleValues(const Unit& unit, Recording& recording) {
+  if (unit.ToSi(1) == 1) return;
+  for (double& value : recording.value) value = unit.ToSi(value);
+  recording.resolution = unit.ToSi(recording.resolution);
+  if (recording.range) recording.range = SensorRange{unit.ToSi(recording.range->low), unit.ToSi(recording.range->high)};
+}
+
+/// Counts or volts through their calibration. The spacing of readings is that at the middle of the data.
+inline void Calibrate(const Calibration& calibration, Recording& recording) {
+  const auto [low, high] = std::minmax_element(recording.value.begin(), recording.value.end());
+  const double slope = calibration.Slope(*low / 2 + *high / 2);
+  recording.resolution *= std::abs(slope);
+  const std::optional<SensorRange> ends = recording.range ? recording.range : calibration.input_range;
+  recording.range.reset();
+  if (ends) {
+    const auto [first, last] = std::minmax({calibration.Angle(ends->low), calibration.Angle(ends->high)});
+    if (first < last) recording.range = SensorRange{first, last};
+  }
+  for (double& value : recording.value) value = calibration.Angle(value);
+  recording.calibration = calibration;
+}
+
+/// What a column of that name measures: a gyro's volts are a rate.
+inline Quantity QuantityOf(const Column& column) {
+  switch (column.unit->kind) {
+    case Kind::kRate: return Quantity::kRate;
+    case Kind::kAcceleration: return Quantity::kAcceleration;
+    case Kind::kLength: return Quantity::kPosition;
+    case Kind::kRaw: return column.is_gyro ? Quantity::kRate : Quantity::kAngle;
+    default: return Quantity::kAngle;
+  }
+}
+
+/// Both coordinates of a point are the angle about the centre of the circle it moves on.
+inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd& y, Recording& recording) {
+  const Unit& unit = *vertical.unit;
+  const Eigen::VectorXd height = y.unaryExpr([&](double number) { return unit.ToSi(number); });
+  Result<Arc> arc = FitArc(recording.value, height);
+  if (!arc) return Error(arc.error().code, recording.path + ": " + arc.error().message);
+  for (Eigen::Index i = 0; i < height.size(); ++i) recording.value[i] = arc->Angle(recording.value[i], height[i]);
+  recording.quantity = Quantity::kAngle;
+  recording.resolution = 0;  // levels of coordinates are none of the angle
+  recording.resolution_source.clear();
+  recording.range.reset();
+  recording.arc = *std::move(arc);
+  return {};
+}
+
+/// Fills value, unit, quantity, resolution, range and calibration from the numbers that `value` holds.
+inline void SetValues(const Column& column, const ReadOptions& options, const Metadata& metadata,
+                      Recording& recording) {
+  const Unit& unit = *column.unit;
+  recording.quantity = QuantityOf(column);
+  recording.shows_gravity = !column.is_without_gravity;
+  recording.unit = unit.name;
+  SetResolution(unit, options, metadata, recording);
+  SetRange(unit, options, metadata, recording);
+  ScaleValues(unit, recording);
+  const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
+  if (unit.kind == Kind::kRaw && calibration) Calibrate(*calibration, recording);
+}
+
+}  // namespace pendulum::csv

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/to_recording.h"
+
+#include <cmath>
+#include <utility>
+
+#include "recording/readers/columns/to_angle.h"
+
+namespace pendulum::csv {
+namespace {
+
+double RateOf(const ReadColumns& columns, const ReadOptions& options) {
+  return options.sample_rate_hz > 0 ? options.sample_rate_hz : columns.metadata.sample_rate_hz;
+}
+
+void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
+  const auto warn = [&](const std::string& code, const std::string& sentence) {
+    columns.samples.warnings.push_back({code, columns.samples.name + ": " + sentence});
+  };
+  const Layout& layout = columns.layout;
+  const std::string& lost = columns.metadata.lost_samples;
+  if (columns.is_host_time) {
+    warn("host_time",
+         "the times are those at which the host received each line; a column of the device's own times is "
+         "better, name it with --time_column");
+  }
+  if (!layout.time && RateOf(columns, options) > 0 && lost.find_first_of("123456789") != std::string::npos) {
+    warn("lost_samples", "the file says that " + lost +
+                             " samples were lost, and times counted from the sample rate are late after each");
+  }
+  if (layout.time && !layout.is_time_unit_told) {
+    warn("time_unit_assumed", "column " + layout.time->name +
+                                  " does not tell its unit and was taken as seconds; give "
+                                  "--time_column with :s, :ms or :us after the column");
+  }
+}
+
+/// Seconds, with the clock repaired.
+Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions& options) {
+  const Layout& layout = columns.layout;
+  RawSamples& samples = columns.samples;
+  if (!layout.time && RateOf(columns, options) > 0) {
+    for (Eigen::Index i = 0; i < samples.time.size(); ++i) {
+      samples.time[i] = static_cast<double>(i) / RateOf(columns, options);
+    }
+    return {};
+  }
+  if (layout.time && !layout.is_time_unit_told && AllWhole(samples.time)) {
+    return line.Fault(line.text.data(),
+                      "column " + layout.time->name +
+                          " holds whole numbers and does not tell its unit; give --time_column "
+                          "with :s, :ms or :us after the column",
+                      StatusCode::kInvalidArgument);
+  }
+  Result<RawSamples> repaired = RepairClock(std::move(samples));
+  if (!repaired) return tl::unexpected(std::move(repaired).error());
+  samples = *std::move(repaired);
+  const Unit& unit = layout.time ? *layout.time->unit : *UnitOfSuffix("s");
+  if (unit.divisor != 1) {
+    for (double& time : samples.time) time = unit.ToSi(time);
+  }
+  return {};
+}
+
+}  // namespace
+
+Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column) {
+  const std::string count = rows == 1 ? "1 row was" : std::to_string(rows) + " rows were";
+  return {"empty_cells", file + ": " + count + " left out, with no number in column " + column + " or in its time"};
+}
+
+Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options) {
+  WarnOfClock(columns, options);
+  if (Result<void> set = SetTimes(columns, line, options); !set) return tl::unexpected(std::move(set).error());
+  RawSamples& samples = columns.samples;
+  const Metadata& metadata = columns.metadata;
+  Recording recording;
+  recording.path = samples.name;
+  recording.time = std::move(samples.time);
+  recording.value = std::move(samples.value);
+  recording.warnings = std::move(samples.warnings);
+  recording.clock_scale = metadata.clock_scale;
+  recording.clock_scale_std_dev =
+      std::hypot(metadata.clock_scale_std_dev, metadata.clock_scale * samples.clock_std_dev);
+  recording.rig_json = metadata.rig_json;
+  SetValues(columns.layout.value, options, metadata, recording);
+  if (columns.layout.second) {
+    if (Result<void> turned = TurnIntoAngles(*columns.layout.second, samples.second, recording); !turned) {
+      return tl::unexpected(std::move(turned).error());
+    }
+  }
+  recording.sha256 = std::move(columns.sha256);
+  return MakeRecording(std::move(recording));
+}
+
+}  // namespace pendulum::csv

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/mat/mat_recording.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/sha256.h"
+#include "recording/readers/columns/runs.h"
+#include "recording/readers/columns/to_angle.h"
+#include "recording/readers/columns/to_recording.h"
+#include "recording/readers/mat/in_child.h"
+#include "recording/readers/mat/mat_columns.h"
+#include "recording/readers/mat/mat_elements.h"
+#include "recording/readers/mat/mat_version_4.h"
+#include "recording/readers/mat/write_all.h"
+
+namespace pendulum {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 128, kTagBytes = 8;
+
+tl::unexpected<Status> CutOff(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
+  return Fault(name, "the file is cut off: the variable at byte " + std::to_string(at) + " has " +
+                         std::to_string(size) + " bytes, and " + std::to_string(left) +
+                         " are left; save or copy it again");
+}
+
+tl::unexpected<Status> NoVariable(const std::string& name, std::size_t at) {
+  return Fault(name,
+               "the file is damaged: at byte " + std::to_string(at) + " no variable begins; save or copy it again");
+}
+
+Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& name) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    const std::optional<std::size_t> size = SizeOfVersion4(bytes.substr(at));
+    if (!size) return NoVariable(name, at);
+    if (*size > left) return CutOff(name, at, *size, left);
+    at += *size;
+  }
+  return {};
+}
+
+/// The variables of version 5 follow each other, each with its size before it: matio itself does not say when the last
+/// one is cut off.
+Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kOrderAt = 126;
+  if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
+  if (SizeOfVersion4(bytes)) return CheckSizesOfVersion4(bytes, name);
+  const bool is_little = bytes.substr(kOrderAt, 2) == "IM";
+  const bool is_swapped = is_little != (std::endian::native == std::endian::little);
+  for (std::size_t at = kHeaderBytes; at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    const auto tag = left < kTagBytes ? std::nullopt : WordsOf(bytes.substr(at, kTagBytes), is_swapped);
+    if (!tag) return CutOff(name, at, 0, 0);
+    const std::uint32_t type = tag->front();
+    const std::size_t size = tag->back();
+    if (size > left - kTagBytes) return CutOff(name, at, size, left - kTagBytes);
+    if (type != kMatrixElement && type != kPackedElement) return NoVariable(name, at);
+    at += kTagBytes + size;
+  }
+  return {};
+}
+
+/// A file that matio can open: it reads no memory, and HDF5 follows the links of /proc, so it must be a real one.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string_view bytes) {
+    std::error_code unknown;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(unknown);
+    path_ = ((unknown ? "/tmp" : folder) / "pendulum_XXXXXX").string();
+    const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
+    exists_ = descriptor >= 0;
+    if (!exists_ || !WriteAll(descriptor, bytes)) error_ = errno;
+    if (exists_ && ::close(descriptor) != 0 && error_ == 0) error_ = errno;
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile(TemporaryFile&&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    if (exists_) ::unlink(path_.c_str());
+  }
+
+  int error() const { return error_; }  // The errno of what went wrong, or 0.
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  bool exists_ = false;
+  int error_ = 0;
+};
+
+/// A second is enough for a hundred megabytes, and for ever is what some damaged files take. Until numbers of the file
+/// are an answer, there are several copies of them.
+ChildLimits LimitsFor(std::size_t bytes, std::size_t most_unpacked) {
+  constexpr std::size_t kCopies = 8, kLeast = std::size_t{1} << 26;
+  ChildLimits limits;
+  limits.answer_bytes = most_unpacked;
+  limits.memory_bytes = std::min(limits.memory_bytes, kLeast + kCopies * std::max(most_unpacked, bytes));
+  limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
+  limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Others use the processors too.
+  return limits;
+}
+
+/// Why matio gave no table, and what to do.
+tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, const std::string& name) {
+  constexpr std::string_view kLess = "; save only the times and the angles, or export them as CSV";
+  const std::string less(kLess);
+  switch (failure) {
+    case ChildFailure::kNotStarted: break;
+    case ChildFailure::kCrashed:
+      return Fault(name, "this MAT-file is damaged: matio, which reads it, broke off; save it again");
+    case ChildFailure::kOutOfTime:
+      return Fault(name, "this MAT-file takes longer to read than " + std::to_string(limits.processor_seconds) +
+                             " s of a processor: it is damaged or holds too much" + less);
+    case ChildFailure::kOutOfMemory:
+      return Fault(name, "this MAT-file needs more memory to read than the " + std::to_string(limits.memory_bytes) +
+                             " bytes that it may have: it is damaged or holds too much" + less);
+    case ChildFailure::kAnswerTooLarge:
+      return Fault(name, "this MAT-file unpacks to more than " + std::to_string(limits.answer_bytes) +
+                             " bytes, too many for a recording" + less);
+  }
+  return Error(StatusCode::kTryAgain, name + ": no process could be started to read it in; try again");
+}
+
+Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
+  const TemporaryFile file(bytes);
+  if (file.error() != 0) {
+    const std::string folder = std::filesystem::path(file.path()).parent_path().string();
+    return Error(StatusCode::kTryAgain, name + ": there can be no copy of this MAT-file in " + Quoted(folder) + " (" +
+                                            std::generic_category().message(file.error()) +
+                                            "); make room there, or name another folder in TMPDIR");
+  }
+  const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
+  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
+  if (!packed) return NoTable(packed.error(), limits, name);
+  MatTable table = UnpackMatTable(*packed);
+  if (table.complaint.empty()) return table;
+  if (table.complaint == kOtherFile) {
+    return Fault(name,
+                 "this MAT-file says that numbers of it are in another file, which is not opened; save all in one");
+  }
+  return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
+}
+
+/// Of numbers, but not a vector of them, or an object, which may have some.
+bool MayHoldTheQuantity(const SkippedVariable& variable) {
+  const std::array kinds = {"a cell array", "complex", "sparse"};
+  return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
+}
+
+/// The variable that says why there is no column of angles; nullptr where the columns are to say it themselves.
+const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<csv::TableColumn>& columns,
+                                      const ReadOptions& options) {
+  const std::vector<SkippedVariable>& all = table.skipped;
+  const auto first = [&](const auto& is_it) {
+    const auto found = std::ranges::find_if(all, is_it);
+    return found == all.end() ? nullptr : &*found;
+  };
+  if (!options.value_column.empty()) {
+    return first([&](const SkippedVariable& each) { return each.name == options.value_column; });
+  }
+  if (!csv::CandidatesOf(columns, options.unit).empty()) return nullptr;
+  const auto tells_unit = [](const SkippedVariable& each) {
+    return MayHoldTheQuantity(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
+  };
+  if (const SkippedVariable* const named = first(tells_unit); named != nullptr) return named;
+  const bool is_other = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
+  if (is_other && !options.unit.empty()) return nullptr;  // the only one may be it
+  if (const SkippedVariable* const object = first(&SkippedVariable::is_object); object != nullptr) return object;
+  return is_other || columns.empty() ? nullptr : first(MayHoldTheQuantity);
+}
+
+/// What there is instead of a column of angles.
+Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
+                            const std::string& name, const ReadOptions& options) {
+  const SkippedVariable* const skipped = WhatIsNoColumn(table, columns, options);
+  if (skipped != nullptr) {
+    const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
+    return Fault(name, which + " is " + skipped->kind +
+                           (skipped->is_object
+                                ? "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+                                  "save('run.mat', 't', 'angle_deg')"
+                                : "; a column is a vector of real numbers, or a matrix's or a structure's"));
+  }
+  const bool has_more = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
+  if (has_more || (!columns.empty() && !options.value_column.empty())) return {};
+  std::string rest;
+  for (const SkippedVariable& variable :
+       std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
+    rest +=
+        (rest.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " + variable.kind;
+  }
+  return Fault(name, std::string("no variable of this MAT-file ") + (columns.empty() ? "" : "but the time ") +
+                         "is a vector or a matrix of real numbers" + (rest.empty() ? rest : rest + ")") +
+                         "; save the times as t and the angles as angle_deg");
+}
+
+/// The numbers of the columns that were chosen, without rows in which one of them is none.
+Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, const std::string& name) {
+  const std::vector<double>& value = table.columns[layout.value.index].values;
+  const std::vector<double>& time = layout.time ? table.columns[layout.time->index].values : value;
+  const std::vector<double>& second = layout.second ? table.columns[layout.second->index].values : value;
+  if (time.size() != value.size()) {
+    return Fault(name, "column " + layout.time->name + " has " + std::to_string(time.size()) + " numbers and column " +
+                           layout.value.name + " " + std::to_string(value.size()) +
+                           "; choose the time of this quantity with --time_column");
+  }
+  if (second.size() != value.size()) {
+    return Fault(name, "column " + layout.second->name + " has " + std::to_string(second.size()) +
+                           " numbers and column " + layout.value.name + " " + std::to_string(value.size()) +
+                           "; choose one coordinate with --value_column");
+  }
+  RawSamples samples;
+  samples.name = name;
+  samples.time.resize(static_cast<Eigen::Index>(value.size()));
+  samples.value.resize(samples.time.size());
+  samples.second.resize(layout.second ? samples.time.size() : 0);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isfinite(time[i]) || !std::isfinite(value[i]) || !std::isfinite(second[i])) continue;
+    samples.time[rows] = time[i];
+    samples.value[rows] = value[i];
+    if (layout.second) samples.second[rows] = second[i];
+    samples.lines.Add(i + 1);
+    ++rows;
+  }
+  samples.time.conservativeResize(rows);
+  samples.value.conservativeResize(rows);
+  if (layout.second) samples.second.conservativeResize(rows);
+  const std::size_t left_out = value.size() - static_cast<std::size_t>(rows);
+  if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
+  if (rows >= kMinimumSamples) return samples;
+  return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
+                                                    std::to_string(rows) + " numbers; at least " +
+                                                    std::to_string(kMinimumSamples) + " are needed: record for longer");
+}
+
+}  // namespace
+
+Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  const Result<MatTable> table = ReadTable(bytes, name, options);
+  return table ? FromMatTable(*table, bytes, name, options) : tl::unexpected(table.error());
+}
+
+Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
+                               const ReadOptions& options) {
+  csv::Line line{name, "", csv::Line::kNoNumber};
+  std::vector<csv::TableColumn> columns;
+  for (const MatColumn& column : table.columns) columns.push_back(column.name);
+  const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
+  const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
+  if (time < columns.size() && !table.columns[time].is_unit_told) columns[time].meaning = "time";  // the user may say
+  if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
+  const auto names = csv::NamesOf(line, columns, options);
+  if (!names) return tl::unexpected(names.error());
+  csv::ReadColumns read;
+  read.layout.width = columns.size();
+  read.layout.has_header = true;
+  csv::ColumnChooser chooser(line, *names, options, false, false);
+  if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
+  if (read.layout.time && read.layout.time->index != time) {
+    read.layout.is_time_unit_told = table.columns[read.layout.time->index].is_unit_told;
+  }
+  Result<RawSamples> samples = SamplesOf(table, read.layout, name);
+  Result<std::string> sha256 = Sha256(bytes);
+  if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
+  read.samples = *std::move(samples);
+  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  read.sha256 = *std::move(sha256);
+  if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
+  return csv::ToRecording(std::move(read), line, options);
+}
+
+}  // namespace pendulum

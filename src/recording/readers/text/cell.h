@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <utility>
+
+#include "recording/readers/columns/column_choice.h"
+#include "recording/readers/text/vernier.h"
+
+namespace pendulum::csv {
+
+/// Reads the cells of one file's rows that hold numbers.
+struct Cells {
+  Numbers numbers;
+  bool may_have_gaps = false;
+  bool is_gap = false;  // A cell of this row is empty.
+
+  /// A field that is quoted, empty or at fault.
+  Result<void> Read(const Line& line, std::string_view field, const Column& column, double& number) {
+    const std::string_view text = Unquote(field);
+    if (numbers.Parse(text, number)) return {};
+    if (may_have_gaps && (text.empty() || text == "NaN" || text == "nan")) {
+      is_gap = true;
+      return {};
+    }
+    if (IsVernier(text)) {
+      return line.Fault(Trim(field).data(),
+                        "a second data set begins here; export the data sets one by one, each to a file of its own");
+    }
+    return line.Fault(Trim(field).data(), "column " + column.name + " " + numbers.WhyNot(text));
+  }
+
+  /// Whether the row had an empty cell; the next has none yet.
+  bool TakeGap() { return std::exchange(is_gap, false); }
+};
+
+}  // namespace pendulum::csv

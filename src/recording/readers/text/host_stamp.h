@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "recording/readers/columns/csv.h"
+
+/// The stamp that a serial monitor puts before each line: "14:03:22.123 -> ".
+namespace pendulum::csv {
+
+struct HostStamp {
+  std::optional<double> second_of_day;  // None when only the end of a stamp is left.
+  std::string_view rest;                // What the device sent.
+};
+
+/// The stamp of a line, if there is one or the end of one.
+inline std::optional<HostStamp> FindHostStamp(std::string_view line) {
+  constexpr std::string_view kArrow = "->";
+  const std::size_t arrow = line.find(kArrow);
+  if (arrow == std::string_view::npos) return std::nullopt;
+  const std::string_view stamp = Trim(line.substr(0, arrow));
+  if (stamp.find_first_not_of("0123456789:.") != std::string_view::npos) return std::nullopt;
+  HostStamp found{std::nullopt, line.substr(arrow + kArrow.size())};
+  const std::size_t hour_end = stamp.find(':');
+  const std::size_t minute_end = stamp.find(':', hour_end + 1);
+  if (hour_end == std::string_view::npos || minute_end == std::string_view::npos) return found;
+  std::array<double, 3> parts{};
+  const std::array<std::string_view, 3> texts = {
+      stamp.substr(0, hour_end), stamp.substr(hour_end + 1, minute_end - hour_end - 1), stamp.substr(minute_end + 1)};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!ParseNumber(texts.at(i), parts.at(i))) return found;
+  }
+  if (parts[0] < 24 && parts[1] < 60 && parts[2] < 61) {
+    // In whole milliseconds where the stamp has them, so that 22.1 s after the minute is what one would write.
+    constexpr double kFine = 1e6;
+    found.second_of_day = std::round(((parts[0] * 60 + parts[1]) * 60 + parts[2]) * kFine) / kFine;
+  }
+  return found;
+}
+
+}  // namespace pendulum::csv

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/readers/columns/joint_table.h"
+#include "recording/readers/text/cell.h"
+#include "recording/readers/text/ros.h"
+
+namespace pendulum::csv {
+
+/// Reads the rows of a table of ROS.
+class RosRows {
+ public:
+  /// `columns` and `layout` must outlive this object; the columns may still be chosen.
+  RosRows(const RosTable& table, const std::vector<TableColumn>& columns, const Layout& layout)
+      : table_(table), columns_(columns), layout_(layout), stamps_(table.is_nanoseconds) {}
+
+  bool has_joints() const { return table_.joint != kNoColumn; }
+
+  /// What the user asks for, without the joint.
+  ReadOptions TakeJoint(const ReadOptions& options);
+
+  /// kDataLoss: both coordinates of a point, where each row is one joint's.
+  Result<void> CheckSecond(const Line& line) const;
+
+  struct Sample {
+    double time = 0, value = 0, second = 0;
+  };
+
+  /// The sample of a row, none where it has a gap or goes to its joint.
+  Result<std::optional<Sample>> Read(const Line& line, Cells& cells);
+
+  /// The rows of the joint that is chosen, and what its quantity is called. `line` is that of the names.
+  Result<JointRows*> ChooseJoint(const Line& line);
+  std::string NameOf(const JointRows& rows) const;
+
+ private:
+  Result<void> ReadStamp(const Line& line, Cells& cells, double& time);
+
+  RosTable table_;
+  const std::vector<TableColumn>& columns_;
+  const Layout& layout_;
+  StampClock stamps_;
+  std::string joint_;  // Asked for; empty: none.
+  JointTable joints_;
+  std::vector<std::string_view> fields_;  // Of the row.
+};
+
+}  // namespace pendulum::csv

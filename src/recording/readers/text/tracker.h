@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/readers/columns/runs.h"
+
+/// A line of labels above the names: Tracker writes the name of the track there, of several tracks ("#multi:") each
+/// above its first column; Capstone and SPARKvue write runs.
+namespace pendulum::csv {
+
+/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; `r` is that of the
+/// vector (x, y). Angles and rates are in the unit that was chosen there, which it does not write.
+inline std::string TrackerMeaning(const std::string& name) {
+  const std::string canonical = CanonicalName(name);
+  if (canonical == "t") return "time_s";
+  if (canonical == "t_s" || canonical == "t_ms") return "time" + canonical.substr(1);
+  if (canonical == "x" || canonical == "y") return canonical + " (m)";
+  if (canonical == "r") return "absolute r (m)";
+  return PlainUnits(name);
+}
+
+inline bool HasNumber(std::string_view row, char separator) {
+  Numbers numbers(separator != ',');
+  for (FieldCutter fields(row, separator); !fields.done();) {
+    double number = 0;
+    if (numbers.Parse(Unquote(fields.Next()), number)) return true;
+  }
+  return false;
+}
+
+/// The columns of names that have a line of labels above them, none if these are no such lines: in `second` stand names
+/// only, one of them a time, and in `third` numbers.
+inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::string_view second, std::string_view third,
+                                                char separator) {
+  const std::vector<Name> names = SplitHeader(second, separator);
+  const auto is_name = [](const Name& name) { return name.text.empty() || IsName(name.text); };
+  const auto is_time = [](const Name& name) { return IsTime(TrackerMeaning(std::string(name.text))); };
+  if (names.size() < 2 || !std::ranges::all_of(names, is_name) || std::ranges::none_of(names, is_time)) return {};
+  if (!HasNumber(third, separator) || HasNumber(first, separator)) return {};
+  std::vector<Name> labels = SplitHeader(first, separator == ' ' ? '\t' : separator);
+  if (labels.size() > names.size()) labels.resize(names.size());
+  const auto is_label = [](const Name& label) { return !label.text.empty(); };
+  const bool is_one = std::ranges::count_if(labels, is_label) == 1;
+  const bool is_tracker = std::ranges::none_of(names, [](const Name& name) { return IsTime(name.text); }) ||
+                          std::ranges::any_of(names, [](const Name& name) { return name.text == "t"; });
+  std::vector<TableColumn> columns;
+  std::string run;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i < labels.size() && is_label(labels[i])) run = labels[i].text;
+    const std::string name(names[i].text);
+    const bool is_shared = is_one || run.empty() || name.empty();
+    std::string written = is_shared ? "" : run;
+    written += is_shared ? "" : ": ";
+    written += name;
+    columns.push_back(
+        {written, is_tracker ? TrackerMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
+  }
+  return columns;
+}
+
+}  // namespace pendulum::csv

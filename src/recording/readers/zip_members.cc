@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/zip_members.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <zip.h>
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+bool MayBeRecording(std::string_view path) {
+  const std::string_view file = path.substr(path.rfind('/') + 1);  // npos + 1 is 0
+  return !file.empty() && file.front() != '.' && !path.starts_with("meta/") && !path.starts_with("__MACOSX/");
+}
+
+struct Close {
+  void operator()(zip_file_t* file) const { zip_fclose(file); }
+};
+
+}  // namespace
+
+void ZipMembers::Discard::operator()(zip* archive) const { zip_discard(archive); }
+
+Result<ZipMembers> ZipMembers::Open(std::string_view bytes, const std::string& name) {
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+  ZipMembers opened;
+  opened.name_ = name;
+  if (source != nullptr) opened.archive_.reset(zip_open_from_source(source, ZIP_RDONLY, &error));
+  if (opened.archive_ == nullptr && source != nullptr) zip_source_free(source);
+  const std::string why = zip_error_strerror(&error);
+  zip_error_fini(&error);
+  if (opened.archive_ == nullptr) {
+    return Fault(name, "this zip file cannot be opened (" + why + "): it is damaged or cut off; export it again");
+  }
+  opened.FindMembers();
+  return opened;
+}
+
+void ZipMembers::FindMembers() {
+  const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    zip_stat_t stat;
+    if (zip_stat_index(archive_.get(), i, ZIP_FL_ENC_GUESS, &stat) != 0) continue;
+    if ((stat.valid & ZIP_STAT_NAME) == 0 || stat.name == nullptr) continue;
+    const bool is_encrypted = (stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE;
+    paths_.emplace_back(stat.name);
+    if (MayBeRecording(stat.name)) members_.push_back({stat.name, static_cast<std::uint64_t>(i), is_encrypted});
+  }
+}
+
+bool ZipMembers::Has(std::string_view path) const { return std::ranges::find(paths_, path) != paths_.end(); }
+
+std::string ZipMembers::NameOf(const Member& member) const {
+  const std::string quoted = Quoted(member.path);
+  return name_ + ":" + quoted.substr(1, quoted.size() - 2);
+}
+
+Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t most) const {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  if (member.is_encrypted) {
+    return Fault(NameOf(member), "it is encrypted; unpack it with its password and name the file");
+  }
+  const auto damaged = [&](const std::string& why) {
+    return Fault(NameOf(member), "it cannot be unpacked (" + why + "); export or pack it again");
+  };
+  const std::unique_ptr<zip_file_t, Close> file(zip_fopen_index(archive_.get(), member.index, 0));
+  if (file == nullptr) return damaged(zip_error_strerror(zip_get_error(archive_.get())));
+  std::string text;
+  while (text.size() < most) {
+    const std::size_t used = text.size();
+    text.resize(std::min(used + std::max(used, kBlock), most));
+    const zip_int64_t got = zip_fread(file.get(), text.data() + used, text.size() - used);
+    if (got < 0) return damaged(zip_error_strerror(zip_file_get_error(file.get())));
+    text.resize(used + static_cast<std::size_t>(got));
+    if (got == 0) break;
+  }
+  return text;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/fit_report.h"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::fit_report_test {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(OptionsLike, TakesStartAndNoiseFamilyOfTheFit) {
+  FitReport fit;
+  fit.start = StartKind::kMoving;
+  fit.noise.family = NoiseFamily::kQuantized;
+  EXPECT_EQ(OptionsLike(fit, {}).start, StartKind::kMoving);
+  EXPECT_EQ(OptionsLike(fit, {}).noise, NoiseFamily::kQuantized);
+  fit.start = StartKind::kRelease;
+  fit.noise.family = NoiseFamily::kHuber;
+  EXPECT_EQ(OptionsLike(fit, {}).start, StartKind::kRelease);
+  EXPECT_EQ(OptionsLike(fit, {}).noise, NoiseFamily::kHuber);
+}
+
+TEST(Termination, HasANameAndAnExitCode) {
+  EXPECT_THAT((std::vector<std::string_view>{
+                  TerminationName(Termination::kConverged), TerminationName(Termination::kNotConverged),
+                  TerminationName(Termination::kNotIdentifiable), TerminationName(Termination::kFailed)}),
+              ElementsAre("converged", "not_converged", "not_identifiable", "failed"));
+  EXPECT_EQ(ExitCode(Termination::kConverged), 0);
+  EXPECT_EQ(ExitCode(Termination::kNotConverged), 1);
+  EXPECT_EQ(ExitCode(Termination::kNotIdentifiable), 1);
+  EXPECT_EQ(ExitCode(Termination::kFailed), 1);
+}
+
+TEST(WithdrawErrors, LeavesEstimatesWithAReasonInPlaceOfErrors) {
+  FitReport fit;
+  fit.parameters.resize(2);
+  fit.parameters[0] = {.info = kInertia, .estimate = 0.04, .std_error = 0.001, .lower95 = 0.038, .upper95 = 0.042};
+  fit.parameters[1] = {.info = kZeroAngle, .estimate = 0.1, .fixed = true, .reason = "fixed"};
+  fit.covariance_names = {"inertia"};
+  fit.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-6);
+  WithdrawErrors("two minima", fit);
+  EXPECT_EQ(fit.Find("inertia")->estimate, 0.04);
+  EXPECT_EQ(fit.Find("inertia")->std_error, std::nullopt);
+  EXPECT_EQ(fit.Find("inertia")->upper95, std::nullopt);
+  EXPECT_EQ(fit.Find("inertia")->reason, "two minima");
+  EXPECT_EQ(fit.Find("zero_angle")->reason, "fixed");
+  EXPECT_EQ(fit.Find("viscous"), nullptr);
+  EXPECT_EQ(fit.covariance.size(), 0);
+}
+
+TEST(FitReport, KnowsItsWarningsByTheirCodes) {
+  FitReport fit;
+  fit.warnings.push_back({"lack_of_fit", "the residuals are not noise"});
+  EXPECT_TRUE(fit.Warns("lack_of_fit"));
+  EXPECT_FALSE(fit.Warns("lack"));
+}
+
+}  // namespace
+}  // namespace pendulum::fit_report_test

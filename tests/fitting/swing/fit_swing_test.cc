@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/fit_swing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fitting/likelihood/depth_table.h"
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::fit_swing_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+using testing::Lt;
+using testing::Not;
+
+SwingFit FitChosen(const Recording& recording, const FitOptions& options, const SwingChoice& choice = {}) {
+  const ChosenSwings swings = Must(ChooseSwings(recording, choice));
+  return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
+}
+
+std::vector<std::string> Codes(const FitReport& report) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : report.warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+constexpr double kHalfPeriod = 0.671;  // s, of the textbook rig at 0.4 rad: π sqrt(0.079 / G) (1 + 0.4² / 16)
+
+/// A hand leads the pendulum through half swing `half` (from 0) after its release, and lets go of it as it would be.
+Recording Guided(const SyntheticOptions& run, int half, double by = 0.05) {
+  Recording recording = Must(SimulateRecording(run));
+  const double from = run.release_time + half * kHalfPeriod;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    const double share = (recording.time[i] - from) / kHalfPeriod;
+    if (share > 0 && share < 1) recording.value[i] += by * std::pow(std::sin(kPi * share), 2);
+  }
+  return recording;
+}
+
+void ExpectTruthOfThePendulum(const FitReport& fit, const SyntheticOptions& run) {
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  for (int k = 0; k < 3; ++k) {
+    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(k)];
+    EXPECT_THAT(parameter.estimate, DoubleNear(run.parameters[static_cast<std::size_t>(k)], 4 * *parameter.std_error))
+        << parameter.info.name;
+  }
+}
+
+TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    SyntheticOptions run = NoisyRun("coulomb", seed);
+    run.duration = 20;
+    const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
+    EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
+    EXPECT_EQ(result.swing.to, 19.99);
+    EXPECT_EQ(result.swing.begins, "what is before it does not fit what follows: touched, or another law");
+    EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
+    ExpectTruthOfThePendulum(result.fit, run);
+  }
+}
+
+TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
+  SyntheticOptions run = NoisyRun("coulomb", 1);
+  run.duration = 1.9 + 28.5 * kHalfPeriod;
+  run.noise = 0.0005;
+  const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
+  EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
+  EXPECT_EQ(result.swing.from, 0);
+  EXPECT_EQ(result.swing.ends, "what follows it does not fit what is before: touched, or another law");
+  ExpectTruthOfThePendulum(result.fit, run);
+}
+
+TEST(FitSwing, SaysWhatItLeftOut) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 20;
+  const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
+  ASSERT_THAT(Codes(result.fit), ElementsAre("disturbed"));
+  EXPECT_EQ(
+      result.fit.warnings[0].message,
+      "left out as disturbed: the window begins at " + NumberText(result.swing.from, 4) +
+          " s and ends at 19.99 s, for what was left out does not fit the rest; --from and --to choose otherwise");
+}
+
+TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const SyntheticOptions run = NoisyRun("coulomb", seed);
+    const Recording recording = Must(SimulateRecording(run));
+    const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
+    EXPECT_EQ(result.used.time, recording.time);
+    EXPECT_THAT(Codes(result.fit), Not(Contains("disturbed")));
+    ExpectTruthOfThePendulum(result.fit, run);
+  }
+}
+
+TEST(FitSwing, KeepsTheWholeWindowWhereOnlyTheModelIsWrong) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    SyntheticOptions run = NoisyRun("drag", seed);
+    run.release_angle = 1.2;
+    run.noise = 0.0005;
+    const Recording recording = Must(SimulateRecording(run));
+    const SwingFit result = FitChosen(recording, ModelOptions("viscous"));
+    EXPECT_EQ(result.used.time, recording.time);
+    EXPECT_THAT(Codes(result.fit), ElementsAre("lack_of_fit"));
+  }
+}
+
+TEST(FitSwing, KeepsTheEndsThatTheUserChose) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 20;
+  const Recording recording = Guided(run, 0);
+  const SwingFit from = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, kOpen));
+  EXPECT_EQ(from.used.time[0], 0.5);
+  EXPECT_THAT(Codes(from.fit), AllOf(Contains("lack_of_fit"), Not(Contains("disturbed"))));
+  const SwingFit both = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, 19));
+  EXPECT_EQ(both.used.size(), 1851);
+  const SwingFit to = FitChosen(recording, ModelOptions("coulomb"), Between(kOpen, 19));
+  EXPECT_EQ(to.used.time[to.used.size() - 1], 19);
+  EXPECT_THAT(to.used.time[0], Ge(1.9));
+}
+
+TEST(FitSwing, HandsOnWhatTheFitRefuses) {
+  const Recording recording = Must(SimulateRecording(NoisyRun()));
+  const FreeSwing swing = Must(ChooseSwings(recording, {})).found.at(0);
+  const auto refused = FitSwing(recording, swing, ModelOptions("columb"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
+}
+
+TEST(FitSwing, TakesTurnsOverTheTopOutOfTheZero) {
+  SyntheticOptions truth = NoisyRun("coulomb", 3);
+  truth.start = StartKind::kMoving;
+  truth.release_angle = truth.release_time = 0;
+  truth.initial_rate = 3.2 / std::sqrt(truth.parameters[0]);  // 2 ω0 just reaches the top
+  truth.duration = 40;
+  const Recording recording = Must(SimulateRecording(truth));
+  const FreeSwing swing = Must(ChooseSwings(recording, {})).found.front();
+  EXPECT_EQ(swing.begins, "after its turns over the top");
+  const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
+  EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
+  EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "turns_taken_out")));
+}
+
+}  // namespace
+}  // namespace pendulum::fit_swing_test

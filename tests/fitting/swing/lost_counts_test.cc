@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/lost_counts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::lost_counts_test {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::Lt;
+using testing::SizeIs;
+
+/// The textbook rig's sensor with noise of so many counts.
+SyntheticOptions CountingRun(double noise) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.resolution = kCount;
+  run.noise = noise * kCount;
+  run.seed = 11;
+  return run;
+}
+
+SwingFit Fit(const Recording& recording, std::string_view model = "coulomb") {
+  const ChosenSwings swings = Must(ChooseSwings(recording, {}));
+  FitOptions options;
+  options.model = model;
+  return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
+}
+
+const std::string& MessageOf(const FitReport& fit, std::string_view code) {
+  for (const Warning& warning : fit.warnings) {
+    if (warning.code == code) return warning.message;
+  }
+  throw std::runtime_error("no warning " + std::string(code));
+}
+
+/// The largest |estimate - truth| over its standard error.
+double LargestDeviation(const FitReport& fit, const SyntheticOptions& run) {
+  const std::vector<double> truth = TrueParameters(run);
+  double largest = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    largest = std::max(largest, std::abs(fit.parameters[i].estimate - truth[i]) / fit.parameters[i].std_error.value());
+  }
+  return largest;
+}
+
+TEST(FindZeroJumps, FindsNoneWhereNoneAre) {
+  for (const double noise : {0.1, 1.0}) {
+    EXPECT_FALSE(FindZeroJumps(Must(SimulateRecording(CountingRun(noise))), {}));
+  }
+}
+
+TEST(FindZeroJumps, GivesBackTheReadingsBeforeCountsWereLost) {
+  SyntheticOptions run = CountingRun(0.25);
+  const Recording whole = Must(SimulateRecording(run));
+  run.lost_counts = {{5.2, 2}, {11.7, -1}};
+  const auto jumps = FindZeroJumps(Must(SimulateRecording(run)), {});
+  ASSERT_TRUE(jumps);
+  EXPECT_THAT(jumps->lost, ElementsAre(Field(&LostCounts::counts, 2), Field(&LostCounts::counts, -1)));
+  const Eigen::ArrayXd levels = (jumps->corrected.value - whole.value).array() / kCount;
+  // Where in the noise a jump was is known to a few samples.
+  EXPECT_LE((levels.round().abs() > 0).count(), 6);
+  EXPECT_EQ(levels.round().matrix().tail<1>()[0], 0);
+}
+
+TEST(FitSwing, MovesLostCountsBackAndSaysSo) {
+  SyntheticOptions run = CountingRun(0.5);
+  run.lost_counts = {{6.5, -3}};
+  const SwingFit result = Fit(Must(SimulateRecording(run)));
+  EXPECT_EQ(result.fit.termination, Termination::kConverged);
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("the zero jumps by -3 counts at 6.5"));
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("moved back by as much"));
+  EXPECT_FALSE(result.fit.Warns("lack_of_fit") || result.fit.Warns("correlated_residuals"));
+  EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
+}
+
+TEST(FitSwing, MovesOneCountBackThatTheNoiseHides) {
+  SyntheticOptions run = CountingRun(1);
+  run.lost_counts = {{9.1, 1}};
+  const SwingFit result = Fit(Must(SimulateRecording(run)));
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 1 count at "));
+  EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
+}
+
+TEST(FitSwing, FindsLostCountsWhateverTheLawAskedFor) {
+  SyntheticOptions run = CountingRun(0.5);
+  run.lost_counts = {{6.5, 4}};
+  const SwingFit result = Fit(Must(SimulateRecording(run)), "viscous");
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 4 counts at 6.5"));
+  EXPECT_TRUE(result.fit.Warns("lack_of_fit"));  // there is dry friction
+}
+
+TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
+  for (const int counts : {1, 2, 5}) {
+    SyntheticOptions run = CountingRun(0.5);
+    run.lost_counts = {{9.5, counts}};
+    Recording recording = Must(SimulateRecording(run));
+    const Eigen::Index gap = 900, size = 100;  // 9 s to 10 s
+    const Eigen::Index behind = recording.size() - gap - size;
+    recording.time.segment(gap, behind) = recording.time.tail(behind).eval();
+    recording.value.segment(gap, behind) = recording.value.tail(behind).eval();
+    recording.time.conservativeResize(gap + behind);
+    recording.value.conservativeResize(gap + behind);
+    const SwingFit result = Fit(recording);
+    EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("at 10 s")) << counts;
+    EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4)) << counts;
+  }
+}
+
+/// An encoder's events, whose counter loses one at a turning point now and then, and four amid the motion: there its
+/// logger was busy, so that rows are missing.
+TEST(FitSwing, MovesBackWhatAnEncoderOfEventsLost) {
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.start = StartKind::kMoving;
+  run.initial_angle = -0.3;
+  run.initial_rate = 0.5;
+  run.rows = RowTiming::kEvents;
+  run.sample_rate = 1000;
+  run.resolution = 0.0026;
+  run.edge_lag = 0.35 * run.resolution;
+  run.noise = 0.05 * run.resolution;
+  for (int k = 0; k < 14; ++k) run.lost_counts.push_back({1.3 + 1.297 * k, k % 3 == 0 ? -1 : 1});
+  run.lost_counts.push_back({12.4, -4});
+  std::ranges::sort(run.lost_counts, {}, &LostCounts::time);
+  const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
+  const SwingFit result = Fit(edges);
+  EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("and 10 times more"));
+  EXPECT_FALSE(result.fit.Warns("lack_of_fit"));
+  EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
+}
+
+TEST(FitSwing, LeavesAJumpNearTheEndInTheWindow) {
+  SyntheticOptions run = CountingRun(0.5);
+  run.lost_counts = {{19.2, 2}};
+  const SwingFit result = Fit(Must(SimulateRecording(run)));
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 2 counts at 19.2"));
+  EXPECT_THAT(result.swing.to, DoubleNear(19.99, 1e-9));
+}
+
+TEST(FitSwing, RefusesAZeroThatSlips) {
+  SyntheticOptions run = CountingRun(0.5);
+  for (const double resolution : {0.0, kCount}) {
+    run.resolution = resolution;
+    Recording recording = Must(SimulateRecording(run));
+    recording.value.tail(1100).array() += 2.5 * kCount;  // from 9 s on
+    const SwingFit result = Fit(recording);
+    EXPECT_EQ(result.fit.termination, Termination::kNotConverged);
+    // 2.5 counts are 0.00866 rad.
+    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("the zero jumps by 0.008"));
+    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("choose a window before it or after it"));
+    EXPECT_EQ(result.fit.reason, MessageOf(result.fit, "zero_jumps"));
+    EXPECT_FALSE(result.fit.parameters[1].std_error);
+  }
+}
+
+TEST(MayJump, SeesAMeanThatChanges) {
+  FitReport fit;
+  fit.fitted = Eigen::ArrayXd::LinSpaced(1000, 0, 99).sin();
+  fit.residual = 0.01 * Eigen::ArrayXd::LinSpaced(1000, 0, 12345).sin();
+  EXPECT_FALSE(MayJump(fit));
+  fit.residual.tail(400).array() += 0.005;
+  EXPECT_TRUE(MayJump(fit));
+  fit.residual *= 1e-8;  // the rounding of numbers
+  EXPECT_FALSE(MayJump(fit));
+}
+
+}  // namespace
+}  // namespace pendulum::lost_counts_test

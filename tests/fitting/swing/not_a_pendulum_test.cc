@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/not_a_pendulum.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/fitting/swing/fit_swing.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::not_a_pendulum_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::DoubleNear;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+std::vector<std::string> Codes(const FitReport& report) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : report.warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+SwingFit FitLongest(const Recording& recording, const FitOptions& options) {
+  const ChosenSwings swings = Must(ChooseSwings(recording, {}));
+  return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
+}
+
+/// Everything that would look like a result is gone, and the warning says why.
+void ExpectWithdrawn(const FitReport& fit) {
+  EXPECT_EQ(fit.termination, Termination::kNotConverged);
+  EXPECT_THAT(fit.reason, StartsWith("this is not a free pendulum's swing: "));
+  EXPECT_THAT(Codes(fit), Contains("not_a_pendulum"));
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    SCOPED_TRACE(parameter.info.name);
+    EXPECT_FALSE(parameter.std_error || parameter.lower95 || parameter.upper95);
+    EXPECT_EQ(parameter.reason, parameter.fixed ? "fixed" : "not a pendulum");
+  }
+  for (const DerivedQuantity& quantity : fit.derived) EXPECT_FALSE(quantity.std_error) << quantity.name;
+  EXPECT_TRUE(fit.covariance_names.empty());
+  EXPECT_EQ(fit.covariance.size(), 0);
+}
+
+void ExpectAPendulum(const FitReport& fit) {
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  EXPECT_THAT(Codes(fit), Not(Contains("not_a_pendulum")));
+}
+
+// ---- A mass on a spring -------------------------------------------------------------------------------------------
+
+/// The textbook rig with linear gravity, and so with one period.
+Recording LinearOscillator(double degrees, std::string_view friction, std::uint64_t seed) {
+  SyntheticOptions run = NoisyRun(friction, seed);
+  run.model.gravity = Gravity::kLinear;
+  run.release_angle = degrees * kRadFromDeg;
+  run.duration = 20;
+  return Must(SimulateRecording(run));
+}
+
+/// The number behind `before` in a sentence.
+double NumberAfter(const std::string& sentence, const std::string& before) {
+  const std::size_t at = sentence.find(before);
+  if (at == std::string::npos) throw std::runtime_error("no '" + before + "' in: " + sentence);
+  return std::stod(sentence.substr(at + before.size()));
+}
+
+TEST(FitSwing, NamesALinearOscillatorWithNumbers) {
+  for (const auto& [degrees, friction] :
+       {std::pair(40.0, "viscous"), std::pair(80.0, "coulomb"), std::pair(40.0, "drag")}) {
+    SCOPED_TRACE(std::to_string(degrees) + " deg, " + std::string(friction));
+    const FitReport fit = FitLongest(LinearOscillator(degrees, friction, 1), ModelOptions("coulomb")).fit;
+    ExpectWithdrawn(fit);
+    // A pendulum's period is longer by 2 / π K(sin(A / 2)).
+    const double longer = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg)) - 1;
+    EXPECT_THAT(NumberAfter(fit.reason, "which is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
+    EXPECT_THAT(NumberAfter(fit.reason, "longer at "), DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
+    EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
+    EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));
+    EXPECT_THAT(fit.reason, HasSubstr("; --model linear describes the former"));
+  }
+}
+
+TEST(FitSwing, TakesALinearOscillatorForWhatItIsByTheLinearModel) {
+  for (const double degrees : {40.0, 80.0}) {
+    const Recording recording = LinearOscillator(degrees, "viscous", 1);
+    const FitReport fit = FitLongest(recording, ModelOptions("linear")).fit;
+    ExpectAPendulum(fit);
+    EXPECT_FALSE(WhyLinear(recording, fit));
+  }
+}
+
+TEST(WhyLinear, SaysNothingOfSmallSwings) {
+  const Recording recording = LinearOscillator(10, "coulomb", 1);
+  EXPECT_FALSE(WhyLinear(recording, Fit(recording, ModelOptions("coulomb"))));
+}
+
+TEST(WhyLinear, SaysNothingOfAFitThatFailed) {
+  FitReport failed;
+  failed.termination = Termination::kFailed;
+  EXPECT_FALSE(WhyLinear(LinearOscillator(40, "coulomb", 1), failed));
+  EXPECT_FALSE(WhyTwoModes(LinearOscillator(40, "coulomb", 1), failed));
+}
+
+// ---- Two modes ----------------------------------------------------------------------------------------------------
+
+/// A pendulum with another mode of `share` of its amplitude at `ratio` of its natural frequency.
+Recording TwoModes(double share, double ratio, double duration = 25) {
+  SyntheticOptions run = NoisyRun("viscous");
+  run.duration = duration;
+  Recording recording = Must(SimulateRecording(run));
+  const double frequency = ratio / std::sqrt(run.parameters[0]);
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    const double t = recording.time[i] - run.release_time;
+    if (t > 0) recording.value[i] += share * run.release_angle * std::exp(-0.02 * t) * std::sin(frequency * t);
+  }
+  return recording;
+}
+
+TEST(FitSwing, NamesTwoModesWithTheirPeriods) {
+  const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
+  for (const double ratio : {0.5, 1.7, 2.4}) {
+    SCOPED_TRACE(ratio);
+    const FitReport fit = FitLongest(TwoModes(0.12, ratio), ModelOptions("coulomb")).fit;
+    ExpectWithdrawn(fit);
+    // 25 s tell frequencies that are 1 / 25 s apart.
+    EXPECT_THAT(1 / NumberAfter(fit.reason, "with a period of "), DoubleNear(ratio / period, 1.0 / 25));
+    EXPECT_THAT(NumberAfter(fit.reason, "beside the pendulum's "), DoubleNear(period, 0.02 * period));
+    EXPECT_THAT(NumberAfter(fit.reason, "swing: "), testing::AllOf(testing::Ge(40), testing::Le(101)));
+    EXPECT_THAT(fit.reason, HasSubstr(" s: two modes, of a second pendulum, a string or a loose support"));
+  }
+}
+
+TEST(FitSwing, NamesModesOfNearlyOneFrequencyThatBeat) {
+  const FitReport fit = FitLongest(TwoModes(0.6, 1.2, 60), ModelOptions("coulomb")).fit;
+  ExpectWithdrawn(fit);
+  EXPECT_EQ(fit.reason,
+            "this is not a free pendulum's swing: its amplitude grows again and again, as that of two pendulums that "
+            "are coupled does");
+}
+
+// ---- A pendulum ---------------------------------------------------------------------------------------------------
+
+/// 20 s of a pendulum of 5 rad/s let go at 1 rad under a friction that no model here has: torque(rate) in units of G.
+/// Classical Runge-Kutta steps of 1 ms; noise as in NoisyRun.
+template <typename Friction>
+Recording PendulumWith(const Friction& torque) {
+  Recording recording = Must(SimulateRecording([] {
+    SyntheticOptions run = NoisyRun("viscous");
+    run.duration = 20;
+    return run;
+  }()));
+  SyntheticOptions silent = NoisyRun("viscous");
+  silent.duration = 20;
+  silent.noise = 0;
+  recording.value -= Must(SimulateRecording(silent)).value;
+  const auto rate_of = [&](const Eigen::Array2d& x) {
+    return Eigen::Array2d(x[1], -25 * (std::sin(x[0]) + torque(x[1])));
+  };
+  Eigen::Array2d x(1.0, 0.0);
+  constexpr double h = 1e-3;
+  for (double& value : recording.value) {
+    value += x[0];
+    for (int step = 0; step < 10; ++step) {
+      const Eigen::Array2d k1 = rate_of(x), k2 = rate_of(x + 0.5 * h * k1);
+      const Eigen::Array2d k3 = rate_of(x + 0.5 * h * k2), k4 = rate_of(x + h * k3);
+      x += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+  }
+  return recording;
+}
+
+TEST(FitSwing, APendulumWithAnotherFrictionLawIsAPendulum) {
+  const Recording recordings[] = {
+      PendulumWith([](double rate) { return 0.0004 * rate * rate * rate; }),
+      PendulumWith([](double rate) { return 0.006 * rate / std::sqrt(std::abs(rate) + 1e-3); }),
+      PendulumWith([](double rate) { return 0.004 * rate * std::abs(rate); })};
+  for (const Recording& recording : recordings) {
+    for (const std::string_view model : {"viscous", "coulomb"}) {
+      SCOPED_TRACE(std::string(model) + ", recording " + std::to_string(&recording - recordings));
+      const FitReport fit = FitLongest(recording, ModelOptions(model)).fit;
+      ExpectAPendulum(fit);
+      EXPECT_FALSE(WhyLinear(recording, fit));
+      EXPECT_FALSE(WhyTwoModes(recording, fit));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::not_a_pendulum_test

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/swing/undersampled.h"
+
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::undersampled_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Field;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+using testing::Lt;
+using testing::Not;
+
+constexpr double kInertiaTruth = 0.079;  // kg m^2, as published
+constexpr double kGeometric = 0.0761;    // kg m^2, m l²/3 + M l²
+constexpr double kFrequency = 0.76034;   // Hz, sqrt(1.803 / 0.079) / 2π
+constexpr double kSlowInertia = 0.36;    // kg m^2: with the same torque a pendulum of 2 m, 0.356 Hz
+
+Rig TextbookRig() {
+  Rig rig;
+  rig.gravity_torque = {kTextbookTorque, 0};
+  rig.inertia = RigValue{kGeometric, 0};
+  return rig;
+}
+
+/// The textbook pendulum in motion at any phase: viscous friction, 30 s, noise of a count.
+SyntheticOptions Swing(double rate_hz, double amplitude, std::uint64_t seed, double inertia = kInertiaTruth) {
+  std::mt19937_64 generator(1000 + seed);
+  const double phase = 2 * kPi * static_cast<double>(generator() >> 11) * 0x1p-53;
+  SyntheticOptions options;
+  options.model = Must(FindMotionModel("viscous"));
+  options.parameters = {inertia / kTextbookTorque, 0.003 / kTextbookTorque};
+  options.start = StartKind::kMoving;
+  options.initial_angle = amplitude * std::cos(phase);
+  options.initial_rate = -amplitude * std::sin(phase) * std::sqrt(kTextbookTorque / inertia);
+  options.duration = 30;
+  options.sample_rate = rate_hz;
+  options.zero = 0.012;
+  options.noise = 0.2 * kRadFromDeg;
+  options.resolution = kCount;
+  options.seed = seed;
+  return options;
+}
+
+SwingFit FitAsTheToolDoes(const Recording& recording, const std::optional<Rig>& rig, FitOptions options = {}) {
+  options.rig = rig;
+  const ChosenSwings swings = Must(ChooseSwings(recording, {}, rig));
+  return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
+}
+
+SwingFit FitSimulated(const SyntheticOptions& options, const std::optional<Rig>& rig, std::string_view model) {
+  return FitAsTheToolDoes(Must(SimulateRecording(options)), rig, ModelOptions(model));
+}
+
+double InertiaOf(const SwingFit& result) { return result.fit.Find("inertia")->estimate; }
+
+auto HasWarning(const std::string& code) { return Contains(Field(&Warning::code, code)); }
+
+/// Deviations from the truth in standard errors.
+struct Scatter {
+  int far = 0;  ///< Beyond 4.
+  double std_dev = 0;
+};
+
+Scatter ScatterOf(double rate_hz, double amplitude, std::string_view model, int seeds) {
+  double sum = 0;
+  Scatter scatter;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const SwingFit result =
+        FitSimulated(Swing(rate_hz, amplitude, static_cast<std::uint64_t>(seed)), TextbookRig(), model);
+    EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+    const double z = (InertiaOf(result) - kInertiaTruth) / result.fit.Find("inertia")->std_error.value_or(1e-99);
+    sum += z * z;
+    scatter.far += std::abs(z) > 4 ? 1 : 0;
+  }
+  scatter.std_dev = std::sqrt(sum / seeds);
+  return scatter;
+}
+
+// ---- With the rig's geometry ---------------------------------------------------------------------------------------
+
+TEST(FitUndersampled, FindsTheInertiaOfATextbookRunSampledOnceASecond) {
+  // z of 24 degrees of freedom has a standard deviation of 1.04, known to 9 % from 60: 0.8 and 1.25 are 2 to 3 of
+  // these.
+  const Scatter scatter = ScatterOf(1, 0.423, "viscous", 60);
+  EXPECT_THAT(scatter.far, Le(1));
+  EXPECT_THAT(std::abs(std::log(scatter.std_dev)), Lt(std::log(1.25)));
+}
+
+TEST(FitUndersampled, FindsItAtSmallAndLargeAmplitudesAndWithDryFriction) {
+  EXPECT_EQ(ScatterOf(1, 0.1, "viscous", 12).far, 0);
+  EXPECT_EQ(ScatterOf(1, 1.2, "viscous", 6).far, 0);
+  EXPECT_EQ(ScatterOf(1, 0.423, "coulomb", 12).far, 0);
+}
+
+TEST(FitUndersampled, FindsItAtFiveThirdsOfTheFrequency) {
+  EXPECT_EQ(ScatterOf(kFrequency * 5 / 3, 0.423, "viscous", 12).far, 0);
+}
+
+TEST(FitUndersampled, LeavesTheHoldOut) {
+  SyntheticOptions run = Swing(1, 0.423, 1);
+  run.start = StartKind::kRelease;
+  run.release_angle = 0.423;
+  run.release_time = 1.9;
+  const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
+  EXPECT_THAT(result.used.time[0], AllOf(Ge(2), Le(3)));  // at 2 s it has moved by less than a tenth of its angle
+  EXPECT_EQ(result.fit.start, StartKind::kMoving);
+  EXPECT_THAT(result.swing.begins, HasSubstr("without the readings that stay put"));
+  EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
+}
+
+TEST(FitUndersampled, FitsAGyro) {
+  SyntheticOptions run = Swing(1, 0.423, 2);
+  run.quantity = Quantity::kRate;
+  const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
+}
+
+TEST(FitUndersampled, UsesTheStampsOfUnevenSamples) {
+  // Once a cycle on average: even samples would tell nothing, scattered ones do.
+  SyntheticOptions run = Swing(kFrequency, 0.423, 3);
+  run.jitter = 0.2;
+  const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
+}
+
+TEST(FitUndersampled, ExplainsTheApparentPeriod) {
+  const SwingFit result = FitSimulated(Swing(1, 0.423, 1), TextbookRig(), "viscous");
+  EXPECT_THAT(result.fit.warnings, HasWarning("aliased"));
+  EXPECT_THAT(result.fit.warnings, Not(HasWarning("ambiguous_frequency")));
+  EXPECT_THAT(result.swing.begins, HasSubstr("sampled too slowly to see half swings: the whole recording"));
+  EXPECT_NEAR(result.swing.half_period, 0.5 / kFrequency, 1e-3);
+  EXPECT_FALSE(result.fit.Find("inertia")->closed_form);
+}
+
+TEST(FitUndersampled, IsNotIdentifiableSampledOnceOrTwiceACycle) {
+  for (const double samples : {1.0, 2.0}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const SwingFit result = FitSimulated(Swing(samples * kFrequency, 0.423, seed), TextbookRig(), "viscous");
+      EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << result.fit.reason;
+      EXPECT_FALSE(result.fit.Find("inertia")->std_error);
+      EXPECT_EQ(result.fit.covariance.size(), 0);
+      EXPECT_THAT(result.fit.warnings, HasWarning("ambiguous_frequency"));
+      EXPECT_THAT(result.fit.warnings, HasWarning("once_a_cycle"));
+    }
+  }
+}
+
+TEST(FitUndersampled, DoesNotTakeAnotherMotionForAPendulumsInNoise) {
+  Recording noise = Must(SimulateRecording(Swing(1, 0.423, 1)));
+  std::mt19937_64 generator(5);
+  for (double& value : noise.value) value = static_cast<double>(generator() >> 11) * 0x1p-53;
+  const SwingFit result = FitAsTheToolDoes(noise, TextbookRig());
+  EXPECT_EQ(result.fit.termination, Termination::kNotConverged);
+  EXPECT_THAT(result.fit.reason, HasSubstr("cannot tell noise from another motion"));
+}
+
+TEST(FitUndersampled, RefusesARelease) {
+  const Recording recording = Must(SimulateRecording(Swing(1, 0.423, 1)));
+  FitOptions options;
+  options.start = StartKind::kRelease;
+  const auto refused = FitUndersampled(recording, WholeRecording(recording), options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(refused.error().message, HasSubstr("--start moving"));
+}
+
+TEST(FitUndersampled, RefusesAConstant) {
+  Recording recording = Must(SimulateRecording(Swing(1, 0.423, 1)));
+  recording.value.setConstant(0.1);
+  const auto refused = FitUndersampled(recording, WholeRecording(recording), {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(refused.error().message, HasSubstr("constant"));
+}
+
+// ---- Without it ----------------------------------------------------------------------------------------------------
+
+TEST(FitUndersampled, GivesNoConfidentAnswerWithoutARig) {
+  for (const double rate : {0.6, 1.0, 1.267, 2.0, 3.5}) {
+    const SwingFit result = FitSimulated(Swing(rate, 0.423, 1), std::nullopt, "viscous");
+    EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << rate << " Hz";
+    EXPECT_FALSE(result.fit.Find("inertia")->std_error);
+  }
+}
+
+TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
+  const SwingFit result = FitSimulated(Swing(4, 0.423, 1, kSlowInertia), std::nullopt, "viscous");
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), kSlowInertia / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
+  EXPECT_FALSE(result.swing.undersampled);
+}
+
+// Milliseconds and microseconds that are taken for seconds.
+TEST(FitUndersampled, RefusesAPeriodThatNoPendulumHas) {
+  for (const double factor : {1e3, 1e6}) {
+    Recording recording = Must(SimulateRecording(Swing(50, 0.423, 1)));
+    recording.time *= factor;
+    const ChosenSwings swings = Must(ChooseSwings(recording, {}, {}));
+    const Result<SwingFit> result = FitSwing(recording, swings.found.front(), ModelOptions("viscous"));
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, StatusCode::kFailedPrecondition);
+    EXPECT_THAT(result.error().message, HasSubstr("which no pendulum has; if the times are milliseconds or micro"));
+  }
+}
+
+TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {
+  const SwingFit result = FitSimulated(Swing(1.3, 0.423, 1, 0.13), TextbookRig(), "viscous");
+  EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << result.fit.reason;
+  EXPECT_THAT(result.fit.reason, HasSubstr("check the rig"));
+}
+
+TEST(FitUndersampled, TakesBoundsForARig) {
+  FitOptions options = ModelOptions("viscous");
+  options.bounds["inertia"] = {0.8 * kInertiaTruth / kTextbookTorque, 1.2 * kInertiaTruth / kTextbookTorque};
+  const SwingFit result = FitAsTheToolDoes(Must(SimulateRecording(Swing(1, 0.423, 1))), std::nullopt, options);
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), kInertiaTruth / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
+}
+
+// ---- Which recordings ----------------------------------------------------------------------------------------------
+
+TEST(IsUndersampled, BelowSevenSamplesInAPeriodFifteenPercentShorter) {
+  const double limit = 7 * 1.15 * std::sqrt(kTextbookTorque / kGeometric) / (2 * kPi);
+  const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
+  EXPECT_TRUE(IsUndersampled(at(0.99 * limit), TextbookRig()));
+  EXPECT_FALSE(IsUndersampled(at(1.01 * limit), TextbookRig()));
+}
+
+TEST(IsUndersampled, WhereAFasterPendulumWouldLookTheSameWithoutARigsInertia) {
+  Rig torque_alone = TextbookRig();
+  torque_alone.inertia.reset();
+  const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
+  for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional<Rig>(torque_alone)}) {
+    EXPECT_TRUE(IsUndersampled(at(3.7), rig));   // 2.94 Hz would look the same
+    EXPECT_TRUE(IsUndersampled(at(5.1), rig));   // 6.7 samples a period
+    EXPECT_FALSE(IsUndersampled(at(5.9), rig));  // 7.8 of them, and no pendulum swings at 5.1 Hz
+  }
+}
+
+TEST(ChooseSwings, TakesAnUndersampledRecordingWhole) {
+  const Recording recording = Must(SimulateRecording(Swing(1, 0.423, 1)));
+  const ChosenSwings swings = Must(ChooseSwings(recording, {}, TextbookRig()));
+  ASSERT_EQ(swings.found.size(), 1U);
+  EXPECT_TRUE(swings.found[0].undersampled);
+  EXPECT_EQ(swings.found[0].from, 0);
+  EXPECT_EQ(swings.found[0].to, 29);
+  const auto second = ChooseSwings(recording, {.release = 2}, TextbookRig());
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr("there is no free swing 2"));
+  EXPECT_EQ(Must(ChooseSwings(recording, {.from = 5, .to = 25}, TextbookRig())).found[0].from, 5);
+}
+
+}  // namespace
+}  // namespace pendulum::undersampled_test

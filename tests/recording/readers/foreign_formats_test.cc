@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files as people and spreadsheets write them, and what the user may say beside them.
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/format.h"
+#include "pendulum/recording/readers/read_recording.h"
+#include "tests/recording/rows.h"
+
+namespace pendulum::foreign_formats_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// ---- Separators and decimal commas -------------------------------------------------------------------------------
+
+TEST(ForeignFormats, ReadDecimalCommasWhereTheSeparatorIsAnother) {
+  ExpectTheRows(RecordingOf("time_ms;angle_rad\n" + Rows("{t},0;{v},0")));
+  ExpectTheRows(RecordingOf("time_ms\tangle_rad\n" + Rows("+{t},\t\"{v},0\"")));
+  ExpectTheRows(RecordingOf("time_ms angle_rad\n" + Rows("  {t}   {v},0 ")));
+  const Recording recording = RecordingOf("time_s;angle_rad\n0,5;-,25\n1;1,5E1\n2;2\n3;3\n4;4\n5;5\n6;6\n7;7,125\n");
+  EXPECT_EQ(recording.time[0], 0.5);
+  EXPECT_EQ(recording.value[0], -0.25);
+  EXPECT_EQ(recording.value[1], 15);
+  EXPECT_EQ(recording.value[7], 7.125);
+}
+
+TEST(ForeignFormats, RefuseTwoKindsOfDecimalsInOneFile) {
+  EXPECT_EQ(FaultOf("time_s;angle_rad\n0,5;1\n1.5;2\n2,5;3\n"),
+            "run.csv:3:1: column \"time_s\" holds \"1.5\", a number with a decimal point in a file of decimal commas; "
+            "write decimals with a comma");
+  EXPECT_EQ(FaultOf("time_s;angle_rad\n0.5;1\n1.5;1,234\n2.5;3\n"),
+            "run.csv:3:5: column \"angle_rad\" holds \"1,234\", a number with a decimal comma in a file of decimal "
+            "points; write decimals with a point");
+  EXPECT_THAT(FaultOf("time_s;angle_rad\n0;1.234,5\n1;2\n"), HasSubstr("holds \"1.234,5\""));
+  EXPECT_THAT(FaultOf("time_s;angle_rad\n0;1,234,5\n1;2\n"), HasSubstr("holds \"1,234,5\""));
+}
+
+TEST(ForeignFormats, ReadWhatASpreadsheetExports) {
+  ExpectTheRows(RecordingOf("\xEF\xBB\xBFsep=;\r\nTime (ms);Angle [deg]\r\n" + Rows("{t},0;{v},0\r")), kDegree);
+  ExpectTheRows(RecordingOf("sep=\t\nTime (ms)\tAngle, smoothed [deg]\n" + Rows("{t}\t{v}")), kDegree);
+}
+
+TEST(ForeignFormats, ReadColumnsThatBlanksSeparate) {
+  ExpectTheRows(RecordingOf("Time (ms)   Angle [deg]\n" + Rows(" {t}  {v}")), kDegree);
+  ExpectTheRows(RecordingOf("n time_ms angle_deg\n" + Rows("{v} {t} {v}")), kDegree);
+}
+
+// ---- Which column ------------------------------------------------------------------------------------------------
+
+TEST(ForeignFormats, TheUserChoosesAmongColumns) {
+  const std::string text = "time_ms,time_s,angle_rad,pot_volts\n" + Rows("{t},9,9,{v}");
+  EXPECT_EQ(FaultOf(text),
+            "run.csv:1:9: columns \"time_ms\" and \"time_s\" could both be the time; choose one with "
+            "--time_column");
+  EXPECT_EQ(FaultOf(text, TimeAndValue("time_ms", "")),
+            "run.csv:1:26: columns \"angle_rad\" and \"pot_volts\" could both be the quantity; choose one with "
+            "--value_column");
+  ExpectTheRows(RecordingOf(text, TimeAndValue("time_ms", "pot_volts")));
+  ExpectTheRows(RecordingOf(text, TimeAndValue("1", "4")));
+  ExpectTheRows(RecordingOf(text, TimeAndValue("1", "", "volts")));
+  EXPECT_EQ(RecordingOf(text, TimeAndValue("1", "4")).unit, "volts");
+}
+
+TEST(ForeignFormats, NamesThatTellNoUnitNeedOne) {
+  const std::string text = "t,x\n" + Rows("{t},{v}");
+  EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
+            "run.csv:1:3: column \"x\" does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
+            "_volts, _m_s2, _px, _m, _cm or _mm, or give --unit");
+  ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "x", "deg")), kDegree);
+  ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "", "deg")), kDegree);
+  ExpectTheRows(RecordingOf("t_ms,x\n" + Rows("{t},{v}"), TimeAndValue("t_ms", "", "deg")), kDegree);
+  EXPECT_EQ(RecordingOf("t,x\n" + Rows("{t},{v}"), TimeAndValue("t:ms", "x", "rad_s")).quantity, Quantity::kRate);
+}
+
+TEST(ForeignFormats, TimesWithoutAUnitAreSecondsIfTheyAreFractions) {
+  const Recording recording = RecordingOf("t,angle_rad\n" + Rows("0.{t}5,{v}"), TimeAndValue("t", ""));
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
+  EXPECT_EQ(recording.warnings[0].message,
+            "run.csv: column \"t\" does not tell its unit and was taken as seconds; give --time_column with :s, :ms or "
+            ":us after the column");
+  EXPECT_THAT(
+      WrongFlag("t,angle_rad\n" + Rows("{t},{v}"), TimeAndValue("t", "")),
+      HasSubstr("column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms"));
+}
+
+TEST(ForeignFormats, RefuseColumnsThatAreNotThere) {
+  const std::string text = "time_s,angle_deg\n" + Rows("{t},{v}");
+  EXPECT_EQ(
+      WrongFlag(text, TimeAndValue("", "angle")),
+      "run.csv:1:1: --value_column is \"angle\", which is none of the 2 columns \"time_s\", \"angle_deg\"; give a "
+      "name, or a number from 1 on");
+  for (const char* const number : {"0", "3", "1.5", "-1", "1e400"}) {
+    EXPECT_THAT(WrongFlag(text, TimeAndValue(number, "")), HasSubstr("which is none of the 2 columns")) << number;
+  }
+  EXPECT_EQ(WrongFlag(text, TimeAndValue("2:s", "2")),
+            "run.csv:1:8: column \"angle_deg\" cannot be both the time and the quantity; choose another with "
+            "--value_column");
+}
+
+TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
+  const std::string text = "time_s,angle_deg\n" + Rows("{t},{v}");
+  EXPECT_EQ(WrongFlag(text, Unit("rad")),
+            "run.csv:1:8: column \"angle_deg\" is in deg, so --unit rad contradicts it; leave the flag out, or choose "
+            "another column with --value_column");
+  EXPECT_EQ(WrongFlag(text, Unit("grad")),
+            "run.csv:1:8: --unit is \"grad\"; it must be rad, deg, rad_s, deg_s, counts, volts, "
+            "m_s2, px, m, cm or mm");
+  EXPECT_EQ(
+      WrongFlag(text, Unit("", 50)),
+      "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "
+      "or add --time_column none to ignore the column");
+  EXPECT_THAT(WrongFlag(text, TimeAndValue("time_s:ms", "")),
+              HasSubstr("column \"time_s\" is in s, and --time_column time_s:ms says ms"));
+  ReadOptions both = Unit("", 50);
+  both.time_column = "time_s";
+  EXPECT_THAT(WrongFlag(text, both), HasSubstr("--time_column and --sample_rate_hz both say what the times are"));
+  EXPECT_THAT(WrongFlag(text, TimeAndValue("none", "")), HasSubstr("leaves no times; give --sample_rate_hz"));
+}
+
+TEST(ForeignFormats, RefuseANameThatTellsTwoUnits) {
+  EXPECT_EQ(
+      FaultOf("time_s,angle_deg [rad]\n" + Rows("{t},{v}")),
+      "run.csv:1:8: column \"angle_deg [rad]\" tells two units, deg and rad; name it by the one its values are in");
+  EXPECT_THAT(FaultOf("time_s,angle_deg\n" + Rows("{t},{v} deg")),
+              HasSubstr("holds \"100 deg\", a number followed by \" deg\""));
+}
+
+// ---- Files without header, without times -------------------------------------------------------------------------
+
+TEST(ForeignFormats, SayWhichFlagsAFileWithoutHeaderNeeds) {
+  const std::string three = Rows("{t},{v},1");
+  const std::string common =
+      "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above it, "
+      "such "
+      "as time_s,angle_deg, or say what the columns are: give ";
+  EXPECT_EQ(FaultOf(three), common + "--time_column or --sample_rate_hz, --value_column and --unit");
+  EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "")), common + "--value_column and --unit");
+  EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "2")), common + "--unit");
+  EXPECT_EQ(FaultOf(three, TimeAndValue("", "2", "deg")), common + "--time_column or --sample_rate_hz");
+  ExpectTheRows(RecordingOf(three, TimeAndValue("1:ms", "2", "deg")), kDegree);
+}
+
+TEST(ForeignFormats, TheOtherOfTwoColumnsIsTheValue) {
+  ExpectTheRows(RecordingOf(Rows("{t},{v}"), TimeAndValue("1:ms", "", "deg")), kDegree);
+  ExpectTheRows(RecordingOf(Rows("{t} {v}"), TimeAndValue("1:ms", "", "deg")), kDegree);
+  ExpectTheRows(RecordingOf(Rows("{t},0;{v},0"), TimeAndValue("1:ms", "", "deg")), kDegree);
+}
+
+TEST(ForeignFormats, TheOnlyColumnIsTheValue) {
+  ExpectTheRows(RecordingOf(Rows("{v}"), Unit("deg", 100)), kDegree);
+  ExpectTheRows(RecordingOf("angle_deg\n" + Rows("{v}"), Unit("", 100)), kDegree);
+  ExpectTheRows(RecordingOf("Angle of the rod (deg)\n" + Rows("{v}"), Unit("", 100)), kDegree);
+  ExpectTheRows(RecordingOf("reading\n" + Rows("{v}"), Unit("deg", 100)), kDegree);
+}
+
+TEST(ForeignFormats, TheFilesOwnSampleRateCountsWhereThereIsNoTime) {
+  ExpectTheRows(RecordingOf("# sample_rate_hz: 100\nangle_deg\n" + Rows("{v}")), kDegree);
+  ExpectTheRows(RecordingOf("# sample_rate_hz: 7\nangle_deg\n" + Rows("{v}"), Unit("", 100)), kDegree);
+  ExpectTheRows(RecordingOf("# sample_rate_hz: 7\ntime_ms,angle_deg\n" + Rows("{t},{v}")), kDegree);
+}
+
+TEST(ForeignFormats, ASampleRateReplacesTimesThatAreNotWanted) {
+  ReadOptions options = Unit("", 100);
+  options.time_column = "none";
+  ExpectTheRows(RecordingOf("time_s,angle_deg\n" + Rows("0,{v}"), options), kDegree);
+}
+
+TEST(ForeignFormats, WarnOfLostSamplesWhereTimesAreCounted) {
+  const Recording counted = RecordingOf("# sample_rate_hz: 100\n# lost_samples: 3\nangle_deg\n" + Rows("{v}"));
+  ASSERT_EQ(counted.warnings.size(), 1);
+  EXPECT_EQ(counted.warnings[0].code, "lost_samples");
+  EXPECT_THAT(counted.warnings[0].message, HasSubstr("that 3 samples were lost"));
+  EXPECT_TRUE(RecordingOf("# sample_rate_hz: 9\n# lost_samples: 0\nangle_deg\n" + Rows("{v}")).warnings.empty());
+}
+
+// ---- Counts, volts and calibrations ------------------------------------------------------------------------------
+
+Calibration Line(const std::string& input = "counts") {
+  return ParseCalibration(R"({"angle_unit": "deg", "coefficients": [-49.6077, 0.1985], "input_range": [0, 1023], )"
+                          R"("input": ")" +
+                              input + "\"}",
+                          "cal.json")
+      .value();
+}
+
+ReadOptions Calibrated(const std::string& input = "counts") {
+  ReadOptions options;
+  options.calibration = Line(input);
+  return options;
+}
+
+TEST(ForeignFormats, CountsAndVoltsWithoutCalibrationStayAsTheyAre) {
+  for (const std::string name : {"adc_counts", "counts", "pot_volts", "volts"}) {
+    const Recording recording = RecordingOf("# range: 0,1023\ntime_ms," + name + "\n" + Rows("{t},{v}"));
+    ExpectTheRows(recording);
+    const bool is_counts = name.ends_with("counts");
+    EXPECT_EQ(recording.unit, is_counts ? "counts" : "volts");
+    EXPECT_EQ(recording.quantity, Quantity::kAngle);
+    EXPECT_FALSE(recording.is_calibrated());
+    EXPECT_EQ(recording.resolution, is_counts ? 1 : 0);
+    EXPECT_EQ(recording.range->high, 1023);
+  }
+}
+
+TEST(ForeignFormats, ACalibrationTurnsCountsIntoAngles) {
+  const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), Calibrated());
+  EXPECT_TRUE(recording.is_calibrated());
+  EXPECT_EQ(recording.unit, "counts");
+  EXPECT_DOUBLE_EQ(recording.value[0], (19.85 - 49.6077) * kDegree);  // 0.1985 x - 49.6077 at 100
+  EXPECT_DOUBLE_EQ(recording.resolution, 0.1985 * kDegree);
+  EXPECT_DOUBLE_EQ(recording.range->low, -49.6077 * kDegree);
+  EXPECT_DOUBLE_EQ(recording.range->high, 153.4578 * kDegree);  // 0.1985 * 1023 - 49.6077
+  EXPECT_EQ(recording.calibration->source, Line().source);
+}
+
+TEST(ForeignFormats, TheFileSaysResolutionAndRangeInItsOwnUnit) {
+  const std::string text = "# resolution: 4\n# range: 10,200\ntime_ms,adc_counts\n" + Rows("{t},{v}");
+  const Recording recording = RecordingOf(text, Calibrated());
+  EXPECT_DOUBLE_EQ(recording.resolution, 4 * 0.1985 * kDegree);
+  EXPECT_DOUBLE_EQ(recording.range->low, (1.985 - 49.6077) * kDegree);
+  EXPECT_EQ(RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}.5"), Calibrated()).resolution, 0);
+}
+
+TEST(ForeignFormats, AFallingCalibrationHasARangeThatIncreases) {
+  ReadOptions options = Calibrated();
+  options.calibration->coefficients = {90, -0.5};
+  const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), options);
+  EXPECT_DOUBLE_EQ(recording.range->low, (90 - 511.5) * kDegree);
+  EXPECT_DOUBLE_EQ(recording.range->high, 90 * kDegree);
+  EXPECT_DOUBLE_EQ(recording.resolution, 0.5 * kDegree);
+}
+
+TEST(ForeignFormats, TheSpacingOfACurveIsThatAtTheMiddleOfTheData) {
+  ReadOptions options = Calibrated();
+  options.calibration->coefficients = {0, 1, 0.01};
+  const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), options);
+  EXPECT_DOUBLE_EQ(recording.resolution, (1 + 0.02 * 103.5) * kDegree);
+}
+
+const std::string kInline =
+    "# calibration: {\"input\": \"counts\", \"angle_unit\": \"rad\", \"coefficients\": [0, 2]}\n";
+
+TEST(ForeignFormats, TheFilesOwnCalibrationCountsUnlessTheUserGivesOne) {
+  const std::string text = kInline + "time_ms,adc_counts\n" + Rows("{t},{v}");
+  EXPECT_EQ(RecordingOf(text).value[0], 200);
+  EXPECT_DOUBLE_EQ(RecordingOf(text, Calibrated()).value[0], (19.85 - 49.6077) * kDegree);
+}
+
+TEST(ForeignFormats, RefuseACalibrationOfAnotherSensor) {
+  EXPECT_EQ(FaultOf("time_ms,adc_counts\n" + Rows("{t},{v}"), Calibrated("volts")),
+            "run.csv:1:1: column \"adc_counts\" is in counts, and the calibration is one of volts; give that of this "
+            "sensor");
+  EXPECT_EQ(
+      FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}"), Calibrated()),
+      "run.csv:1:1: column \"angle_deg\" is in deg, and the calibration is one of counts; leave --calibration out");
+  EXPECT_THAT(FaultOf(kInline + "time_ms,pot_volts\n" + Rows("{t},{v}")),
+              HasSubstr("the calibration is one of counts"));
+}
+
+TEST(ForeignFormats, DoNotApplyTheFilesCalibrationToAnAngle) {
+  const Recording recording = RecordingOf(kInline + "time_ms,angle_rad\n" + Rows("{t},{v}"));
+  ExpectTheRows(recording);
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].code, "metadata_not_applied");
+  EXPECT_EQ(recording.warnings[0].message,
+            "run.csv:1: the metadata calibration is not applied to column \"angle_rad\", which is in rad already");
+}
+
+TEST(ForeignFormats, RefuseAnInlineCalibrationThatIsNone) {
+  EXPECT_THAT(FaultOf("\n# calibration: {\"input\": \"px\"}\ntime_ms,adc_counts\n" + Rows("{t},{v}")),
+              StartsWith("run.csv:2: # calibration: \"angle_unit\" is missing"));
+}
+
+TEST(ForeignFormats, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
+  std::string rows;
+  for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: open by 0.1115 % each way, see clock_test.cc.
+    rows += NumberText(std::round(i / 3.0) / 10, 6) + "," + NumberText(std::sin(i), 6) + "\n";
+  }
+  const double std_dev = (1.0 / 896 + 1.0 / 898) / 2 / std::sqrt(3.0);
+  EXPECT_NEAR(RecordingOf(std::string("time_s,angle_rad\n") + rows).clock_scale_std_dev, std_dev, 1e-3 * std_dev);
+  const Recording stated =
+      RecordingOf("# clock_scale: 1.01\n# clock_scale_std_dev: 1e-3\n" + std::string("time_s,angle_rad\n") + rows);
+  EXPECT_NEAR(stated.clock_scale_std_dev, std::hypot(1e-3, 1.01 * std_dev), 1e-6);
+}
+
+}  // namespace
+}  // namespace pendulum::foreign_formats_test

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/mat/in_child.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace pendulum::in_child_test {
+namespace {
+
+using std::chrono::milliseconds, std::chrono::steady_clock;
+
+/// Why there is no answer.
+ChildFailure WhyNone(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
+  const auto answer = InChild(work, limits);
+  EXPECT_FALSE(answer.has_value());
+  return answer ? ChildFailure::kNotStarted : answer.error();
+}
+
+/// Descriptors of this process.
+std::string Descriptors() {
+  std::vector<std::string> numbers;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    numbers.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(numbers);
+  std::string list;
+  for (const std::string& number : numbers) list += number + ' ';
+  return list;
+}
+
+std::size_t CountOfDescriptors() {
+  const std::string list = Descriptors();
+  return static_cast<std::size_t>(std::ranges::count(list, ' '));
+}
+
+/// True when there is no child that was not waited for.
+bool HasNoChild() { return ::waitpid(-1, nullptr, WNOHANG) < 0; }
+
+TEST(InChild, GivesWhatTheWorkGives) {
+  EXPECT_EQ(InChild([] { return std::string(); }, {}), "");
+  EXPECT_EQ(InChild([] { return std::string("E\0E", 3); }, {}), std::string("E\0E", 3));
+  std::string large(10'000'000, 'x');
+  large[9'999'998] = 'y';
+  EXPECT_TRUE(InChild([&] { return large; }, {}) == large);
+}
+
+TEST(InChild, TellsACrashFromTimeAndMemory) {
+  EXPECT_EQ(WhyNone([]() -> std::string { std::abort(); }), ChildFailure::kCrashed);
+  EXPECT_EQ(WhyNone([]() -> std::string { ::_exit(0); }), ChildFailure::kCrashed);
+  EXPECT_EQ(WhyNone([]() -> std::string { throw std::runtime_error("no"); }), ChildFailure::kCrashed);
+  EXPECT_EQ(WhyNone([]() -> std::string { throw std::bad_alloc(); }), ChildFailure::kOutOfMemory);
+  EXPECT_TRUE(HasNoChild());
+}
+
+TEST(InChild, EndsWorkThatUsesTooMuchOfAProcessor) {
+  ChildLimits limits;
+  limits.processor_seconds = 1;
+  const auto spin = []() -> std::string {
+    while (steady_clock::now() > steady_clock::time_point()) continue;
+    return "";
+  };
+  EXPECT_EQ(WhyNone(spin, limits), ChildFailure::kOutOfTime);
+  EXPECT_TRUE(HasNoChild());
+}
+
+TEST(InChild, EndsWorkThatWaitsTooLong) {
+  ChildLimits limits;
+  limits.time = milliseconds(100);
+  const auto begin = steady_clock::now();
+  const auto sleep = []() -> std::string {
+    ::sleep(60);
+    return "late";
+  };
+  EXPECT_EQ(WhyNone(sleep, limits), ChildFailure::kOutOfTime);
+  EXPECT_LT(steady_clock::now() - begin, milliseconds(20'000));
+  EXPECT_TRUE(HasNoChild());
+}
+
+TEST(InChild, WorkThatHidesItsEndIsNotWaitedFor) {
+  ChildLimits limits;
+  limits.time = milliseconds(100);
+  const auto hide = []() -> std::string {
+    ::close(3);
+    ::sleep(60);
+    return "";
+  };
+  EXPECT_EQ(WhyNone(hide, limits), ChildFailure::kOutOfTime);
+  EXPECT_TRUE(HasNoChild());
+}
+
+TEST(InChild, RefusesAnAnswerThatIsTooLarge) {
+  ChildLimits limits;
+  limits.answer_bytes = 100'000;
+  const auto answer_of = [](std::size_t size) { return [size] { return std::string(size, 'x'); }; };
+  EXPECT_TRUE(InChild(answer_of(100'000), limits).has_value());
+  EXPECT_EQ(WhyNone(answer_of(100'001), limits), ChildFailure::kAnswerTooLarge);
+  EXPECT_EQ(WhyNone(answer_of(50'000'000), limits), ChildFailure::kAnswerTooLarge);
+  EXPECT_TRUE(HasNoChild());
+}
+
+TEST(InChild, EndsWorkThatTakesTooMuchMemory) {
+  if (!kMemoryIsLimited) GTEST_SKIP() << "an address sanitizer takes all that there is for itself";
+  ChildLimits limits;
+  limits.memory_bytes = 10'000'000;
+  const auto take = [] { return std::string(std::string(500'000'000, 'x').size() > 0 ? "taken" : ""); };
+  EXPECT_EQ(WhyNone(take, limits), ChildFailure::kOutOfMemory);
+}
+
+TEST(InChild, HasNoDescriptorOfThisProcess) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const std::string with_folder = "0 1 2 3 4 ";  // Standard ones, the answer's, and that of the folder of descriptors.
+  EXPECT_EQ(InChild(Descriptors, {}), with_folder);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(InChild, LeavesNoDescriptorBehind) {
+  const std::size_t before = CountOfDescriptors();
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(InChild([] { return std::string("x"); }, {}).has_value());
+    EXPECT_EQ(WhyNone([]() -> std::string { ::_exit(1); }), ChildFailure::kCrashed);
+  }
+  EXPECT_EQ(CountOfDescriptors(), before);
+}
+
+/// The pipe of a short work would not end while the process of the long one has its other end too.
+TEST(InChild, ThreadsDoNotWaitForEachOther) {
+  const auto begin = steady_clock::now();
+  std::thread other([] {
+    ChildLimits limits;
+    limits.time = milliseconds(1500);
+    EXPECT_EQ(WhyNone(
+                  []() -> std::string {
+                    ::sleep(60);
+                    return "";
+                  },
+                  limits),
+              ChildFailure::kOutOfTime);
+  });
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 2; ++t) {
+    threads.emplace_back([] {
+      for (int i = 0; i < 20; ++i) EXPECT_EQ(InChild([] { return std::string("short"); }, {}), "short");
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  const auto took = steady_clock::now() - begin;
+  other.join();
+  EXPECT_LT(took, milliseconds(10'000));
+}
+
+}  // namespace
+}  // namespace pendulum::in_child_test
