@@ -73,7 +73,7 @@ bool Provenance::Agrees(const Provenance& other) const {
          version == other.version;
 }
 
-std::string OptionsJson(const RunOptions& options) {
+std::string OptionsJson(const IdentifyOptions& options) {
   const SwingChoice& swing = options.swing;
   const Json json = {
       {"models", options.models},   {"from_s", NumberOrNull(swing.from)},           {"to_s", NumberOrNull(swing.to)},

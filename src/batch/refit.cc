@@ -14,9 +14,8 @@
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/version.h"
-#include "pendulum/batch/fit_bytes.h"
-#include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/provenance.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/report/json.h"
 
@@ -28,7 +27,7 @@ struct RunInputs {
   Result<std::string> data;
   Result<std::optional<std::string>> rig, calibration;  ///< None where there is none.
   std::string rig_name, calibration_name;
-  RunOptions options;
+  IdentifyOptions options;
 };
 
 Result<std::optional<std::string>> ReadNamed(const Source& source, const std::string& path,
@@ -40,8 +39,8 @@ Result<std::optional<std::string>> ReadNamed(const Source& source, const std::st
 }
 
 /// What the run is asked: the batch's options, and what its entry says. Threads are for runs, not within them.
-RunOptions OptionsOf(const ManifestEntry& entry, const RunOptions& batch) {
-  RunOptions options = batch;
+IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& batch) {
+  IdentifyOptions options = batch;
   options.fit.threads = 1;
   if (entry.from) options.swing.from = *entry.from;
   if (entry.to) options.swing.to = *entry.to;
@@ -100,23 +99,23 @@ SharedFile Named(const std::string& name, std::optional<std::string> bytes) {
   return bytes ? Share({name, *std::move(bytes)}) : nullptr;
 }
 
-Result<FitRun> FitInputs(const ManifestEntry& entry, RunInputs& inputs) {
+Result<Identification> FitInputs(const ManifestEntry& entry, RunInputs& inputs) {
   if (!inputs.data) return tl::unexpected(inputs.data.error());
   if (!inputs.rig) return tl::unexpected(inputs.rig.error());
   if (!inputs.calibration) return tl::unexpected(inputs.calibration.error());
-  return FitBytes(inputs.options, {{entry.path, *std::move(inputs.data)},
-                                   Named(inputs.rig_name, *std::move(inputs.rig)),
-                                   Named(inputs.calibration_name, *std::move(inputs.calibration))});
+  return IdentifyBytes(inputs.options, {{entry.path, *std::move(inputs.data)},
+                                        Named(inputs.rig_name, *std::move(inputs.rig)),
+                                        Named(inputs.calibration_name, *std::move(inputs.calibration))});
 }
 
 RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance) {
   RunOutcome outcome;
   outcome.provenance = std::move(provenance);
   outcome.models = inputs.options.models;
-  const Result<FitRun> run = FitInputs(entry, inputs);
+  const Result<Identification> run = FitInputs(entry, inputs);
   if (run) {
-    outcome.exit_code = ExitCodeOf(*run);
-    outcome.result = ToJson(run->report);
+    outcome.exit_code = ExitCode(*run);
+    outcome.result = ToJson(*run);
   } else {
     outcome.exit_code = ExitCode(run.error().code);
     outcome.reason = run.error().message;

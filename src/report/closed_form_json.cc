@@ -31,7 +31,7 @@ Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional
   return json;
 }
 
-Json DecrementJson(const Decrement& decrement, const RunReport& report) {
+Json DecrementJson(const Decrement& decrement, const Identification& report) {
   return NumberObject()
       .Set("parameters", EstimatesJson(DecrementEstimates(decrement, report.data.unit, report.rig)))
       .Set("chi_square", decrement.chi_square)
@@ -102,7 +102,7 @@ nlohmann::ordered_json CheckJson(const ClosedFormCheck* check) {
   return rows;
 }
 
-nlohmann::ordered_json ClosedFormsJson(const RunReport& report) {
+nlohmann::ordered_json ClosedFormsJson(const Identification& report) {
   if (!report.closed_forms) return nullptr;
   const ClosedForms& forms = *report.closed_forms;
   NumberObject json;

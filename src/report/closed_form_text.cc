@@ -93,7 +93,7 @@ void SayNegative(const Decrement& decrement, Section& section) {
   }
 }
 
-void AddDecrement(const RunReport& report, Section& section) {
+void AddDecrement(const Identification& report, Section& section) {
   const ClosedForms& forms = *report.closed_forms;
   if (!forms.decrement) {
     section.Say("No law was fitted to the turning points: " + forms.no_decrement + ".");
@@ -183,7 +183,7 @@ Cells PeakCells(const ClosedForms& forms, std::size_t i, double factor) {
   return cells;
 }
 
-Section TurningPointSection(const RunReport& report) {
+Section TurningPointSection(const Identification& report) {
   const ClosedForms& forms = *report.closed_forms;
   const std::optional<Conversion> degrees = Degrees(report.data.unit);
   const Conversion shown = degrees.value_or(Conversion{report.data.unit});
@@ -205,7 +205,7 @@ Section TurningPointSection(const RunReport& report) {
 
 }  // namespace
 
-Sections SamplingSections(const RunReport& report) {
+Sections SamplingSections(const Identification& report) {
   if (!report.sampling) return {};
   const Sampling& sampling = *report.sampling;
   Facts facts = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
@@ -218,7 +218,7 @@ Sections SamplingSections(const RunReport& report) {
   return {{"Sampling", "", {std::move(facts)}}};
 }
 
-Sections ClosedFormSections(const RunReport& report) {
+Sections ClosedFormSections(const Identification& report) {
   Section forms{"Closed forms"};
   if (!report.closed_forms) {
     if (report.no_closed_forms.empty()) return {};

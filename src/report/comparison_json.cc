@@ -122,7 +122,7 @@ bool IsTested(const Constancy& constancy) { return constancy.halves_p || !consta
 
 }  // namespace
 
-nlohmann::ordered_json ComparisonJson(const RunReport& report) {
+nlohmann::ordered_json ComparisonJson(const Identification& report) {
   if (!report.comparison) return nullptr;
   const Comparison& comparison = *report.comparison;
   const bool has_criterion = comparison.likelihood != Likelihood::kNone;

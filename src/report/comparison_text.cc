@@ -23,7 +23,7 @@ constexpr int kWeightDigits = 2;
 constexpr const char* kLackOfFit = "lack of fit";
 
 /// Degrees of an angle, else the readings' own unit.
-Conversion ShownUnit(const RunReport& report) {
+Conversion ShownUnit(const Identification& report) {
   return Degrees(report.data.unit).value_or(Conversion{report.data.unit});
 }
 
@@ -207,14 +207,14 @@ bool HasNegativeFriction(const Constancy& constancy) {
 
 }  // namespace
 
-Sections ComparisonSections(const RunReport& report) {
+Sections ComparisonSections(const Identification& report) {
   if (!report.comparison) return {};
   Sections sections = {ComparisonSection(*report.comparison, ShownUnit(report))};
   if (!report.comparison->tests.empty()) sections.push_back(TestSection(*report.comparison));
   return sections;
 }
 
-Sections ConstancySections(const RunReport& report, std::size_t fit) {
+Sections ConstancySections(const Identification& report, std::size_t fit) {
   const Constancy* constancy = report.ConstancyOf(fit);
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};

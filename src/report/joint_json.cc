@@ -83,8 +83,8 @@ Json HomogeneityJson(const Homogeneity& homogeneity) {
 }
 
 /// One recording as the joint fit sees it.
-Json RunJson(const RunReport& report, std::size_t index, std::size_t k) {
-  const RunReport& run = report.runs[k];
+Json RunJson(const Identification& report, std::size_t index, std::size_t k) {
+  const Identification& run = report.runs[k];
   const FitReport& fit = run.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
@@ -107,7 +107,7 @@ Json RunJson(const RunReport& report, std::size_t index, std::size_t k) {
 }
 
 /// Sums over all recordings.
-Json WholeStatisticsJson(const RunReport& report, const FitReport& fit) {
+Json WholeStatisticsJson(const Identification& report, const FitReport& fit) {
   const std::string& unit = report.data.unit;
   NumberObject json;
   if (unit != "sigma") json.Set(KeyWithUnit("rms_residual", unit), fit.statistics.rms_residual);
@@ -120,7 +120,7 @@ Json WholeStatisticsJson(const RunReport& report, const FitReport& fit) {
 }
 
 /// Written with numbers where all of them are shared.
-Json EquationJson(const RunReport& report, std::size_t index) {
+Json EquationJson(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool whole = report.joint[index].shared.size() == PhysicalParameters(fit.model).size();
   return whole && fit.termination != Termination::kFailed ? Json(FittedEquation(fit, report.rig)) : Json(nullptr);
@@ -128,7 +128,7 @@ Json EquationJson(const RunReport& report, std::size_t index) {
 
 }  // namespace
 
-Json JointFitJson(const RunReport& report, std::size_t index) {
+Json JointFitJson(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json runs = Json::array();

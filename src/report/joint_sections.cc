@@ -30,7 +30,7 @@ std::string FileText(const DataSummary& data, bool several_releases) {
   return several_releases && data.release > 0 ? path + ", swing " + std::to_string(data.release) : path;
 }
 
-Section RecordingSection(const RunReport& report) {
+Section RecordingSection(const Identification& report) {
   Table files{{{""}, {"file"}}};
   Table table{{{""}, {"samples", true}, {"window"}, {"rate [Hz]", true}, {"starts"}, {"amplitude [deg]", true}}};
   const std::vector<double>& amplitudes = report.joint[report.MainFit()].homogeneity.amplitudes;
@@ -48,7 +48,7 @@ Section RecordingSection(const RunReport& report) {
   return section.Say("Amplitudes are root mean squares over the motion.");
 }
 
-Section FitSection(const RunReport& report, std::size_t index) {
+Section FitSection(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool converged = fit.termination == Termination::kConverged;
   const std::string count = std::to_string(report.runs.size());
@@ -154,12 +154,12 @@ std::string ScatterText(const SharedParameter& parameter) {
 
 // ---- What each has of its own ---------------------------------------------------------------------------------------
 
-bool IsShared(const RunReport& report, std::size_t index, std::string_view name) {
+bool IsShared(const Identification& report, std::size_t index, std::string_view name) {
   const std::vector<std::string>& shared = report.joint[index].shared;
   return std::ranges::find(shared, name) != shared.end();
 }
 
-Section OwnSection(const RunReport& report, std::size_t index) {
+Section OwnSection(const Identification& report, std::size_t index) {
   Table table{{{""}, {"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     std::string number = std::to_string(k + 1);
@@ -174,7 +174,7 @@ Section OwnSection(const RunReport& report, std::size_t index) {
   return {"Each recording's own", "by the joint fit", {std::move(table)}};
 }
 
-Section NoiseSection(const RunReport& report, std::size_t index) {
+Section NoiseSection(const Identification& report, std::size_t index) {
   Facts facts;
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     const FitReport& fit = report.runs[k].fits[index];
@@ -193,7 +193,7 @@ Section NoiseSection(const RunReport& report, std::size_t index) {
   return {"Noise and statistics", "", {std::move(facts)}};
 }
 
-void AddMainFit(const RunReport& report, std::size_t index, Sections& sections) {
+void AddMainFit(const Identification& report, std::size_t index, Sections& sections) {
   const FitReport& fit = report.fits[index];
   sections.push_back(FitSection(report, index));
   sections.push_back(AllOfParameters(fit, report.rig, nullptr));
@@ -215,7 +215,7 @@ void AddMainFit(const RunReport& report, std::size_t index, Sections& sections) 
 
 }  // namespace
 
-Section AgreementSection(const RunReport& report, std::size_t fit) {
+Section AgreementSection(const Identification& report, std::size_t fit) {
   const Homogeneity& homogeneity = report.joint[fit].homogeneity;
   Section section{"Do the recordings agree?"};
   const bool agrees = homogeneity.agrees();
@@ -227,7 +227,7 @@ Section AgreementSection(const RunReport& report, std::size_t fit) {
   return section;
 }
 
-Sections JointSections(const RunReport& report) {
+Sections JointSections(const Identification& report) {
   Sections sections = {RecordingSection(report)};
   std::ranges::move(ComparisonSections(report), std::back_inserter(sections));
   for (std::size_t i = 0; i < report.fits.size(); ++i) {

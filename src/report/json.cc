@@ -25,12 +25,12 @@ std::string WindowReason(const DataSummary& data) {
   return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
 }
 
-Json StartJson(const RunReport& report) {
+Json StartJson(const Identification& report) {
   if (report.fits.empty()) return nullptr;
   return report.fits.front().start == StartKind::kRelease ? "release" : "moving";
 }
 
-Json DataJson(const RunReport& report) {
+Json DataJson(const Identification& report) {
   const DataSummary& data = report.data;
   return NumberObject()
       .Set("path", TextOrNull(data.path))
@@ -53,7 +53,7 @@ Json DataJson(const RunReport& report) {
 }
 
 /// What a failed fit does not have is null; its `reason` says why.
-Json FitJson(const RunReport& report, std::size_t index) {
+Json FitJson(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
@@ -80,7 +80,7 @@ Json FitJson(const RunReport& report, std::size_t index) {
   return json;
 }
 
-Json WarningsJson(const RunReport& report) {
+Json WarningsJson(const Identification& report) {
   Json warnings = Json::array();
   for (const Warning& warning : AllWarnings(report)) {
     warnings.push_back({{"code", warning.code}, {"message", warning.message}});
@@ -88,18 +88,18 @@ Json WarningsJson(const RunReport& report) {
   return warnings;
 }
 
-Json CalibrationJson(const RunReport& report) { return report.calibration; }
+Json CalibrationJson(const Identification& report) { return report.calibration; }
 
 /// Of one recording itself; of a joint fit one for each recording, in their order.
 template <typename Part>
-Json OfRecordings(const RunReport& report, const Part& part) {
+Json OfRecordings(const Identification& report, const Part& part) {
   if (!report.is_joint()) return part(report);
   Json all = Json::array();
-  for (const RunReport& run : report.runs) all.push_back(part(run));
+  for (const Identification& run : report.runs) all.push_back(part(run));
   return all;
 }
 
-std::string WhyNoClosedForms(const RunReport& report) {
+std::string WhyNoClosedForms(const Identification& report) {
   std::string why = report.closed_forms || report.is_joint() ? "" : report.no_closed_forms;
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     if (report.runs[k].closed_forms) continue;
@@ -110,7 +110,7 @@ std::string WhyNoClosedForms(const RunReport& report) {
 
 }  // namespace
 
-nlohmann::ordered_json ToJson(const RunReport& report) {
+nlohmann::ordered_json ToJson(const Identification& report) {
   Json fits = Json::array();
   for (std::size_t i = 0; i < report.fits.size(); ++i) {
     fits.push_back(report.is_joint() ? JointFitJson(report, i) : FitJson(report, i));
@@ -130,7 +130,7 @@ nlohmann::ordered_json ToJson(const RunReport& report) {
   return json.Done();
 }
 
-std::string ToJsonText(const RunReport& report) {
+std::string ToJsonText(const Identification& report) {
   constexpr int kIndent = 2;
   return JsonText(ToJson(report), kIndent) + "\n";
 }

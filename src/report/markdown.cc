@@ -135,7 +135,7 @@ struct MarkdownRenderer {
 // --- the verdict -----------------------------------------------------------------------------------------------------
 
 /// The sentences that matter most.
-Items VerdictItems(const RunReport& report, std::size_t main) {
+Items VerdictItems(const Identification& report, std::size_t main) {
   const FitReport& fit = report.fits[main];
   Items items;
   items.texts.push_back("Model " + std::string(fit.model.name) + ", " + std::string(TerminationName(fit.termination)) +
@@ -148,7 +148,7 @@ Items VerdictItems(const RunReport& report, std::size_t main) {
 }
 
 /// What a reader who reads no further should know.
-Sections VerdictSections(const RunReport& report) {
+Sections VerdictSections(const Identification& report) {
   Section verdict{"Verdict"};
   Sections sections;
   if (report.fits.empty()) {
@@ -189,7 +189,7 @@ std::string ToMarkdown(const Sections& sections) {
   return text;
 }
 
-std::string ToMarkdown(const RunReport& report) {
+std::string ToMarkdown(const Identification& report) {
   Sections sections = VerdictSections(report);
   const Sections all = ReportSections(report);
   const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };

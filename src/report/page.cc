@@ -10,10 +10,10 @@
 
 namespace pendulum {
 
-std::string ToHtml(const std::vector<Recording>& used, const RunReport& report, const std::string& command) {
+std::string ToHtml(const Identification& one, const std::string& command) {
   using Json = nlohmann::ordered_json;
-  return FillPage(PageTemplate(), {{"@RESULT@", ToJson(report)},
-                                   {"@SERIES@", SeriesJson(used, report, SeriesDetail::kPage)},
+  return FillPage(PageTemplate(), {{"@RESULT@", ToJson(one)},
+                                   {"@SERIES@", SeriesJson(one, SeriesDetail::kPage)},
                                    {"@COMMAND@", command.empty() ? Json(nullptr) : Json{{"command", command}}}});
 }
 

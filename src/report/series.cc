@@ -72,7 +72,7 @@ Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) 
   return json;
 }
 
-Json PeaksJson(const RunReport& report, const std::string& unit) {
+Json PeaksJson(const Identification& report, const std::string& unit) {
   Json json = Json::array();
   if (!report.closed_forms) return json;
   for (std::size_t i = 0; i < report.closed_forms->table.peaks.size(); ++i) {
@@ -101,7 +101,7 @@ Json ProfileJson(const ProfileCurve& curve) {
 }
 
 /// By model and parameter; null where no fit has a profile.
-Json ProfilesJson(const RunReport& report) {
+Json ProfilesJson(const Identification& report) {
   Json json;
   for (const FitReport& fit : report.fits) {
     for (const ProfileCurve& curve : fit.profiles) json[std::string(fit.model.name)][curve.name] = ProfileJson(curve);
@@ -134,11 +134,14 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
   return text;
 }
 
-std::string ToResidualCsv(const Recording& used, const RunReport& report, std::size_t fit) {
-  return ToResidualCsv(used, report.fits[fit], report.checks.empty() ? TextbookOverlay{} : report.checks[fit].overlay);
+std::string ToResidualCsv(const Identification& one, std::size_t fit) {
+  return ToResidualCsv(one.used, one.fits[fit], one.checks.empty() ? TextbookOverlay{} : one.checks[fit].overlay);
 }
 
-nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report, SeriesDetail detail) {
+namespace {
+
+Json PartJson(const Identification& report, SeriesDetail detail) {
+  const Recording& used = report.used;
   const std::string unit = used.value_unit();
   Json json;
   json["time_s"] = SamplesJson(used.time, used.size(), SeriesDetail::kAll);
@@ -158,15 +161,15 @@ nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report
   return json;
 }
 
-nlohmann::ordered_json SeriesJson(const std::vector<Recording>& used, const RunReport& report, SeriesDetail detail) {
-  if (!report.is_joint()) return SeriesJson(used.front(), report, detail);
+}  // namespace
+
+nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail) {
+  if (!one.is_joint()) return PartJson(one, detail);
   Json all = Json::array();
-  for (std::size_t k = 0; k < used.size(); ++k) all.push_back(SeriesJson(used[k], report.runs[k], detail));
+  for (const Identification& run : one.runs) all.push_back(PartJson(run, detail));
   return all;
 }
 
-std::string ToSeriesJsonText(const std::vector<Recording>& used, const RunReport& report) {
-  return JsonText(SeriesJson(used, report)) + "\n";
-}
+std::string ToSeriesJsonText(const Identification& one) { return JsonText(SeriesJson(one)) + "\n"; }
 
 }  // namespace pendulum

@@ -58,7 +58,7 @@ void Append(Sections more, Sections& sections) {
   sections.insert(sections.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-Section WarningSection(const RunReport& report) {
+Section WarningSection(const Identification& report) {
   Items items{{}, Emphasis::kCaution};
   for (const Warning& warning : AllWarnings(report)) items.texts.push_back(Printable(warning.message));
   return {"Warnings", "", {std::move(items)}};
@@ -66,7 +66,7 @@ Section WarningSection(const RunReport& report) {
 
 }  // namespace
 
-Sections ReportSections(const RunReport& report) {
+Sections ReportSections(const Identification& report) {
   if (report.is_joint()) {
     Sections joint = JointSections(report);
     if (!AllWarnings(report).empty()) joint.push_back(WarningSection(report));
@@ -88,6 +88,6 @@ Sections ReportSections(const RunReport& report) {
   return sections;
 }
 
-std::string ToText(const RunReport& report, TextStyle style) { return ToText(ReportSections(report), style); }
+std::string ToText(const Identification& report, TextStyle style) { return ToText(ReportSections(report), style); }
 
 }  // namespace pendulum

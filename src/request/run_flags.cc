@@ -121,7 +121,7 @@ Result<void> ParseTime(std::string_view flag, const std::string& value, double& 
   return {};
 }
 
-Result<void> ParseWindow(const RunFlags& flags, RunOptions& options) {
+Result<void> ParseWindow(const RunFlags& flags, IdentifyOptions& options) {
   if (auto parsed = ParseTime("--from", flags.from, options.swing.from); !parsed) return parsed;
   if (auto parsed = ParseTime("--to", flags.to, options.swing.to); !parsed) return parsed;
   if (options.swing.from >= options.swing.to) {
@@ -251,9 +251,9 @@ tl::unexpected<Status> NeedsAFit(std::string_view flag) {
   return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
 }
 
-Result<RunOptions> MakeRunOptions(const RunFlags& flags) {
+Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags) {
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
-  RunOptions options;
+  IdentifyOptions options;
   options.closed_form_only = flags.closed_form_only;
   const auto models = FindMotionModels(flags.model);
   if (!models) return BadFlag("--model: " + models.error().message);

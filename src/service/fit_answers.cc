@@ -91,10 +91,10 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
 }
 
 /// The report as people keep it, with the name of its recording.
-RunReport NamedReport(const FitRun& run, const std::string& name) {
-  RunReport report = run.report;
-  report.data.path = name;
-  return report;
+Identification NamedReport(const Identification& run, const std::string& name) {
+  Identification named = run;
+  named.data.path = name;
+  return named;
 }
 
 Json FileJson(const SharedFile& file) {
@@ -246,29 +246,28 @@ HttpResponse GetSamples(ServiceState& state, const Call& call) {
 }
 
 HttpResponse GetSeries(ServiceState& state, const Call& call) {
-  return WithFit(state, call, [](const FitRun& run, const std::string&) {
-    return TextAnswer("application/json", ToSeriesJsonText(run.used, run.report));
+  return WithFit(state, call, [](const Identification& run, const std::string&) {
+    return TextAnswer("application/json", ToSeriesJsonText(run));
   });
 }
 
 HttpResponse GetResiduals(ServiceState& state, const Call& call) {
-  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
-    if (run.report.fits.empty()) {
+  return WithFit(state, call, [](const Identification& run, const std::string& name) {
+    if (run.fits.empty()) {
       return ProblemAnswer({StatusCode::kNotFound, "there are closed forms only, and no fit that leaves residuals"});
     }
-    return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run.used.front(), run.report, run.report.MainFit()),
-                      "residuals of " + name);
+    return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run, run.MainFit()), "residuals of " + name);
   });
 }
 
 HttpResponse GetReport(ServiceState& state, const Call& call) {
-  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
-    return FileAnswer("text/html; charset=utf-8", ToHtml(run.used, NamedReport(run, name), ""), name + ".html");
+  return WithFit(state, call, [](const Identification& run, const std::string& name) {
+    return FileAnswer("text/html; charset=utf-8", ToHtml(NamedReport(run, name), ""), name + ".html");
   });
 }
 
 HttpResponse GetMarkdown(ServiceState& state, const Call& call) {
-  return WithFit(state, call, [](const FitRun& run, const std::string& name) {
+  return WithFit(state, call, [](const Identification& run, const std::string& name) {
     return FileAnswer("text/markdown; charset=utf-8", ToMarkdown(NamedReport(run, name)), name + ".md");
   });
 }

@@ -291,7 +291,7 @@ Json JsonOf(const FlagTexts& flags) {
   return object;
 }
 
-Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
+Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
   auto run_flags = RunFlagsOf(flags);
   if (!run_flags) return tl::unexpected(run_flags.error());
   if (calibration) run_flags->calibration = calibration->name;
@@ -312,7 +312,7 @@ Result<FlagTexts> FlagsOf(const FitOrder& order) {
   return FlagTextsOf(*json);
 }
 
-Result<RunOptions> OptionsOf(const FitOrder& order) {
+Result<IdentifyOptions> OptionsOf(const FitOrder& order) {
   const auto flags = FlagsOf(order);
   if (!flags) return tl::unexpected(flags.error());
   return RunOptionsOf(*flags, order.files.calibration);

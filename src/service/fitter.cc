@@ -18,7 +18,7 @@ std::string HashOf(const std::string& bytes) { return Sha256(bytes).value_or("")
 
 std::string HashOf(const SharedFile& file) { return file ? HashOf(file->bytes) : ""; }
 
-Provenance ProvenanceOf(const RunOptions& options, const RunFiles& files) {
+Provenance ProvenanceOf(const IdentifyOptions& options, const RunFiles& files) {
   return {HashOf(files.data.bytes),     HashOf(files.rig),     HashOf(files.calibration),
           HashOf(OptionsJson(options)), std::string(kVersion), CpuType()};
 }
@@ -33,7 +33,7 @@ Status TookTooLong(std::chrono::milliseconds limit) {
 }  // namespace
 
 /// An exception is our bug or the memory's end, and costs this run only.
-FittedRun Fitter::Fit(const RunOptions& asked, RunFiles files) {
+FittedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
   FittedRun fitted;
   try {
     fitted.outcome.provenance = ProvenanceOf(asked, files);
@@ -50,23 +50,24 @@ FittedRun Fitter::Fit(const RunOptions& asked, RunFiles files) {
   return fitted;
 }
 
-void Fitter::FitInto(const RunOptions& asked, RunFiles files, FittedRun& fitted) {
+void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FittedRun& fitted) {
   const TimeLimit::Watch watch(limit_);
-  RunOptions options = asked;
+  IdentifyOptions options = asked;
   options.fit.stop = watch.token();
-  Result<FitRun> run = FitBytes(options, std::move(files));
+  Result<Identification> run = IdentifyBytes(options, std::move(files));
   fitted.is_stopped = watch.token().stop_requested() && !run;
   if (!run) {
     fitted.error = fitted.is_stopped ? TookTooLong(limit()) : run.error();
     return;
   }
-  run->report.data.path.clear();
-  fitted.outcome.exit_code = ExitCodeOf(*run);
-  fitted.outcome.result = ToJson(run->report);
-  fitted.run = std::make_shared<const FitRun>(*std::move(run));
+  run->data.path.clear();
+  fitted.outcome.exit_code = ExitCode(*run);
+  fitted.outcome.result = ToJson(*run);
+  fitted.run = std::make_shared<const Identification>(*std::move(run));
 }
 
-Result<std::shared_ptr<const FitRun>> Fitter::FitOf(const std::string& id, const RunOptions& options, RunFiles files) {
+Result<std::shared_ptr<const Identification>> Fitter::FitOf(const std::string& id, const IdentifyOptions& options,
+                                                            RunFiles files) {
   if (auto run = Find(id)) return run;
   FittedRun fitted = Fit(options, std::move(files));
   if (fitted.error) return tl::unexpected(*fitted.error);
@@ -74,9 +75,8 @@ Result<std::shared_ptr<const FitRun>> Fitter::FitOf(const std::string& id, const
   return fitted.run;
 }
 
-void Fitter::Remember(const std::string& id, std::shared_ptr<const FitRun> run) {
-  Eigen::Index samples = 0;
-  for (const Recording& used : run->used) samples += used.size();
+void Fitter::Remember(const std::string& id, std::shared_ptr<const Identification> run) {
+  const Eigen::Index samples = run->used.size();
   const std::scoped_lock lock(mutex_);
   std::erase_if(remembered_, [&](const Remembered& other) { return other.id == id; });
   remembered_.push_front({id, std::move(run), samples});
@@ -86,7 +86,7 @@ void Fitter::Remember(const std::string& id, std::shared_ptr<const FitRun> run) 
   remembered_.erase(too_many, remembered_.end());
 }
 
-std::shared_ptr<const FitRun> Fitter::Find(const std::string& id) {
+std::shared_ptr<const Identification> Fitter::Find(const std::string& id) {
   const std::scoped_lock lock(mutex_);
   const auto found = std::ranges::find(remembered_, id, &Remembered::id);
   if (found == remembered_.end()) return nullptr;

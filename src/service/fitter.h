@@ -9,9 +9,9 @@
 #include <string>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/fit_bytes.h"
-#include "pendulum/batch/run_options.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/identify/identify.h"
+#include "pendulum/identify/identify_options.h"
 #include "pendulum/service/time_limit.h"
 
 namespace pendulum {
@@ -19,7 +19,7 @@ namespace pendulum {
 /// A run that is done: what there is to be kept of it, and the fit with its samples where it could be fitted.
 struct FittedRun {
   RunOutcome outcome;
-  std::shared_ptr<const FitRun> run;
+  std::shared_ptr<const Identification> run;
   std::optional<Status> error;  ///< Why it could not be fitted.
   bool is_stopped = false;      ///< It took longer than it may, or all are stopped.
 };
@@ -30,13 +30,14 @@ class Fitter {
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
 
   /// The result is that of fit_pendulum, without a path.
-  FittedRun Fit(const RunOptions& asked, RunFiles files);
+  FittedRun Fit(const IdentifyOptions& asked, RunFiles files);
 
   /// The fit of the run of that id, which was made from these: remembered, or made once more.
-  Result<std::shared_ptr<const FitRun>> FitOf(const std::string& id, const RunOptions& options, RunFiles files);
+  Result<std::shared_ptr<const Identification>> FitOf(const std::string& id, const IdentifyOptions& options,
+                                                      RunFiles files);
 
   /// Remembers the fit of a run.
-  void Remember(const std::string& id, std::shared_ptr<const FitRun> run);
+  void Remember(const std::string& id, std::shared_ptr<const Identification> run);
 
   /// Stops what is under way, and what is still to come.
   void StopAll() { limit_.StopAll(); }
@@ -49,12 +50,12 @@ class Fitter {
 
   struct Remembered {
     std::string id;
-    std::shared_ptr<const FitRun> run;
+    std::shared_ptr<const Identification> run;
     Eigen::Index samples;
   };
 
-  void FitInto(const RunOptions& asked, RunFiles files, FittedRun& fitted);
-  std::shared_ptr<const FitRun> Find(const std::string& id);
+  void FitInto(const IdentifyOptions& asked, RunFiles files, FittedRun& fitted);
+  std::shared_ptr<const Identification> Find(const std::string& id);
 
   TimeLimit limit_;
   std::mutex mutex_;                  // of what follows

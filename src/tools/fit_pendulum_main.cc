@@ -96,57 +96,50 @@ std::string CommandLine() {
   return command;
 }
 
-/// The residuals of recording k of a run.
-std::string ResidualsOf(const FitRun& run, std::size_t k) {
-  const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
-  return ToResidualCsv(run.used[k], report, run.report.MainFit());
-}
-
 /// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
-void RenderFiles(const FitPendulumOptions& options, const FitRun& run, int index, int count,
+void RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
                  std::vector<Output>& outputs) {
-  const RunReport& report = run.report;
-  const auto recordings = static_cast<int>(run.used.size());
-  if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(report)});
+  const std::vector<const Identification*> parts = run.Parts();
+  const auto recordings = static_cast<int>(parts.size());
+  if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(run)});
   for (int k = 0; k < recordings && !options.residuals.empty(); ++k) {
-    const std::string path = report.is_joint() ? NumberedPath(options.residuals, k, recordings)
-                                               : NumberedPath(options.residuals, index, count);
-    outputs.push_back({path, ResidualsOf(run, static_cast<std::size_t>(k))});
+    const std::string path =
+        run.is_joint() ? NumberedPath(options.residuals, k, recordings) : NumberedPath(options.residuals, index, count);
+    outputs.push_back({path, ToResidualCsv(*parts[static_cast<std::size_t>(k)], run.MainFit())});
   }
   if (!options.series.empty()) {
-    outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run.used, report)});
+    outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run)});
   }
   if (!options.report.empty()) {
-    outputs.push_back({NumberedPath(options.report, index, count), ToHtml(run.used, report, CommandLine())});
+    outputs.push_back({NumberedPath(options.report, index, count), ToHtml(run, CommandLine())});
   }
   if (!options.markdown.empty()) {
-    outputs.push_back({NumberedPath(options.markdown, index, count), ToMarkdown(report)});
+    outputs.push_back({NumberedPath(options.markdown, index, count), ToMarkdown(run)});
   }
 }
 
 /// The result for people, with a picture of each recording when asked for.
-Result<std::string> TextOf(const FitPendulumOptions& options, const FitRun& run) {
+Result<std::string> TextOf(const FitPendulumOptions& options, const Identification& run) {
   std::string text;
-  const std::size_t main = run.report.MainFit();
-  for (std::size_t k = 0; k < run.used.size() && options.terminal_plot; ++k) {
-    const RunReport& report = run.report.is_joint() ? run.report.runs[k] : run.report;
-    const auto drawn = RunGnuplot(TerminalPlot(run.used[k], report.fits[main]));
+  const std::vector<const Identification*> parts = run.Parts();
+  for (std::size_t k = 0; k < parts.size() && options.terminal_plot; ++k) {
+    const auto drawn = RunGnuplot(TerminalPlot(parts[k]->used, parts[k]->fits[run.MainFit()]));
     if (!drawn) return tl::unexpected(drawn.error());
-    text += (run.report.is_joint() ? Printable(RecordingLabel(run.report, k)) + "\n" : "") + PictureText(*drawn) + "\n";
+    text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(*drawn) + "\n";
   }
-  return text + ToText(run.report, {.colour = WantsColour(STDOUT_FILENO)});
+  return text + ToText(run, {.colour = WantsColour(STDOUT_FILENO)});
 }
 
 /// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
 /// not be fitted is said.
-Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std::vector<Result<FitRun>>& runs) {
+Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std::vector<Result<Identification>>& runs) {
   const bool data_on_stdout =
       std::ranges::any_of(options.Outputs(), [](const NamedFile& output) { return IsStandardOutput(output.path); });
   const auto count = static_cast<int>(runs.size());
   std::vector<Output> outputs;
   std::string text;
   for (int i = 0; i < count; ++i) {
-    const Result<FitRun>& run = runs[static_cast<std::size_t>(i)];
+    const Result<Identification>& run = runs[static_cast<std::size_t>(i)];
     if (!run) {
       Say(kName, run.error().message);
       continue;
@@ -156,9 +149,9 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     if (!part) return tl::unexpected(part.error());
     text += (text.empty() ? "" : "\n") + *part;
     if (data_on_stdout) {
-      for (const Warning& warning : AllWarnings(run->report)) Say(kName, "warning: " + warning.message);
+      for (const Warning& warning : AllWarnings(*run)) Say(kName, "warning: " + warning.message);
     }
-    for (const FitReport& fit : run->report.fits) {
+    for (const FitReport& fit : run->fits) {
       if (fit.termination == Termination::kConverged) continue;
       const std::string model = options.models.size() > 1 ? std::string(fit.model.name) + ": " : "";
       Say(kName, model + std::string(TerminationName(fit.termination)) + ": " + fit.reason);
@@ -191,7 +184,8 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!outputs) return tl::unexpected(outputs.error());
   if (const auto written = WriteOutputs(*outputs); !written) return tl::unexpected(written.error());
   int worst = 0;
-  for (const Result<FitRun>& run : *runs) worst = std::max(worst, run ? ExitCodeOf(*run) : ExitCode(run.error().code));
+  for (const Result<Identification>& run : *runs)
+    worst = std::max(worst, run ? ExitCode(*run) : ExitCode(run.error().code));
   return worst;
 }
 

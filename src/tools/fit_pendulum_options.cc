@@ -112,7 +112,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   auto run = MakeRunOptions(flags);
   if (!run) return tl::unexpected(run.error());
-  static_cast<RunOptions&>(options) = *std::move(run);
+  static_cast<IdentifyOptions&>(options) = *std::move(run);
   if (const auto parsed = ParseShared(flags, options); !parsed) return tl::unexpected(parsed.error());
   options.data = Split(flags.data, ',');
   options.data_list = flags.data_list;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/run_options.h"
+#include "pendulum/identify/identify_options.h"
 #include "pendulum/request/run_flags.h"
 #include "tools/output.h"
 
@@ -29,7 +29,7 @@ struct FitPendulumFlags : RunFlags {
 enum class Sharing { kByDefault, kNothing, kAsked };
 
 /// What fit_pendulum is asked to do.
-struct FitPendulumOptions : RunOptions {
+struct FitPendulumOptions : IdentifyOptions {
   std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
   std::string data_list;          ///< Path of a file that lists them instead; empty for none.
   std::string calibration;        ///< Path; empty for none. ReadOptions::calibration is for the caller to read from it.
@@ -41,7 +41,6 @@ struct FitPendulumOptions : RunOptions {
   std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
   bool terminal_plot = false;  ///< Draws the recording on standard output.
   Sharing sharing = Sharing::kByDefault;
-  std::vector<std::string> shared;  ///< Names of the parameters that several recordings share.
 
   /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;

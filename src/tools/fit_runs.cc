@@ -5,10 +5,9 @@
 #include <iterator>
 #include <utility>
 
-#include "pendulum/batch/run_parts.h"
+#include "pendulum/identify/prepared_recording.h"
 #include "pendulum/recording/readers/data_list.h"
 #include "pendulum/recording/sensor.h"
-#include "tools/fit_joint_run.h"
 
 namespace pendulum {
 
@@ -56,10 +55,30 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
   return CheckOutputs(outputs, setup.inputs);
 }
 
-Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
-  std::vector<Result<FitRun>> runs;
+namespace {
+
+/// All recordings together; their number decides whether the outputs can be written.
+Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup& setup) {
+  std::vector<PreparedRecording> recordings;
+  std::size_t count = 0;
+  for (const std::string& path : setup.paths) {
+    auto one = PrepareFile(path, options, setup.rig);
+    if (!one) return ErrorAmong(one.error(), path, 0);
+    count += one->swings.chosen.size();
+    recordings.push_back(*std::move(one));
+  }
+  if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  return IdentifyJointly(options, std::move(recordings));
+}
+
+}  // namespace
+
+Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
+  std::vector<Result<Identification>> runs;
   if (options.IsJoint(setup.paths.size())) {
-    auto joint = FitJointRun(options, setup);
+    auto joint = FitJointly(options, setup);
     if (!joint) return tl::unexpected(joint.error());
     runs.emplace_back(*std::move(joint));
     return runs;
@@ -67,7 +86,7 @@ Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, co
   const std::size_t files = setup.paths.size();
   std::size_t count = files;  // of places: at least one for each recording
   for (const std::string& path : setup.paths) {
-    auto one = ReadOne(options, path, setup.rig);
+    auto one = PrepareFile(path, options, setup.rig);
     if (!one) {
       runs.emplace_back(files > 1 ? ErrorAmong(one.error(), path, 0) : tl::unexpected(one.error()));
       continue;
@@ -78,7 +97,7 @@ Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, co
         return tl::unexpected(checked.error());
       }
     }
-    for (Result<FitRun>& run : FitRuns(options, *std::move(one))) {
+    for (Result<Identification>& run : IdentifyEach(options, *std::move(one))) {
       if (!run && files > 1) run = ErrorAmong(run.error(), path, 0);
       runs.push_back(std::move(run));
     }

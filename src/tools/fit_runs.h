@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/fit_run.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/model/rig.h"
 #include "tools/fit_pendulum_options.h"
 #include "tools/output.h"
@@ -31,6 +31,6 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
 /// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on. A joint
 /// fit is one run, and none where one of its recordings cannot be fitted.
 /// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
-Result<std::vector<Result<FitRun>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
+Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
 
 }  // namespace pendulum

@@ -151,10 +151,10 @@ Result<int> Fit(FitPendulumOptions options) {
   if (!setup) return tl::unexpected(setup.error());
   const auto runs = FitAll(options, *setup);
   if (!runs) return tl::unexpected(runs.error());
-  const Result<FitRun>& run = runs->front();
+  const Result<Identification>& run = runs->front();
   if (!run) return tl::unexpected(run.error());
-  const std::string text = "\n" + ToText(run->report, {.colour = WantsColour(STDOUT_FILENO)});
-  return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCodeOf(*run); });
+  const std::string text = "\n" + ToText(*run, {.colour = WantsColour(STDOUT_FILENO)});
+  return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
 }
 
 /// Where what came can be found although the recording could not be written.

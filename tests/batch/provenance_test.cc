@@ -21,11 +21,11 @@ using testing::EndsWith;
 
 struct Change {
   std::string name;
-  std::function<void(RunOptions&)> make;
+  std::function<void(IdentifyOptions&)> make;
 };
 
 std::string JsonAfter(const Change& change) {
-  RunOptions options;
+  IdentifyOptions options;
   options.models = {"coulomb"};
   change.make(options);
   return OptionsJson(options);
@@ -34,72 +34,72 @@ std::string JsonAfter(const Change& change) {
 /// Every option that can be set beside those of the fit, and that a result depends on.
 std::vector<Change> ChangesOfTheRun() {
   return {
-      {"nothing", [](RunOptions&) {}},
-      {"time_column", [](RunOptions& o) { o.read.time_column = "t"; }},
-      {"value_column", [](RunOptions& o) { o.read.value_column = "t"; }},
-      {"unit", [](RunOptions& o) { o.read.unit = "deg"; }},
-      {"sample_rate_hz", [](RunOptions& o) { o.read.sample_rate_hz = 100; }},
-      {"resolution of none", [](RunOptions& o) { o.read.resolution = 0; }},
-      {"resolution", [](RunOptions& o) { o.read.resolution = 0.1; }},
+      {"nothing", [](IdentifyOptions&) {}},
+      {"time_column", [](IdentifyOptions& o) { o.read.time_column = "t"; }},
+      {"value_column", [](IdentifyOptions& o) { o.read.value_column = "t"; }},
+      {"unit", [](IdentifyOptions& o) { o.read.unit = "deg"; }},
+      {"sample_rate_hz", [](IdentifyOptions& o) { o.read.sample_rate_hz = 100; }},
+      {"resolution of none", [](IdentifyOptions& o) { o.read.resolution = 0; }},
+      {"resolution", [](IdentifyOptions& o) { o.read.resolution = 0.1; }},
       {"range",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.read.range = SensorRange{0, 1023};
        }},
       {"another range",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.read.range = SensorRange{0, 4095};
        }},
-      {"from", [](RunOptions& o) { o.swing.from = 0; }},
-      {"to", [](RunOptions& o) { o.swing.to = 0; }},
-      {"release 1", [](RunOptions& o) { o.swing.release = 1; }},
-      {"all releases", [](RunOptions& o) { o.swing.release = SwingChoice::kAll; }},
-      {"model", [](RunOptions& o) { o.models = {o.fit.model = "viscous"}; }},
+      {"from", [](IdentifyOptions& o) { o.swing.from = 0; }},
+      {"to", [](IdentifyOptions& o) { o.swing.to = 0; }},
+      {"release 1", [](IdentifyOptions& o) { o.swing.release = 1; }},
+      {"all releases", [](IdentifyOptions& o) { o.swing.release = SwingChoice::kAll; }},
+      {"model", [](IdentifyOptions& o) { o.models = {o.fit.model = "viscous"}; }},
       {"models",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.models = {"coulomb", "viscous"};
        }},
       {"order of models",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.models = {o.fit.model = "viscous", "coulomb"};
        }},
-      {"closed_form_only", [](RunOptions& o) { o.closed_form_only = true; }},
+      {"closed_form_only", [](IdentifyOptions& o) { o.closed_form_only = true; }},
   };
 }
 
 /// Those of the fit; enumerations by each of their values.
 std::vector<Change> ChangesOfTheFit() {
   return {
-      {"gravity sine", [](RunOptions& o) { o.fit.gravity = Gravity::kSine; }},
-      {"gravity linear", [](RunOptions& o) { o.fit.gravity = Gravity::kLinear; }},
-      {"start release", [](RunOptions& o) { o.fit.start = StartKind::kRelease; }},
-      {"start moving", [](RunOptions& o) { o.fit.start = StartKind::kMoving; }},
-      {"fix", [](RunOptions& o) { o.fit.fixed["viscous"] = 0.1; }},
-      {"fix another", [](RunOptions& o) { o.fit.fixed["coulomb"] = 0.1; }},
+      {"gravity sine", [](IdentifyOptions& o) { o.fit.gravity = Gravity::kSine; }},
+      {"gravity linear", [](IdentifyOptions& o) { o.fit.gravity = Gravity::kLinear; }},
+      {"start release", [](IdentifyOptions& o) { o.fit.start = StartKind::kRelease; }},
+      {"start moving", [](IdentifyOptions& o) { o.fit.start = StartKind::kMoving; }},
+      {"fix", [](IdentifyOptions& o) { o.fit.fixed["viscous"] = 0.1; }},
+      {"fix another", [](IdentifyOptions& o) { o.fit.fixed["coulomb"] = 0.1; }},
       // The neighbour of 0.1 among doubles.
-      {"fix at another value", [](RunOptions& o) { o.fit.fixed["viscous"] = 0.10000000000000002; }},
-      {"init", [](RunOptions& o) { o.fit.initial["viscous"] = 0.1; }},
-      {"lower bound", [](RunOptions& o) { o.fit.bounds["viscous"].lower = 0.1; }},
-      {"upper bound", [](RunOptions& o) { o.fit.bounds["viscous"].upper = 0.1; }},
+      {"fix at another value", [](IdentifyOptions& o) { o.fit.fixed["viscous"] = 0.10000000000000002; }},
+      {"init", [](IdentifyOptions& o) { o.fit.initial["viscous"] = 0.1; }},
+      {"lower bound", [](IdentifyOptions& o) { o.fit.bounds["viscous"].lower = 0.1; }},
+      {"upper bound", [](IdentifyOptions& o) { o.fit.bounds["viscous"].upper = 0.1; }},
       {"prior",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.fit.priors["viscous"] = {0.1, 0.01};
        }},
       {"prior of another error",
-       [](RunOptions& o) {
+       [](IdentifyOptions& o) {
          o.fit.priors["viscous"] = {0.1, 0.02};
        }},
-      {"noise gaussian", [](RunOptions& o) { o.fit.noise = NoiseFamily::kGaussian; }},
-      {"noise quantized", [](RunOptions& o) { o.fit.noise = NoiseFamily::kQuantized; }},
-      {"loss huber", [](RunOptions& o) { o.fit.noise = NoiseFamily::kHuber; }},
-      {"loss student", [](RunOptions& o) { o.fit.noise = NoiseFamily::kStudent; }},
-      {"interval covariance", [](RunOptions& o) { o.fit.interval = IntervalMethod::kCovariance; }},
-      {"interval profile", [](RunOptions& o) { o.fit.interval = IntervalMethod::kProfile; }},
-      {"interval bootstrap", [](RunOptions& o) { o.fit.interval = IntervalMethod::kBootstrap; }},
-      {"seed", [](RunOptions& o) { o.fit.seed = 18446744073709551615U; }},
-      {"seed 2", [](RunOptions& o) { o.fit.seed = 2; }},
-      {"max_trace_error", [](RunOptions& o) { o.fit.search.max_trace_error = 1e-9; }},
-      {"max_iterations", [](RunOptions& o) { o.fit.search.max_iterations = 7; }},
-      {"max_traces", [](RunOptions& o) { o.fit.search.max_traces = 7; }},
+      {"noise gaussian", [](IdentifyOptions& o) { o.fit.noise = NoiseFamily::kGaussian; }},
+      {"noise quantized", [](IdentifyOptions& o) { o.fit.noise = NoiseFamily::kQuantized; }},
+      {"loss huber", [](IdentifyOptions& o) { o.fit.noise = NoiseFamily::kHuber; }},
+      {"loss student", [](IdentifyOptions& o) { o.fit.noise = NoiseFamily::kStudent; }},
+      {"interval covariance", [](IdentifyOptions& o) { o.fit.interval = IntervalMethod::kCovariance; }},
+      {"interval profile", [](IdentifyOptions& o) { o.fit.interval = IntervalMethod::kProfile; }},
+      {"interval bootstrap", [](IdentifyOptions& o) { o.fit.interval = IntervalMethod::kBootstrap; }},
+      {"seed", [](IdentifyOptions& o) { o.fit.seed = 18446744073709551615U; }},
+      {"seed 2", [](IdentifyOptions& o) { o.fit.seed = 2; }},
+      {"max_trace_error", [](IdentifyOptions& o) { o.fit.search.max_trace_error = 1e-9; }},
+      {"max_iterations", [](IdentifyOptions& o) { o.fit.search.max_iterations = 7; }},
+      {"max_traces", [](IdentifyOptions& o) { o.fit.search.max_traces = 7; }},
   };
 }
 
@@ -119,7 +119,7 @@ TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
 // A new member does not compile here: put it into the changes above or among what makes no difference below. `model` is
 // the first of `models`; rig and calibration are hashed apart; `start_values` and `sensor_start` no user can set.
 TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
-  RunOptions options;
+  IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
                           most_unpacked_bytes] = read;
@@ -130,22 +130,22 @@ TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
 }
 
 TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
-  const std::string json = JsonAfter({"nothing", [](RunOptions&) {}});
-  EXPECT_EQ(json, JsonAfter({"threads", [](RunOptions& o) { o.fit.threads = 7; }}));
-  EXPECT_EQ(json, JsonAfter({"progress", [](RunOptions& o) { o.fit.progress = [](int, int) {}; }}));
-  EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](RunOptions& o) { o.read.most_unpacked_bytes = 1; }}));
+  const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
+  EXPECT_EQ(json, JsonAfter({"threads", [](IdentifyOptions& o) { o.fit.threads = 7; }}));
+  EXPECT_EQ(json, JsonAfter({"progress", [](IdentifyOptions& o) { o.fit.progress = [](int, int) {}; }}));
+  EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](IdentifyOptions& o) { o.read.most_unpacked_bytes = 1; }}));
 }
 
 // Their bytes are hashed apart.
 TEST(OptionsJson, LeavesRigAndCalibrationOut) {
-  const std::string json = JsonAfter({"nothing", [](RunOptions&) {}});
-  EXPECT_EQ(json, JsonAfter({"rig", [](RunOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));
-  EXPECT_EQ(json, JsonAfter({"calibration", [](RunOptions& o) { o.read.calibration = Calibration(); }}));
+  const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
+  EXPECT_EQ(json, JsonAfter({"rig", [](IdentifyOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));
+  EXPECT_EQ(json, JsonAfter({"calibration", [](IdentifyOptions& o) { o.read.calibration = Calibration(); }}));
 }
 
 TEST(OptionsJson, ToldInAnyOrderIsTheSame) {
   const auto set = [](const std::string& first, const std::string& second) {
-    return JsonAfter({"", [&](RunOptions& o) {
+    return JsonAfter({"", [&](IdentifyOptions& o) {
                         o.fit.fixed[first] = 1;
                         o.fit.fixed[second] = 1;
                       }});

@@ -13,8 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/refit.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/refit_folder.h"
 #include "tests/batch/small_batch.h"
@@ -145,12 +145,12 @@ TEST_F(RefitTest, TakesModelsAndWindowOfARunFromTheManifest) {
   };
   EXPECT_THAT(models("a"), ElementsAre("coulomb"));
   EXPECT_THAT(models("b"), ElementsAre("drag", "viscous"));
-  RunOptions of_b = options.run;
+  IdentifyOptions of_b = options.run;
   of_b.models = {"viscous", "drag"};
   of_b.fit.model = "viscous";
   EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'b'"),
             ResultAlone(of_b, folder_ / "0.csv", std::nullopt, "0.csv"));
-  RunOptions of_c = options.run;
+  IdentifyOptions of_c = options.run;
   of_c.swing.from = 1.5;
   of_c.swing.to = 5.5;
   EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'c'"),

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/refit.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/small_batch.h"
 #include "tests/batch/store_rows.h"
@@ -44,11 +44,11 @@ class RefitTest : public testing::Test {
 };
 
 /// What the library says of one recording, fitted on its own, under the path that the manifest has for it.
-inline std::string ResultAlone(const RunOptions& options, const std::filesystem::path& file,
+inline std::string ResultAlone(const IdentifyOptions& options, const std::filesystem::path& file,
                                const std::optional<Rig>& rig, const std::string& path) {
   auto one = ReadOne(options, file.string(), rig);
   if (!one) return one.error().message;
-  const auto runs = FitRuns(options, *std::move(one));
+  const auto runs = IdentifyEach(options, *std::move(one));
   if (runs.size() != 1 || !runs.front()) return "not one run";
   nlohmann::ordered_json json = ToJson(runs.front()->report);
   EXPECT_EQ(json["data"]["path"], file.string());

@@ -15,7 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/fit_run.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/refit_folder.h"
 #include "tests/batch/small_batch.h"
@@ -90,7 +90,7 @@ TEST_F(RefitTest, GivesTheDatasetsResultsByOneRigForAllAndACalibrationOfOne) {
   const auto calibration = ParseCalibration(kCalibration, "calibration.json");
   ASSERT_TRUE(rig && calibration);
   for (const std::string name : {"runs_1.csv", "coulomb.csv", "counts.csv"}) {
-    RunOptions alone = options.run;
+    IdentifyOptions alone = options.run;
     if (name == "counts.csv") alone.read.calibration = *calibration;
     EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = '" + name + "'"),
               ResultAlone(alone, folder_ / name, *rig, name));
@@ -189,24 +189,24 @@ TEST_F(RefitTest, SeesAChangeInARigOrACalibrationOfSomeRuns) {
 TEST_F(RefitTest, SeesOtherOptions) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
-  const std::vector<std::function<void(RunOptions&)>> changes = {
-      [](RunOptions& run) {
+  const std::vector<std::function<void(IdentifyOptions&)>> changes = {
+      [](IdentifyOptions& run) {
         run.models = {"viscous", "coulomb"};
       },
-      [](RunOptions& run) { run.swing.from = 0.5; },
-      [](RunOptions& run) { run.swing.to = 6; },
-      [](RunOptions& run) { run.fit.fixed["coulomb"] = 0.002; },
-      [](RunOptions& run) {
+      [](IdentifyOptions& run) { run.swing.from = 0.5; },
+      [](IdentifyOptions& run) { run.swing.to = 6; },
+      [](IdentifyOptions& run) { run.fit.fixed["coulomb"] = 0.002; },
+      [](IdentifyOptions& run) {
         run.fit.bounds["coulomb"] = {0, 1};
       },
-      [](RunOptions& run) { run.fit.initial["coulomb"] = 0.002; },
-      [](RunOptions& run) {
+      [](IdentifyOptions& run) { run.fit.initial["coulomb"] = 0.002; },
+      [](IdentifyOptions& run) {
         run.fit.priors["coulomb"] = {0.002, 0.001};
       },
-      [](RunOptions& run) { run.fit.noise = NoiseFamily::kGaussian; },
-      [](RunOptions& run) { run.fit.seed = 2; },
-      [](RunOptions& run) { run.read.resolution = 0.001; },
-      [](RunOptions& run) { run.closed_form_only = true; }};
+      [](IdentifyOptions& run) { run.fit.noise = NoiseFamily::kGaussian; },
+      [](IdentifyOptions& run) { run.fit.seed = 2; },
+      [](IdentifyOptions& run) { run.read.resolution = 0.001; },
+      [](IdentifyOptions& run) { run.closed_form_only = true; }};
   for (std::size_t k = 0; k < changes.size(); ++k) {
     RefitOptions options = coulomb_;
     changes[k](options.run);

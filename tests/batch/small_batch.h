@@ -97,8 +97,8 @@ inline std::string RecordingText(std::uint64_t seed) { return RecordingText(Trut
 inline constexpr const char* kRigText = R"({"gravity_torque": {"value": 1.8, "std_dev": 0.002}})";
 
 /// One thread, the models in this order.
-inline RunOptions OptionsFor(const std::vector<std::string>& models) {
-  RunOptions options;
+inline IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
+  IdentifyOptions options;
   options.models = models;
   options.fit.model = models.front();
   options.fit.threads = 1;

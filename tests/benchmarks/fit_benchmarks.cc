@@ -10,6 +10,9 @@
 
 #include "pendulum/fitting/start/start_values.h"
 #include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/identify/identify.h"
+#include "pendulum/identify/identify_options.h"
+#include "pendulum/identify/prepared_recording.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 #include "pendulum/report/json.h"
@@ -114,8 +117,8 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// What fit_pendulum does between its flags and its output.
-Result<RunReport> FitFile(const std::filesystem::path& path, const FitOptions& options) {
+/// Reading, repairs, window and fit of fit_pendulum, without closed forms, checks and constancy.
+Result<Identification> FitFile(const std::filesystem::path& path, const FitOptions& options) {
   Result<Recording> recording = ReadRecording(path);
   if (!recording) return tl::unexpected(recording.error());
   const Recording repaired = RepairValues(*std::move(recording));
@@ -124,8 +127,9 @@ Result<RunReport> FitFile(const std::filesystem::path& path, const FitOptions& o
   const int release = swings->chosen.front();
   Result<SwingFit> fit = FitSwing(repaired, swings->found[static_cast<std::size_t>(release - 1)], options);
   if (!fit) return tl::unexpected(fit.error());
-  RunReport report;
-  report.data = SummarizeData(fit->used, fit->swing, *swings, release, repaired.size());
+  Identification report;
+  report.data.samples = repaired.size();
+  SummarizeUsed(fit->used, fit->swing, report.data);
   report.rig = options.rig;
   report.warnings = repaired.warnings;
   report.fits.push_back(std::move(fit->fit));
@@ -135,7 +139,7 @@ Result<RunReport> FitFile(const std::filesystem::path& path, const FitOptions& o
 void FileToJson(benchmark::State& state) {
   const TemporaryFile file(ReferenceCsv());
   const FitOptions options = ReferenceOptions();
-  Result<RunReport> report;
+  Result<Identification> report;
   for (auto _ : state) {
     report = FitFile(file.path(), options);
     if (!report) return state.SkipWithError(report.error().message.c_str());
@@ -145,10 +149,27 @@ void FileToJson(benchmark::State& state) {
   Report(state, report->fits.front());
 }
 
+/// The whole result that fit_pendulum makes of a file by default, from reading to JSON.
+void FileToResult(benchmark::State& state, const std::vector<std::string>& models) {
+  const TemporaryFile file(ReferenceCsv());
+  IdentifyOptions options;
+  options.models = models;
+  options.fit = ReferenceOptions();
+  options.fit.model = models.front();
+  for (auto _ : state) {
+    auto prepared = PrepareFile(file.path().string(), options, options.fit.rig);
+    if (!prepared) return state.SkipWithError(prepared.error().message.c_str());
+    const auto runs = IdentifyEach(options, *std::move(prepared));
+    if (!runs.front()) return state.SkipWithError(runs.front().error().message.c_str());
+    std::string json = ToJsonText(*runs.front());
+    benchmark::DoNotOptimize(json);
+  }
+}
+
 /// The report alone.
 void WriteJson(benchmark::State& state) {
   const TemporaryFile file(ReferenceCsv());
-  const RunReport report = Expect(FitFile(file.path(), ReferenceOptions()));
+  const Identification report = Expect(FitFile(file.path(), ReferenceOptions()));
   std::size_t bytes = 0;
   for (auto _ : state) {
     std::string json = ToJsonText(report);
@@ -173,6 +194,11 @@ void RegisterFitBenchmarks() {
   }
   benchmark::RegisterBenchmark("parse_csv", ParseCsv)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("file_to_json", FileToJson)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("file_to_result/coulomb", FileToResult, std::vector<std::string>{"coulomb"})
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("file_to_result/all", FileToResult,
+                               std::vector<std::string>{"viscous", "coulomb", "drag", "stribeck"})
+      ->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("json", WriteJson)->Unit(benchmark::kMicrosecond);
   for (const int samples : {1'000, 10'000, 100'000, 1'000'000}) {
     benchmark::RegisterBenchmark(("fit/samples:" + std::to_string(samples)).c_str(), Fit, samples)

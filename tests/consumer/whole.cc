@@ -26,8 +26,9 @@ int main() {
   if (!swings) return 1;
   const auto result = pendulum::FitSwing(*recording, swings->found.front(), {});
   if (!result || result->fit.termination != pendulum::Termination::kConverged) return 1;
-  pendulum::RunReport report;
-  report.data = pendulum::SummarizeData(result->used, result->swing, *swings, 1, recording->size());
+  pendulum::Identification report;
+  report.data.samples = recording->size();
+  pendulum::SummarizeUsed(result->used, result->swing, report.data);
   report.fits = {result->fit};
   std::cout << pendulum::ToText(report);
   return std::abs(result->fit.Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;

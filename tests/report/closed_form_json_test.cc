@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::closed_form_json_test {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 TEST(ClosedFormsJson, AreInSiWithARigAndInUnitsOfGravityWithout) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.rig->gravity_torque.value = 2;
   const Json si = ClosedFormsJson(report);
   EXPECT_EQ(si["linear"]["inertia"].dump(), R"({"estimate":0.089,"std_error":0.00025,"unit":"kg m^2"})");
@@ -28,14 +28,14 @@ TEST(ClosedFormsJson, AreInSiWithARigAndInUnitsOfGravityWithout) {
 }
 
 TEST(ClosedFormsJson, NameTheirModelWithoutAFitToo) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.clear();
   report.closed_forms->decrement.reset();
   EXPECT_EQ(ClosedFormsJson(report)["model"], "coulomb");
 }
 
 TEST(ClosedFormsJson, SayWhyAPartIsMissing) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
@@ -52,7 +52,7 @@ TEST(ClosedFormsJson, SayWhyAPartIsMissing) {
 TEST(ClosedFormsJson, AreNullWhereThereAreNone) { EXPECT_TRUE(ClosedFormsJson(ExampleRateReport()).is_null()); }
 
 TEST(ClosedFormsJson, NameTheUnitOfTheNoise) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.unit = "rad/s";
   EXPECT_EQ(ClosedFormsJson(report)["noise_rad_s"], 0.0035);
   report.data.unit = "counts";

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/format.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::closed_form_quantities_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/section_text.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::closed_form_text_test {
 namespace {
@@ -17,12 +17,12 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-std::string ClosedFormText(const RunReport& report) { return ToText(ClosedFormSections(report)); }
-std::string SamplingText(const RunReport& report) { return ToText(SamplingSections(report)); }
+std::string ClosedFormText(const Identification& report) { return ToText(ClosedFormSections(report)); }
+std::string SamplingText(const Identification& report) { return ToText(SamplingSections(report)); }
 
 /// Turning points beyond those of the example, each 0.65 s after the one before it.
-RunReport ReportWithTurningPoints(int count) {
-  RunReport report = ExampleReport();
+Identification ReportWithTurningPoints(int count) {
+  Identification report = ExampleReport();
   ClosedForms& forms = *report.closed_forms;
   for (int i = static_cast<int>(forms.table.peaks.size()); i < count; ++i) {
     forms.table.peaks.push_back(forms.table.peaks.back());
@@ -33,7 +33,7 @@ RunReport ReportWithTurningPoints(int count) {
 }
 
 /// Lines of the table of turning points, that of its headers left out.
-std::vector<std::string> TurningPointLines(const RunReport& report) {
+std::vector<std::string> TurningPointLines(const Identification& report) {
   const std::string text = ClosedFormText(report);
   std::vector<std::string> lines;
   std::size_t at = text.find('\n', text.find("    number")) + 1;
@@ -74,7 +74,7 @@ TEST(ClosedFormText, GivesTheClosedFormsInSi) {
 }
 
 TEST(ClosedFormText, IsInUnitsOfGravityWithoutARig) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.rig.reset();
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    inertia            I_O     0.04450 ± 0.00013    s^2\n"));
@@ -97,13 +97,13 @@ TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
 }
 
 TEST(ClosedFormText, ShowsNoZThatIsNoNumber) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
   EXPECT_THAT(ClosedFormText(report), HasSubstr("0.08020 ± 0.00020  0.07900    -  NO\n"));
 }
 
 TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.push_back(report.fits.front());
   report.fits.back().model = {"viscous", "viscous", Gravity::kSine};
   report.checks.push_back(report.checks.front());
@@ -113,7 +113,7 @@ TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {
 }
 
 TEST(ClosedFormText, ChecksOnlyTheMainFitOfAComparison) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.checks[1] = ExampleCheck();
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of coulomb]]\n"));
@@ -143,12 +143,12 @@ TEST(ClosedFormText, LeavesTheMiddleOfManyTurningPointsToTheSeries) {
 }
 
 TEST(ClosedFormText, ListsSixtyTurningPointsOfClosedFormsOnly) {
-  RunReport report = ReportWithTurningPoints(60);
+  Identification report = ReportWithTurningPoints(60);
   report.fits.clear();
   report.checks.clear();
   EXPECT_EQ(TurningPointLines(report).size(), 60);
   EXPECT_THAT(ClosedFormText(report), Not(HasSubstr("against the fit")));
-  RunReport longer = ReportWithTurningPoints(61);
+  Identification longer = ReportWithTurningPoints(61);
   longer.fits.clear();
   const std::vector<std::string> lines = TurningPointLines(longer);
   ASSERT_EQ(lines.size(), 61);
@@ -157,7 +157,7 @@ TEST(ClosedFormText, ListsSixtyTurningPointsOfClosedFormsOnly) {
 }
 
 TEST(ClosedFormText, GivesARateItsOwnUnits) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.unit = "rad/s";
   report.closed_forms->table.quantity = Quantity::kRate;
   report.closed_forms->decrement->table.quantity = Quantity::kRate;
@@ -168,7 +168,7 @@ TEST(ClosedFormText, GivesARateItsOwnUnits) {
 }
 
 TEST(ClosedFormText, ShowsCountsAsTheyAre) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.unit = "counts";
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    number   t [s]  angle [counts]  "));
@@ -177,7 +177,7 @@ TEST(ClosedFormText, ShowsCountsAsTheyAre) {
 }
 
 TEST(ClosedFormText, SaysWhatThereIsNot) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
@@ -189,7 +189,7 @@ TEST(ClosedFormText, SaysWhatThereIsNot) {
     envelope  as )"));
   EXPECT_EQ(ClosedFormText(ExampleRateReport()),
             "[[Closed forms]]\n    There are none: only 2 turning points can be located.\n");
-  EXPECT_EQ(ClosedFormText(RunReport()), "");
+  EXPECT_EQ(ClosedFormText(Identification()), "");
 }
 
 TEST(SamplingText, GivesTheFacts) {
@@ -204,7 +204,7 @@ TEST(SamplingText, GivesTheFacts) {
 }
 
 TEST(SamplingText, LeavesOutWhatIsNotKnown) {
-  RunReport report;
+  Identification report;
   EXPECT_EQ(SamplingText(report), "");
   report.sampling = Sampling();
   report.sampling->rate_hz = 12.5;

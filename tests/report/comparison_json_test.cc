@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::comparison_json_test {
 namespace {
@@ -28,7 +28,7 @@ TEST(ComparisonJson, HasARowForEachModel) {
 }
 
 TEST(ComparisonJson, SaysWhyAPredictionIsMissing) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.comparison->rows[0].forward = {0, 0, 0, "it ends early"};
   const Json row = ComparisonJson(report)["rows"][0];
   EXPECT_TRUE(row["forward_prediction"].is_null());
@@ -38,7 +38,7 @@ TEST(ComparisonJson, SaysWhyAPredictionIsMissing) {
 }
 
 TEST(ComparisonJson, NamesWhatTheCriteriaRestOn) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   const std::pair<Likelihood, const char*> named[] = {
       {Likelihood::kIndependent, "independent"}, {Likelihood::kCorrelated, "correlated"}, {Likelihood::kNone, "none"}};
   for (const auto& [likelihood, name] : named) {
@@ -50,7 +50,7 @@ TEST(ComparisonJson, NamesWhatTheCriteriaRestOn) {
 }
 
 TEST(ComparisonJson, RecommendsNothingAsNull) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.comparison->recommended.clear();
   EXPECT_TRUE(ComparisonJson(report)["recommended"].is_null());
   EXPECT_TRUE(ComparisonJson(ExampleReport()).is_null());
@@ -64,7 +64,7 @@ TEST(ComparisonJson, SaysWhyThereIsNoP) {
 }
 
 TEST(ComparisonJson, NamesTheUnitOfARate) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.data.unit = "rad/s";
   const Json row = ComparisonJson(report)["rows"][0];
   EXPECT_TRUE(row.contains("rms_residual_rad_s"));
@@ -72,7 +72,7 @@ TEST(ComparisonJson, NamesTheUnitOfARate) {
 }
 
 TEST(ComparisonJson, TurnsNumbersThatAreNoneIntoNull) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   ComparisonRow& row = report.comparison->rows[0];
   row.aic = kNan;
   row.cross_validation.standardized = kNan;

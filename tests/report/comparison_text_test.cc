@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/section_text.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::comparison_text_test {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string ComparisonText(const RunReport& report) { return ToText(ComparisonSections(report)); }
-std::string ConstancyText(const RunReport& report) { return ToText(ConstancySections(report, 0)); }
+std::string ComparisonText(const Identification& report) { return ToText(ComparisonSections(report)); }
+std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report, 0)); }
 
 // Rounding by hand: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
 TEST(ComparisonSections, RecommendFirst) {
@@ -42,7 +42,7 @@ TEST(ComparisonSections, RecommendFirst) {
 }
 
 TEST(ComparisonSections, WarnWhereNoneIsRecommended) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.comparison->recommended.clear();
   report.comparison->reason = "None converged.";
   report.comparison->tests.clear();
@@ -53,7 +53,7 @@ TEST(ComparisonSections, WarnWhereNoneIsRecommended) {
 }
 
 TEST(ComparisonSections, SayWhyNothingWasPredicted) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   ComparisonRow& row = report.comparison->rows[0];
   row.cross_validation = row.forward = {0, 0, 0, "shorter than three periods"};
   const std::string text = ComparisonText(report);
@@ -65,7 +65,7 @@ TEST(ComparisonSections, SayWhyNothingWasPredicted) {
 }
 
 TEST(ComparisonSections, AreInTheUnitOfTheReadings) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.data.unit = "counts";
   EXPECT_THAT(ComparisonText(report), HasSubstr("rms [counts]"));
   EXPECT_THAT(ComparisonText(report), HasSubstr("  0.00349  "));
@@ -90,7 +90,7 @@ TEST(ConstancySections, HaveTheWindowsOfATrend) {
 }
 
 TEST(ConstancySections, HaveTheHalvesThatDiffer) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.constancy[0].halves_p = 1e-6;
   report.constancy[0].verdict = "viscous differs between the halves";
   EXPECT_EQ(ToText(ConstancySections(report, 0), {.colour = true}),
@@ -102,7 +102,7 @@ TEST(ConstancySections, HaveTheHalvesThatDiffer) {
 }
 
 TEST(ConstancySections, SayWhatWasNotTested) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.constancy[0] = Constancy();
   EXPECT_EQ(ConstancyText(report), "");
   report.constancy[0].reason = "the recording is shorter than six periods";

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/model/friction/registry.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::equation_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::fit_json_test {
 namespace {

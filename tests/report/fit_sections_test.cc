@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/section_text.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::fit_sections_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/json.h"
-#include "tests/report/example_joint_report.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::joint_json_test {
 namespace {
@@ -25,7 +25,7 @@ std::vector<std::string> Keys(const Json& object) {
   return keys;
 }
 
-Json HomogeneityOf(const RunReport& report) { return JointFitJson(report, 0)["homogeneity"]; }
+Json HomogeneityOf(const Identification& report) { return JointFitJson(report, 0)["homogeneity"]; }
 
 // tests/tools/result_schema_test.py holds what the tool writes against the schema.
 TEST(ToJson, OfAJointFitHasArraysOfItsRecordings) {
@@ -45,7 +45,7 @@ TEST(ToJson, OfAJointFitHasArraysOfItsRecordings) {
 }
 
 TEST(ToJson, OfAJointFitSaysWhoseClosedFormsThereAreNot) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_EQ(ToJson(report)["reason"], "recording 2 (b c.csv): only 2 turning points can be located");
   report.runs[0].closed_forms.reset();
   report.runs[0].no_closed_forms = "undersampled";
@@ -91,7 +91,7 @@ TEST(JointFitJson, HasEachRecordingAsTheJointFitSeesIt) {
 }
 
 TEST(JointFitJson, SaysWhatARecordingLacks) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs[1].data.path.clear();
   report.runs[1].data.release = 0;
   const Json run = JointFitJson(report, 0)["runs"][1];
@@ -114,7 +114,7 @@ TEST(JointFitJson, TellsWhatEachRecordingAloneSays) {
 }
 
 TEST(JointFitJson, SaysOfARecordingThatItTellsNothing) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   std::vector<RunEstimate>& runs = report.joint[0].homogeneity.parameters[0].runs;
   runs[0] = {};
   runs[1].z.reset();
@@ -126,7 +126,7 @@ TEST(JointFitJson, SaysOfARecordingThatItTellsNothing) {
 }
 
 TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_EQ(HomogeneityOf(report)["agrees"], true);
   EXPECT_EQ(HomogeneityOf(report)["disagreeing"], Json::array());
   report.joint[0].homogeneity.p = 0.0099;  // recordings disagree below 0.01
@@ -136,7 +136,7 @@ TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
 }
 
 TEST(JointFitJson, HasNoStatisticWithoutATest) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   homogeneity = {};
   homogeneity.amplitudes = {0.25, 0.125};
@@ -155,7 +155,7 @@ TEST(JointFitJson, TellsWhatAmplitudeExplains) {
 }
 
 TEST(JointFitJson, HasAnRmsWhereReadingsHaveOneUnit) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_EQ(JointFitJson(report, 0)["statistics"].dump(),
             R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
             R"("effective_samples":1200.25})");
@@ -165,7 +165,7 @@ TEST(JointFitJson, HasAnRmsWhereReadingsHaveOneUnit) {
 }
 
 TEST(ToJson, OfSensorsWithDifferentUnitsComparesInSigmas) {
-  RunReport report = ExampleComparedJointReport();
+  Identification report = ExampleComparedJointReport();
   EXPECT_EQ(ToJson(report)["comparison"]["rows"][0]["rms_residual_rad"], 0.00349);
   report.data.unit = "sigma";
   const Json row = ToJson(report)["comparison"]["rows"][0];
@@ -174,7 +174,7 @@ TEST(ToJson, OfSensorsWithDifferentUnitsComparesInSigmas) {
 }
 
 TEST(JointFitJson, WritesAnEquationWhereAllOfItIsShared) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_THAT(JointFitJson(report, 0)["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
   report.joint[0].shared = {"inertia", "viscous"};
   EXPECT_TRUE(JointFitJson(report, 0)["equation"].is_null());
@@ -193,7 +193,7 @@ TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
 // dump() would write null for each, but no reason.
 TEST(JointFitJson, HasAReasonForWhatIsNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   homogeneity.amplitude_dependence[0].span = kNan;
   homogeneity.parameters[0].scatter.between = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@
 
 #include "pendulum/report/section_text.h"
 #include "pendulum/report/text.h"
-#include "tests/report/example_joint_report.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::joint_sections_test {
 namespace {
@@ -29,7 +29,7 @@ std::vector<std::string> Titles(const Sections& sections) {
 }
 
 /// The section of that title, as text.
-std::string TextOf(const RunReport& report, const std::string& title) {
+std::string TextOf(const Identification& report, const std::string& title) {
   for (const Section& section : JointSections(report)) {
     if (section.title == title) return ToText(Sections{section});
   }
@@ -37,7 +37,7 @@ std::string TextOf(const RunReport& report, const std::string& title) {
 }
 
 /// The section on agreement; blanks at which no line is broken are blanks here.
-std::string Agreement(const RunReport& report, TextStyle style = {}) {
+std::string Agreement(const Identification& report, TextStyle style = {}) {
   return WithBlanks(ToText(Sections{AgreementSection(report, 0)}, style));
 }
 
@@ -60,7 +60,7 @@ TEST(JointSections, CompareBeforeTheyTellAndEndWithTheOtherLaws) {
 }
 
 TEST(JointSections, TellNoMotionOfWhatIsNoOnePendulum) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.fits[0].termination = Termination::kNotConverged;
   EXPECT_THAT(Titles(JointSections(report)), ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?",
                                                          "Correlations", "Noise and statistics"));
@@ -80,14 +80,14 @@ TEST(JointSections, NumberTheRecordings) {
 }
 
 TEST(JointSections, TellTheReleasesOfOneFileApart) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 2;
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  run.csv, swing 1\n    2  run.csv, swing 2\n"));
 }
 
 TEST(JointSections, CallARecordingWithoutAFileADash) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs[0].data.path.clear();
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  -\n    2  b c.csv\n"));
 }
@@ -120,7 +120,7 @@ TEST(AgreementSection, TellsTheScatterBetweenRecordings) {
 }
 
 TEST(AgreementSection, CountsDegreesOfFreedom) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 1 degree of freedom, "));
   report.joint[0].homogeneity.parameters[0].dof = 2;
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 2 degrees of freedom, "));
@@ -129,7 +129,7 @@ TEST(AgreementSection, CountsDegreesOfFreedom) {
 // By hand: the widest interval, of the mean 0.0034 ± 0.00196, has 21 places of 0.0002; there 0.0025 ± 0.00049 has 3 to
 // 8, 0.0045 ± 0.00098 has 10 to 20, and 0.0033 is 9.
 TEST(AgreementSection, MarksTheJointEstimateWhereARecordingDoesNotReachIt) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.fits[0].parameters[1].estimate = 0.0033;
   const std::string text = Agreement(report);
   const auto row = [&](const std::string& name) {
@@ -142,7 +142,7 @@ TEST(AgreementSection, MarksTheJointEstimateWhereARecordingDoesNotReachIt) {
 }
 
 TEST(AgreementSection, CautionsWhereRecordingsDisagree) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   const std::string caution = "\x1B[33mVerdict: ";  // SGR 33 of ECMA-48: yellow
   EXPECT_THAT(Agreement(report, {.colour = true}), Not(HasSubstr(caution)));
   report.joint[0].homogeneity.p = 1e-6;
@@ -151,20 +151,20 @@ TEST(AgreementSection, CautionsWhereRecordingsDisagree) {
 }
 
 TEST(AgreementSection, IsAVerdictAloneWhereNothingWasTested) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.joint[0].homogeneity = {};
   report.joint[0].homogeneity.verdict = "not tested: all that is shared is fixed";
   EXPECT_EQ(Agreement(report), "[[Do the recordings agree?]]\n    Verdict: not tested: all that is shared is fixed.\n");
 }
 
 TEST(AgreementSection, HasADashForARecordingThatTellsNothing) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.joint[0].homogeneity.parameters[0].runs[0] = {};
   EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 alone +-\n    2 alone +0.0791"));
 }
 
 TEST(AgreementSection, GoesWithoutTheJointEstimateOfAFailedFit) {
-  RunReport report = ExampleFailedJointReport();
+  Identification report = ExampleFailedJointReport();
   report.fits[0].parameters.clear();
   const std::string text = Agreement(report);
   EXPECT_THAT(text, Not(HasSubstr("\n    joint")));
@@ -173,7 +173,7 @@ TEST(AgreementSection, GoesWithoutTheJointEstimateOfAFailedFit) {
 
 // The unit of a pure number is 1, as coulomb has without a rig.
 TEST(AgreementSection, HasNoUnitBehindAPureNumber) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.joint[0].homogeneity.parameters[1].unit = "1";
   report.joint[0].homogeneity.parameters[1].scatter.between = 0.00125;
   EXPECT_THAT(Agreement(report), Not(testing::ContainsRegex("0\\.0013[ \n]+1,")));
@@ -199,7 +199,7 @@ TEST(JointSections, SayWhatNoiseEachHasAndHowItEndedAlone) {
 }
 
 TEST(JointSections, HaveAnEquationOnlyWhereAllOfItIsShared) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.joint[0].shared = {"inertia"};
   EXPECT_EQ(TextOf(report, "Equation of motion"), "");
   EXPECT_THAT(TextOf(report, "Each recording's own"), HasSubstr("    1  viscous "));
@@ -220,7 +220,7 @@ TEST(ToText, OfAJointFitEndsWithTheWarningsOfEachRecording) {
 
 // ESC [ 2 J clears a terminal. Labels of recordings stand in verdicts, and in the status that repeats them.
 TEST(ToText, OfAJointFitHidesWhatWouldSteerATerminal) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs[1].data.path = "a\x1B[2J\n.csv";
   report.runs[1].warnings = {{"gap", "a gap"}};
   report.joint[0].homogeneity.verdict = "recording 2 (" + report.runs[1].data.path + ") disagrees with the others";
@@ -230,8 +230,8 @@ TEST(ToText, OfAJointFitHidesWhatWouldSteerATerminal) {
 }
 
 /// The example with the longest names, units and numbers that fits give.
-RunReport WideReport() {
-  RunReport report = ExampleComparedJointReport();
+Identification WideReport() {
+  Identification report = ExampleComparedJointReport();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   SharedParameter& wide = homogeneity.parameters[1];
   wide.name = "stribeck_coulomb";
@@ -240,7 +240,7 @@ RunReport WideReport() {
   wide.scatter = {1.2345e-9, 3.2e-7, -4.1e-6, 4.1e-6, 4.5e-7, 2e-7, 1.4e-5};
   for (int i = 0; i < 12; ++i) homogeneity.verdict += "; recording 2 (b c.csv) disagrees with the others";
   homogeneity.parameters[0].runs[0] = {0.0789996123, 2.8e-9, -1e5};
-  for (RunReport& run : report.runs) {
+  for (Identification& run : report.runs) {
     run.fits[0].parameters[3] = ExampleParameter(kReleaseTime, "rad", -123.456789012, 1.2e-9);
     run.fits[0].noise.why = "the residuals are 0.8 resolutions, " + std::string(60, 'x') + " and so on";
     run.data.samples = run.data.used_samples = 12345678;
@@ -252,7 +252,8 @@ RunReport WideReport() {
 }
 
 TEST(JointSections, FitATerminalOfEightyColumns) {
-  for (const RunReport& report : {ExampleJointReport(), ExampleComparedJointReport(), ExampleFailedJointReport()}) {
+  for (const Identification& report :
+       {ExampleJointReport(), ExampleComparedJointReport(), ExampleFailedJointReport()}) {
     EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
   }
   EXPECT_LE(WidestOf(ToText(WideReport())), 80) << ToText(WideReport());
@@ -260,7 +261,7 @@ TEST(JointSections, FitATerminalOfEightyColumns) {
 
 // The amplitude of a recording that alone could not be fitted.
 TEST(JointSections, HaveADashForAnAmplitudeThatIsNotKnown) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.joint[0].homogeneity.amplitudes[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(TextOf(report, "Recordings"), testing::ContainsRegex("    1 .* held +-\n"));
 }

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/version.h"
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::json_test {
 namespace {
@@ -53,7 +53,7 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
 }
 
 TEST(ToJson, GoesWithoutAFit) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
   const Json json = ToJson(report);
@@ -100,7 +100,7 @@ TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
 }
 
 TEST(ToJson, SaysWhyAnIntervalIsOpen) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
   viscous.open_interval = "its likelihood does not fall";
@@ -110,7 +110,7 @@ TEST(ToJson, SaysWhyAnIntervalIsOpen) {
 }
 
 TEST(ToJson, GivesIntervalsOfDerivedQuantitiesEndByEnd) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits[0].derived[1].upper95 = 0.005;
   const Json derived = ToJson(report)["fits"][0]["derived"];
   EXPECT_EQ(derived["natural_frequency"]["interval95"], Json::array({4.763, 4.793}));
@@ -118,7 +118,7 @@ TEST(ToJson, GivesIntervalsOfDerivedQuantitiesEndByEnd) {
 }
 
 TEST(ToJson, NamesTheNoiseFamily) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   const std::pair<NoiseFamily, const char*> named[] = {{NoiseFamily::kGaussian, "gaussian"},
                                                        {NoiseFamily::kQuantized, "quantized"},
                                                        {NoiseFamily::kHuber, "huber"},
@@ -158,7 +158,7 @@ TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
 }
 
 TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {
-  RunReport report = ExampleRateReport();
+  Identification report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const Json fit = ToJson(report)["fits"][0];
   EXPECT_TRUE(fit["noise"].is_null());
@@ -166,7 +166,7 @@ TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {
 }
 
 TEST(ToJson, TurnsNumbersThatAreNoneIntoNullWithAReason) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   FitReport& fit = report.fits[0];
   fit.statistics.aicc = std::numeric_limits<double>::infinity();
   fit.parameters[0].estimate = kNan;
@@ -190,7 +190,7 @@ TEST(ToJson, SaysThatADerivedQuantityLacksItsError) {
 }
 
 TEST(ToJson, LeavesOutWhatARecordingInMemoryDoesNotHave) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.path.clear();
   report.data.sha256.clear();
   const Json data = ToJson(report)["data"];
@@ -199,7 +199,7 @@ TEST(ToJson, LeavesOutWhatARecordingInMemoryDoesNotHave) {
 }
 
 TEST(ToJsonText, ReplacesBytesThatAreNotUtf8) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.path = "w\xFCrfel.csv";
   const std::string text = ToJsonText(report);
   EXPECT_THAT(text, HasSubstr("w\xEF\xBF\xBDrfel.csv"));

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/report/text.h"
-#include "tests/report/example_joint_report.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::markdown_test {
 namespace {
@@ -124,14 +124,14 @@ TEST(ToMarkdown, OfAJointFitShowsStripsAsTheyAre) {
 }
 
 TEST(ToMarkdown, GoesWithoutAFit) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
   EXPECT_THAT(ToMarkdown(report), HasSubstr("No fit was asked for: closed forms only."));
 }
 
 TEST(ToMarkdown, IsNotMisledByTheNameOfAFile) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.path = "a|<script>\n# [x](http://y)";
   const std::string text = ToMarkdown(report);
   EXPECT_THAT(text, StartsWith("# Pendulum: a\\|\\<script>?# [x\\](http://y)\n"));
@@ -147,8 +147,8 @@ std::vector<std::string> TitlesOf(const std::string& text, const std::string& be
 }
 
 TEST(ToMarkdown, HasEverySectionOfTheText) {
-  for (const RunReport& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport(),
-                                  ExampleComparedJointReport(), ExampleFailedJointReport()}) {
+  for (const Identification& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport(),
+                                       ExampleComparedJointReport(), ExampleFailedJointReport()}) {
     EXPECT_THAT(TitlesOf(ToText(report), "[[", "]]"), IsSubsetOf(TitlesOf(ToMarkdown(report), "\n## ", "\n\n")));
   }
 }

@@ -8,8 +8,8 @@
 
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
+#include "tests/identify/example_joint_identification.h"
 #include "tests/report/embedded_json.h"
-#include "tests/report/example_joint_report.h"
 
 namespace pendulum::page_test {
 namespace {
@@ -26,9 +26,15 @@ Recording ExampleSamples() {
   return used;
 }
 
+Identification SampledReport() {
+  Identification report = ExampleReport();
+  report.used = ExampleSamples();
+  return report;
+}
+
 TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
-  const RunReport report = ExampleReport();
-  const std::string html = ToHtml({ExampleSamples()}, report, "fit_pendulum --data run.csv");
+  const Identification report = SampledReport();
+  const std::string html = ToHtml(report, "fit_pendulum --data run.csv");
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
   EXPECT_EQ(Embedded(html, "result"), ToJson(report));
   EXPECT_EQ(Embedded(html, "series").at("time_s").size(), 8);
@@ -37,10 +43,10 @@ TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
 }
 
 TEST(ToHtml, HoldsEachRecordingOfAJointFit) {
-  const RunReport report = ExampleJointReport();
-  Recording second = ExampleSamples();
-  second.value[0] = 0.5;
-  const std::string html = ToHtml({ExampleSamples(), second}, report, "");
+  Identification report = ExampleJointReport();
+  for (Identification& run : report.runs) run.used = ExampleSamples();
+  report.runs[1].used.value[0] = 0.5;
+  const std::string html = ToHtml(report, "");
   EXPECT_EQ(Embedded(html, "result"), ToJson(report));
   const Json series = Embedded(html, "series");
   ASSERT_EQ(series.size(), 2);
@@ -48,9 +54,9 @@ TEST(ToHtml, HoldsEachRecordingOfAJointFit) {
 }
 
 TEST(ToHtml, LetsNoNameEndItsScript) {
-  RunReport report = ExampleReport();
+  Identification report = SampledReport();
   report.data.path = "</script><script>alert(1)</script>@SERIES@.csv";
-  const std::string html = ToHtml({ExampleSamples()}, report, "<!--");
+  const std::string html = ToHtml(report, "<!--");
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
   EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.data.path);
   EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
@@ -58,7 +64,7 @@ TEST(ToHtml, LetsNoNameEndItsScript) {
 
 // No address of a server, and no way to load one.
 TEST(ToHtml, FetchesNothing) {
-  const std::string html = ToHtml({ExampleSamples()}, ExampleReport(), "");
+  const std::string html = ToHtml(SampledReport(), "");
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, Not(HasSubstr(" src=\"http")));
   EXPECT_THAT(html, Not(HasSubstr("<link")));
@@ -66,9 +72,9 @@ TEST(ToHtml, FetchesNothing) {
 }
 
 TEST(SeriesJson, OfThePageHasSevenDigitsAndNoResiduals) {
-  const RunReport report = ExampleReport();
-  const Json all = SeriesJson(ExampleSamples(), report);
-  const Json page = SeriesJson(ExampleSamples(), report, SeriesDetail::kPage);
+  const Identification report = SampledReport();
+  const Json all = SeriesJson(report);
+  const Json page = SeriesJson(report, SeriesDetail::kPage);
   EXPECT_EQ(all.at("measured").at(7), -0.123456789012);
   EXPECT_EQ(page.at("measured").at(7), -0.1234568);
   for (const auto& [name, model] : page.at("models").items()) EXPECT_TRUE(model.at("residual").is_null()) << name;

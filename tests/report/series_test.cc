@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/example_joint_report.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::series_test {
 namespace {
@@ -40,8 +40,9 @@ TextbookOverlay OverlayOfThreeSamples() {
 }
 
 /// Three samples, their fit and its overlay, and the turning points of the example.
-RunReport ReportOfThreeSamples() {
-  RunReport report = ExampleReport();
+Identification ReportOfThreeSamples() {
+  Identification report = ExampleReport();
+  report.used = ThreeSamples();
   report.fits = {FitOfThreeSamples()};
   report.checks[0].overlay = OverlayOfThreeSamples();
   return report;
@@ -81,7 +82,7 @@ TEST(ToResidualCsv, LeavesFieldsEmptyThatThereAreNot) {
 }
 
 TEST(SeriesJson, HasSamplesAndModelsByName) {
-  const Json series = SeriesJson(ThreeSamples(), ReportOfThreeSamples());
+  const Json series = SeriesJson(ReportOfThreeSamples());
   EXPECT_THAT(Keys(series), ElementsAre("time_s", "measured", "unit", "extrema", "peaks", "profiles", "models"));
   EXPECT_EQ(series["time_s"].dump(), "[0.0,0.1,0.2]");
   EXPECT_EQ(series["measured"].dump(), "[0.5,-1e-07,0.3333333333333333]");
@@ -93,15 +94,15 @@ TEST(SeriesJson, HasSamplesAndModelsByName) {
 }
 
 TEST(SeriesJson, HasProfilesByModelAndParameter) {
-  RunReport report = ReportOfThreeSamples();
+  Identification report = ReportOfThreeSamples();
   report.fits[0].profiles = {{"inertia", {0.5, 1, 1.5}, {4, 0, kNan}, 3.875}};
-  EXPECT_EQ(SeriesJson(ThreeSamples(), report)["profiles"].dump(),
+  EXPECT_EQ(SeriesJson(report)["profiles"].dump(),
             R"({"coulomb":{"inertia":{"value":[0.5,1.0,1.5],"statistic":[4.0,0.0,null],"threshold":3.875}}})");
 }
 
 // The standard errors are the roots of the variances 1e-6 s² and 4e-6 rad².
 TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
-  const Json peaks = SeriesJson(ThreeSamples(), ReportOfThreeSamples())["peaks"];
+  const Json peaks = SeriesJson(ReportOfThreeSamples())["peaks"];
   ASSERT_EQ(peaks.size(), 5);
   EXPECT_EQ(peaks[2].dump(),
             R"({"number":3,"time_s":3.8,"time_std_error":0.001,"angle_rad":0.39,"std_error":0.002,)"
@@ -111,37 +112,36 @@ TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
 }
 
 TEST(SeriesJson, NamesTheUnitOfARateOrOfCounts) {
-  Recording used = ThreeSamples();
-  RunReport report = ReportOfThreeSamples();
-  used.unit = "counts";
-  EXPECT_TRUE(SeriesJson(used, report)["peaks"][0].contains("angle_counts"));
-  used.unit = "rad/s";
-  used.quantity = report.closed_forms->table.quantity = Quantity::kRate;
-  EXPECT_TRUE(SeriesJson(used, report)["peaks"][0].contains("rate_rad_s"));
+  Identification report = ReportOfThreeSamples();
+  report.used.unit = "counts";
+  EXPECT_TRUE(SeriesJson(report)["peaks"][0].contains("angle_counts"));
+  report.used.unit = "rad/s";
+  report.used.quantity = report.closed_forms->table.quantity = Quantity::kRate;
+  EXPECT_TRUE(SeriesJson(report)["peaks"][0].contains("rate_rad_s"));
 }
 
 TEST(SeriesJson, IsNullForWhatThereIsNot) {
-  RunReport report = ReportOfThreeSamples();
+  Identification report = ReportOfThreeSamples();
   report.closed_forms.reset();
   report.checks.clear();
   report.fits[0].fitted[1] = kNan;
   report.fits[0].residual.resize(0);
-  const Json series = SeriesJson(ThreeSamples(), report);
+  const Json series = SeriesJson(report);
   EXPECT_EQ(series["extrema"], Json::array());
   EXPECT_EQ(series["peaks"], Json::array());
   EXPECT_EQ(series["models"]["coulomb"].dump(),
             R"({"fitted":[0.25,null,0.5],"residual":null,"linear_closed_form":null,"nonlinear_closed_form":null})");
   report.fits.clear();
-  EXPECT_EQ(SeriesJson(ThreeSamples(), report)["models"], Json::object());
+  EXPECT_EQ(SeriesJson(report)["models"], Json::object());
 }
 
 // cos(2π t / 1 s) over 0.2 to 3.8 s turns at every half second from 0.5 to 3.5 s, by -1 and 1 in turn; a parabola
 // through samples 0.01 s apart is off by some (2π 0.01)³.
 TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
-  Recording used;
-  used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
-  used.value = (2 * kPi * used.time.array()).cos();
-  const Json extrema = SeriesJson(used, RunReport())["extrema"];
+  Identification report;
+  report.used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
+  report.used.value = (2 * kPi * report.used.time.array()).cos();
+  const Json extrema = SeriesJson(report)["extrema"];
   ASSERT_EQ(extrema.size(), 7);
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_NEAR(extrema[i][0].get<double>(), 0.5 + 0.5 * static_cast<double>(i), 5e-4);
@@ -150,24 +150,23 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
 }
 
 TEST(ToSeriesJsonText, IsOneLineOfTheSame) {
-  const RunReport report = ReportOfThreeSamples();
-  const std::string text = ToSeriesJsonText({ThreeSamples()}, report);
+  const Identification report = ReportOfThreeSamples();
+  const std::string text = ToSeriesJsonText(report);
   EXPECT_EQ(text.find('\n'), text.size() - 1);
-  EXPECT_EQ(Json::parse(text), SeriesJson(ThreeSamples(), report));
+  EXPECT_EQ(Json::parse(text), SeriesJson(report));
 }
 
 TEST(SeriesJson, OfAJointFitIsAnArrayOfItsRecordings) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs = {ReportOfThreeSamples(), ReportOfThreeSamples()};
   report.runs[1].fits[0].fitted[0] = 0.75;
-  Recording second = ThreeSamples();
-  second.time[2] = 0.25;
-  const Json series = SeriesJson({ThreeSamples(), second}, report);
+  report.runs[1].used.time[2] = 0.25;
+  const Json series = SeriesJson(report);
   ASSERT_EQ(series.size(), 2);
-  EXPECT_EQ(series[0], SeriesJson(ThreeSamples(), report.runs[0]));
+  EXPECT_EQ(series[0], SeriesJson(report.runs[0]));
   EXPECT_EQ(series[1]["time_s"].dump(), "[0.0,0.1,0.25]");
   EXPECT_EQ(series[1]["models"]["coulomb"]["fitted"].dump(), "[0.75,0.0,0.5]");
-  EXPECT_EQ(Json::parse(ToSeriesJsonText({ThreeSamples(), second}, report)), series);
+  EXPECT_EQ(Json::parse(ToSeriesJsonText(report)), series);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum::text_test {
 namespace {
@@ -92,7 +92,7 @@ constexpr const char* kWholeFit = R"([[Data]]
 )";
 
 TEST(ToText, GivesTheWholeFit) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.sampling.reset();
   report.closed_forms.reset();
   EXPECT_EQ(ToText(report), kWholeFit);
@@ -125,7 +125,7 @@ TEST(ToText, GivesARateInDegreesPerSecondToo) {
 }
 
 TEST(ToText, SaysWhichIntervalIsOpen) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
   viscous.open_interval = "its likelihood does not fall";
@@ -136,7 +136,7 @@ TEST(ToText, SaysWhichIntervalIsOpen) {
 }
 
 TEST(ToText, SaysWhoTellsTheResolution) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.resolution_source = "file";
   EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
   report.data.resolution_source = "given";
@@ -144,7 +144,7 @@ TEST(ToText, SaysWhoTellsTheResolution) {
 }
 
 TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
                             {"natural_frequency", "rad/s", 4.7781234}};
   EXPECT_THAT(ToText(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
@@ -160,7 +160,7 @@ TEST(ToText, SaysAReasonOnceForAllParametersItConcerns) {
 }
 
 TEST(ToText, ShowsNeitherStatisticsNorAnEquationOfAFailedFit) {
-  RunReport report = ExampleRateReport();
+  Identification report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const std::string text = ToText(report);
   EXPECT_THAT(text, HasSubstr("These are no estimates: nothing was fitted."));
@@ -169,7 +169,7 @@ TEST(ToText, ShowsNeitherStatisticsNorAnEquationOfAFailedFit) {
 }
 
 TEST(ToText, SortsCorrelationsBySizeAndLeavesOutSmallOnes) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits[0].covariance = Eigen::Matrix3d{{1, 0.25, -0.75}, {0.25, 1, 0.0625}, {-0.75, 0.0625, 1}};
   EXPECT_THAT(ToText(report), HasSubstr("[[Correlations]] (those below 0.1 in size are not listed)\n"
                                         "    inertia, release_angle  -0.750\n"
@@ -178,7 +178,7 @@ TEST(ToText, SortsCorrelationsBySizeAndLeavesOutSmallOnes) {
 }
 
 TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
   viscous.systematic_std_error = 4e-8;
@@ -191,7 +191,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
 TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
   report.checks.clear();
   EXPECT_THAT(OneLine(ToText(report)),
@@ -204,7 +204,7 @@ TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
 }
 
 TEST(ToText, GoesWithoutAFit) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
   const std::string text = ToText(report);
@@ -217,7 +217,7 @@ TEST(ToText, GoesWithoutAFit) {
 }
 
 TEST(ToText, HasNoWarningsSectionWithoutWarnings) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.warnings.clear();
   report.fits[0].warnings.clear();
   EXPECT_THAT(ToText(report), Not(HasSubstr("[[Warnings]]")));
@@ -236,7 +236,7 @@ TEST(ToText, ComparesBeforeItTellsAndOfTheOthersGivesTheParameters) {
 }
 
 TEST(ToText, HidesWhatWouldSteerATerminalInTheNameOfAFile) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.data.path = "a\x1B[2J\n[[Fit]].csv";
   EXPECT_THAT(ToText(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
 }
@@ -250,8 +250,8 @@ int WidestOf(const std::string& text) {
 }
 
 /// The example with the longest names, units and numbers that fits give.
-RunReport WideReport() {
-  RunReport report = ExampleComparedReport();
+Identification WideReport() {
+  Identification report = ExampleComparedReport();
   FitReport& fit = report.fits[0];
   for (ParameterEstimate& parameter : fit.parameters) {
     parameter.systematic_std_error = 1.2e-9;
@@ -286,7 +286,7 @@ TEST(ToText, FitsATerminalOfEightyColumns) {
   EXPECT_LE(WidestOf(ToText(ExampleReport())), 80);
   EXPECT_LE(WidestOf(ToText(ExampleRateReport())), 80);
   EXPECT_LE(WidestOf(ToText(ExampleComparedReport())), 80);
-  RunReport report = WideReport();
+  Identification report = WideReport();
   EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
   EXPECT_LE(WidestOf(ToText(report, {.colour = true})), 80);
   report.rig.reset();

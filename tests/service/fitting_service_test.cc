@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/sha256.h"
-#include "pendulum/batch/fit_bytes.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/series.h"
 #include "tests/service/asked_service.h"
@@ -42,11 +42,11 @@ using testing::StrCaseEq;
 class FittingServiceTest : public asked_service::ServiceTest {};
 
 /// What fit_pendulum makes of a recording with these models, and its result JSON without a path.
-FitRun FitOf(const std::vector<std::string>& models, RunFiles files) {
-  return FitBytes(small_batch::OptionsFor(models), std::move(files)).value();
+Identification FitOf(const std::vector<std::string>& models, RunFiles files) {
+  return IdentifyBytes(small_batch::OptionsFor(models), std::move(files)).value();
 }
 
-std::string ResultOf(const FitRun& run) {
+std::string ResultOf(const Identification& run) {
   Json json = ToJson(run.report);
   json["data"]["path"] = nullptr;
   return json.dump(2) + "\n";
@@ -249,14 +249,13 @@ TEST_F(FittingServiceTest, TellsWhatAFitWasMadeFrom) {
 
 TEST_F(FittingServiceTest, GivesSeriesResidualsReportAndMarkdown) {
   const std::string location = Fitted("?model=viscous&name=my%20run.csv");
-  const FitRun run = FitOf({"viscous"}, {{"", Recording()}, {}, {}});
+  const Identification run = FitOf({"viscous"}, {{"", Recording()}, {}, {}});
   const HttpResponse series = Get(location + "/series");
   EXPECT_EQ(series.status, 200);
-  EXPECT_EQ(Json::parse(series.body)["runs"].size(),
-            Json::parse(ToSeriesJsonText(run.used, run.report))["runs"].size());
+  EXPECT_EQ(Json::parse(series.body)["runs"].size(), Json::parse(ToSeriesJsonText(run))["runs"].size());
   const HttpResponse residuals = Get(location + "/residuals");
   EXPECT_THAT(FieldOf(residuals, "Content-Type"), StartsWith("text/csv"));
-  EXPECT_EQ(residuals.body, ToResidualCsv(run.used.front(), run.report, 0));
+  EXPECT_EQ(residuals.body, ToResidualCsv(run, 0));
   const HttpResponse report = Get(location + "/report");
   EXPECT_THAT(report.body, StartsWith("<!doctype html>"));
   EXPECT_THAT(report.body, HasSubstr("my run.csv"));

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/fit_bytes.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/identify/identify.h"
 
 namespace pendulum {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pendulum/batch/run_options.h"
+#include "pendulum/identify/identify_options.h"
 
 namespace pendulum {
 
@@ -21,7 +21,7 @@ struct Provenance {
 
 /// The options as a JSON object, every one that the result depends on: the same options give the same text. Calibration
 /// and rig are not in it, for their bytes are hashed.
-std::string OptionsJson(const RunOptions& options);
+std::string OptionsJson(const IdentifyOptions& options);
 
 /// "Intel(R) Xeon(R) Processor (avx512)": the processor, and which form of the arithmetic is chosen for it.
 const std::string& CpuType();

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/run_options.h"
 #include "pendulum/batch/source.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/identify/identify_options.h"
 
 namespace pendulum {
 
@@ -26,7 +26,7 @@ struct RefitCounts {
 };
 
 struct RefitOptions {
-  RunOptions run;                               ///< Of every run, unless its entry says otherwise.
+  IdentifyOptions run;                          ///< Of every run, unless its entry says otherwise.
   std::optional<std::string> rig, calibration;  ///< JSON of those whose entries name none.
   std::optional<Shard> shard;
   int threads = 0;                          ///< Each fits one recording at a time; 0: one a core. No row depends on it.

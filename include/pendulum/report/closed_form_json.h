@@ -7,7 +7,7 @@
 
 #include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/closed_form/sampling.h"
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 namespace pendulum {
 
@@ -18,6 +18,6 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling);
 nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
 
 /// "closed_forms" of the result but for the turning points (SeriesJson); null if none. SI with a rig, else units of G.
-nlohmann::ordered_json ClosedFormsJson(const RunReport& report);
+nlohmann::ordered_json ClosedFormsJson(const Identification& report);
 
 }  // namespace pendulum

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/analysis/constancy.h"
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 namespace pendulum {
 
 /// "comparison" of the result; null without one.
-nlohmann::ordered_json ComparisonJson(const RunReport& report);
+nlohmann::ordered_json ComparisonJson(const Identification& report);
 
 /// "constancy" of a fit: its two tests; null where neither could be made.
 nlohmann::ordered_json ConstancyJson(const Constancy* constancy);

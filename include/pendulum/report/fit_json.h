@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 namespace pendulum {
 

@@ -5,12 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 namespace pendulum {
 
 /// Fit `index` of a joint report: what is shared in `parameters`, each recording's own numbers in `runs`, whether the
 /// recordings agree in `homogeneity` ($defs/joint_fit of the schema).
-nlohmann::ordered_json JointFitJson(const RunReport& report, std::size_t index);
+nlohmann::ordered_json JointFitJson(const Identification& report, std::size_t index);
 
 }  // namespace pendulum

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 namespace pendulum {
 
@@ -13,9 +13,9 @@ namespace pendulum {
 /// their unit beside them; a rate's residuals, noise and resolution carry the suffix _rad_s where an angle's carry
 /// _rad. Strict JSON: a number that does not exist is null, and `reason` in the same object says why. It holds no
 /// samples, clock times, durations of computing or command: the same recording and flags give the same bytes.
-nlohmann::ordered_json ToJson(const RunReport& report);
+nlohmann::ordered_json ToJson(const Identification& report);
 
 /// ToJson as UTF-8 text, indented by two blanks, with a line break at its end. Bytes that are not UTF-8 become U+FFFD.
-std::string ToJsonText(const RunReport& report);
+std::string ToJsonText(const Identification& report);
 
 }  // namespace pendulum

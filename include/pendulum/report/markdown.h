@@ -4,14 +4,14 @@
 #include <string>
 #include <string_view>
 
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 #include "pendulum/report/section.h"
 
 namespace pendulum {
 
 /// The report for a laboratory notebook, as GitHub-flavoured Markdown: the verdict and the parameters first, then the
 /// sections of ToText in their order. Values and errors share a cell, "0.0790 ± 0.0003".
-std::string ToMarkdown(const RunReport& report);
+std::string ToMarkdown(const Identification& report);
 
 /// Sections as Markdown: a heading of level 2 each, tables with pipes.
 std::string ToMarkdown(const Sections& sections);

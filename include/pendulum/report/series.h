@@ -9,8 +9,8 @@
 
 #include "pendulum/analysis/closed_form_check.h"
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/identify/identification.h"
 #include "pendulum/recording/recording.h"
-#include "pendulum/report/run_report.h"
 
 namespace pendulum {
 
@@ -20,8 +20,8 @@ namespace pendulum {
 /// or one that is not finite, its fields are empty.
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
-/// The same for a fit of a report, with its own overlay if there is one.
-std::string ToResidualCsv(const Recording& used, const RunReport& report, std::size_t fit);
+/// The same for fit number `fit` of an identification of one recording, with its overlay if there is one.
+std::string ToResidualCsv(const Identification& one, std::size_t fit);
 
 /// All of the series, or what the page needs: seven digits, no residuals (it takes differences), and the closed forms'
 /// trajectories of the main fit alone.
@@ -31,17 +31,12 @@ enum class SeriesDetail { kAll, kPage };
 /// "extrema": [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error",
 /// "angle_rad" (or rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta",
 /// "zeta_std_error", "periods"}], "profiles": {model: {parameter: {"value", "statistic", "threshold"}}} as
-/// ProfileCurve, "models": {name: {"fitted", "residual", "linear_closed_form", "nonlinear_closed_form"}}}. used: the N
-/// samples of the report. What there is not is null: an array, a number in one, the profiles, the damping ratio (zeta)
-/// of a turning point that none on its side follows.
-nlohmann::ordered_json SeriesJson(const Recording& used, const RunReport& report,
-                                  SeriesDetail detail = SeriesDetail::kAll);
-
-/// The same; of a joint fit an array with one for each recording, in their order. used: of each recording.
-nlohmann::ordered_json SeriesJson(const std::vector<Recording>& used, const RunReport& report,
-                                  SeriesDetail detail = SeriesDetail::kAll);
+/// ProfileCurve, "models": {name: {"fitted", "residual", "linear_closed_form", "nonlinear_closed_form"}}}. Missing
+/// values are null: an array, a number in one, the profiles, the damping ratio (zeta) of a turning point that none on
+/// its side follows. Of a joint identification: an array with such an object for each recording, in their order.
+nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail = SeriesDetail::kAll);
 
 /// SeriesJson as one line of UTF-8 text.
-std::string ToSeriesJsonText(const std::vector<Recording>& used, const RunReport& report);
+std::string ToSeriesJsonText(const Identification& one);
 
 }  // namespace pendulum

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "pendulum/base/status.h"
-#include "pendulum/batch/run_options.h"
+#include "pendulum/identify/identify_options.h"
 
 namespace pendulum {
 
@@ -42,6 +42,6 @@ tl::unexpected<Status> NeedsAFit(std::string_view flag);
 
 /// Turns flags into options; rig and calibration are for the caller to read.
 /// kInvalidArgument: a flag is wrong or contradicts another; the message names it.
-Result<RunOptions> MakeRunOptions(const RunFlags& flags);
+Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags);
 
 }  // namespace pendulum

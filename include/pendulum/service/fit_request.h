@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <tl/expected.hpp>
 
-#include "pendulum/batch/fit_bytes.h"
 #include "pendulum/batch/fit_store.h"
-#include "pendulum/batch/run_options.h"
+#include "pendulum/identify/identify.h"
+#include "pendulum/identify/identify_options.h"
 #include "pendulum/request/named_flags.h"
 #include "pendulum/service/http.h"
 #include "pendulum/service/problem.h"
@@ -39,8 +39,8 @@ struct RequestLimits {
 
 /// What a client asks to be fitted.
 struct FitRequest {
-  FlagTexts flags;     ///< As they were given; all that they do not say has its default.
-  RunOptions options;  ///< What they ask.
+  FlagTexts flags;          ///< As they were given; all that they do not say has its default.
+  IdentifyOptions options;  ///< What they ask.
   std::vector<NamedBytes> data;
   SharedFile rig, calibration;
 };
@@ -65,14 +65,14 @@ OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTa
 
 /// What flags ask of one run of the service, which has that calibration. Errors as RunFlagsOf and MakeRunOptions;
 /// kInvalidArgument: release all.
-Result<RunOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
+Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
 /// kUnsupportedMediaType: the body is of none of these types, or in some coding.
 OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
 
 /// The flags of a run that was kept, and what they ask of it. kDataLoss: the store has other than it was given.
 Result<FlagTexts> FlagsOf(const FitOrder& order);
-Result<RunOptions> OptionsOf(const FitOrder& order);
+Result<IdentifyOptions> OptionsOf(const FitOrder& order);
 
 /// A JSON object of texts, numbers and switches as flags. kInvalidArgument: an array or an object in it.
 Result<FlagTexts> FlagTextsOf(const nlohmann::ordered_json& object);

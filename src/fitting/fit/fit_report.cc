@@ -2,6 +2,7 @@
 #include "pendulum/fitting/fit/fit_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace pendulum {
@@ -37,6 +38,11 @@ void WithdrawErrors(std::string_view why, FitReport& fit) {
   fit.profiles.clear();
   fit.covariance_names.clear();
   fit.covariance.resize(0, 0);
+}
+
+double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) {
+  if (row == column) return 1;
+  return fit.covariance(row, column) / std::sqrt(fit.covariance(row, row) * fit.covariance(column, column));
 }
 
 FitOptions OptionsLike(const FitReport& fit, FitOptions options) {

@@ -144,8 +144,8 @@ void Assemble(JointProblem& joint) {
   const int holding = first.holding_parameter;
   const int held = holding < 0 ? -1 : joint.members.front().at[static_cast<std::size_t>(holding)];
   joint.solve.holding_parameter = joint.IsShared(held) ? held : -1;
-  joint.solve.max_iterations = first.search.max_iterations;
-  joint.solve.max_traces = first.search.max_traces * static_cast<int>(terms.size());
+  joint.solve.max_iterations = first.max_iterations;
+  joint.solve.max_traces = first.max_traces * static_cast<int>(terms.size());
   joint.cost =
       std::make_unique<JointCost>(std::move(terms), static_cast<int>(joint.solve.fixed.size()), PriorsOf(joint));
 }

@@ -162,7 +162,7 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
 /// A stage of the search ends where it is after so many trajectories, and leaves some to the others.
 SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
   constexpr int kMostTraces = 500;
-  options.max_traces = std::min(options.search.max_traces, cost.traces() + kMostTraces);
+  options.max_traces = std::min(options.max_traces, cost.traces() + kMostTraces);
   return options;
 }
 

@@ -23,7 +23,7 @@ using Eigen::Index;
 constexpr double kPhaseStep = 0.6;
 
 /// The first samples tell the frequency well enough for the solver, which goes on to the others.
-constexpr Index kMostSamples = 150;
+constexpr Index kMostScanSamples = 150;
 
 constexpr std::size_t kMostStarts = 12;
 
@@ -86,7 +86,7 @@ class Scan {
   }
 
  private:
-  static Index Count(const Recording& recording) { return std::min(recording.size(), kMostSamples); }
+  static Index Count(const Recording& recording) { return std::min(recording.size(), kMostScanSamples); }
 
   /// ∫ dt / PeriodRatio, s: the phase at 1 rad/s. amplitude: of the reading.
   ArrayXd WarpedTime(const ArrayXd& amplitude, double frequency) const {

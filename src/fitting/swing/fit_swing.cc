@@ -20,15 +20,15 @@ namespace pendulum {
 namespace {
 
 /// So many samples are enough to compare windows, and so many in a half swing.
-constexpr Eigen::Index kMostSamples = 3000;
+constexpr Eigen::Index kMostTrialSamples = 3000;
 constexpr double kPerHalfSwing = 12;
-constexpr int kMostTraces = 60;
+constexpr int kMostTrialTraces = 60;
 
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
  public:
   WindowTrials(Recording recording, const FitOptions& options)
-      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMostTraces)) {}
+      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMostTrialTraces)) {}
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
   double Rms(double begin, double end, double from, double to) {
@@ -110,7 +110,7 @@ std::vector<double> InnerTurns(const FreeSwing& swing) {
 
 /// Leaves out what disturbs the swing at one of its ends.
 void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
-  const Recording excerpt = Excerpt(recording, kMostSamples, kPerHalfSwing / swing.half_period, at_end);
+  const Recording excerpt = Excerpt(recording, kMostTrialSamples, kPerHalfSwing / swing.half_period, at_end);
   const double from = excerpt.time[0];
   const double to = excerpt.time[excerpt.size() - 1];
   std::vector<double> turns;
@@ -183,11 +183,11 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
 Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurns(result.swing);
-  const Recording thinned =
-      Thinned(result.used,
-              std::max(kMostSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
+  const Recording thinned = Thinned(
+      result.used,
+      std::max(kMostTrialSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
   FitOptions quick = options;
-  quick.search.max_traces = 5 * kMostTraces;
+  quick.search.max_traces = 5 * kMostTrialTraces;
   if (!IsRobust(quick.noise)) quick.noise = NoiseFamily::kGaussian;
   quick.interval = IntervalMethod::kCovariance;
   const auto converges = [](const Result<SwingFit>& trial) {

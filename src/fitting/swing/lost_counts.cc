@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr int kMostJumps = 60;
-constexpr int kMostTraces = 200;
+constexpr int kMostStepTraces = 200;
 
 /// What a fit to readings that are moved back leaves of them, and of those that are not.
 struct Left {
@@ -223,7 +223,7 @@ std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions&
 
 std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options) {
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
-  std::optional<Settled> settled = SettleSteps(recording, TrialOptions(recording, options, kMostTraces));
+  std::optional<Settled> settled = SettleSteps(recording, TrialOptions(recording, options, kMostStepTraces));
   if (!settled || settled->steps.empty() || !settled->explain) return std::nullopt;
   const std::vector<ZeroStep>& steps = settled->steps;
   ZeroJumps jumps;

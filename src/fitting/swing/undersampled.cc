@@ -31,7 +31,7 @@ constexpr double kFar = 100;
 constexpr double kTurn = 2 * kPi;
 
 /// Of a fit that is only compared: those that explain the readings need tens.
-constexpr int kMostTraces = 300;
+constexpr int kMostAliasTraces = 300;
 
 /// Where a recording's frequency may lie.
 struct Allowed {
@@ -345,7 +345,7 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   FitOptions moving = options;
   moving.start = StartKind::kMoving;
   moving.interval = IntervalMethod::kCovariance;
-  moving.search.max_traces = std::min(options.search.max_traces, kMostTraces);
+  moving.search.max_traces = std::min(options.search.max_traces, kMostAliasTraces);
   Result<std::vector<Alias>> aliases = FitAliases(*used, allowed, moving);
   if (!aliases) return tl::unexpected(aliases.error());
   if (aliases->empty()) {

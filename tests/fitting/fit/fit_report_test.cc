@@ -54,6 +54,16 @@ TEST(WithdrawErrors, LeavesEstimatesWithAReasonInPlaceOfErrors) {
   EXPECT_EQ(fit.covariance.size(), 0);
 }
 
+// Standard errors 2 and 4, covariance 4: 4 / (2 · 4).
+TEST(Correlation, IsCovarianceOverBothStandardErrors) {
+  FitReport fit;
+  fit.covariance.resize(3, 3);
+  fit.covariance << 4, 4, 0, 4, 16, 0, 0, 0, 1;
+  EXPECT_DOUBLE_EQ(Correlation(fit, 0, 1), 0.5);
+  EXPECT_EQ(Correlation(fit, 2, 2), 1);
+  EXPECT_EQ(Correlation(fit, 0, 2), 0);
+}
+
 TEST(FitReport, KnowsItsWarningsByTheirCodes) {
   FitReport fit;
   fit.warnings.push_back({"lack_of_fit", "the residuals are not noise"});

@@ -119,6 +119,9 @@ struct FitReport {
 /// Removes errors, intervals and covariance that do not hold from a report. Each free parameter gets the reason `why`.
 void WithdrawErrors(std::string_view why, FitReport& fit);
 
+/// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
+double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
+
 /// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it.
 FitOptions OptionsLike(const FitReport& fit, FitOptions options);
 

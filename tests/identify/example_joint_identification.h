@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "tests/report/example_report.h"
+#include "tests/identify/example_identification.h"
 
 namespace pendulum {
 
@@ -60,15 +60,15 @@ inline FitReport ExampleSharedFit() {
 
 /// The example's recording as run.csv, and a second like it, "b c.csv", of an earlier release and in motion from the
 /// start: it has neither closed forms nor constancy.
-inline RunReport ExampleJointReport() {
-  RunReport report;
+inline Identification ExampleJointReport() {
+  Identification report;
   report.rig = ExampleReport().rig;
   report.fits = {ExampleSharedFit()};
   report.joint = {
       {{"inertia", "viscous", "coulomb"}, ExampleHomogeneity(), {"converged", "not_converged: too few iterations"}}};
   report.runs = {ExampleReport(), ExampleReport()};
   report.runs[0].data.path = "run.csv";
-  RunReport& second = report.runs[1];
+  Identification& second = report.runs[1];
   second.data.path = "b c.csv";
   second.data.used_samples = 901;
   second.data.from = 10.5;
@@ -88,14 +88,14 @@ inline RunReport ExampleJointReport() {
 }
 
 /// A second law, drag, that did not converge, with the comparison of ExampleComparedReport.
-inline RunReport ExampleComparedJointReport() {
-  RunReport report = ExampleJointReport();
+inline Identification ExampleComparedJointReport() {
+  Identification report = ExampleJointReport();
   const FitReport drag = ExampleComparedReport().fits[1];
   report.fits.push_back(drag);
   report.joint.push_back(report.joint.front());
   report.joint.back().shared = {"inertia", "viscous", "coulomb", "drag"};
   report.comparison = ExampleComparison();
-  for (RunReport& run : report.runs) {
+  for (Identification& run : report.runs) {
     run.fits.push_back(drag);
     if (!run.checks.empty()) run.checks.emplace_back();
     if (!run.constancy.empty()) run.constancy.emplace_back();
@@ -104,8 +104,8 @@ inline RunReport ExampleComparedJointReport() {
 }
 
 /// The example where no joint trajectory could be traced: no numbers but those of the fits to each recording alone.
-inline RunReport ExampleFailedJointReport() {
-  RunReport report = ExampleJointReport();
+inline Identification ExampleFailedJointReport() {
+  Identification report = ExampleJointReport();
   const auto fail = [](FitReport& fit) {
     fit.termination = Termination::kFailed;
     fit.reason = "no joint trajectory can be traced";
@@ -126,7 +126,7 @@ inline RunReport ExampleFailedJointReport() {
     fit.statistics = {};
   };
   fail(report.fits.front());
-  for (RunReport& run : report.runs) fail(run.fits.front());
+  for (Identification& run : report.runs) fail(run.fits.front());
   return report;
 }
 

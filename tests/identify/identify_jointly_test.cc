@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/fit_joint_run.h"
-
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace pendulum::fit_joint_run_test {
+#include "pendulum/identify/identify.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::identify_jointly_test {
 namespace {
 
 using testing::AllOf;
@@ -17,23 +21,23 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-Result<FitRun> Joined(const std::string& data, const std::string& rig = "") {
-  FitPendulumFlags flags;
-  flags.data = data;
-  flags.rig = rig;
-  flags.interval = "covariance";
-  flags.shared = "all";
-  FitPendulumOptions options = *MakeFitPendulumOptions(flags);
-  const auto setup = ReadSetup(options);
-  if (!setup) return tl::unexpected(setup.error());
-  return FitJointRun(options, *setup);
+Result<Identification> Joined(const std::vector<std::string>& paths, const std::string& rig = "") {
+  IdentifyOptions options;
+  options.models = {"coulomb"};
+  options.fit.interval = IntervalMethod::kCovariance;
+  options.shared = {"inertia", "viscous", "coulomb"};
+  std::optional<Rig> given;
+  if (!rig.empty()) given = Must(ReadRig(rig));
+  std::vector<PreparedRecording> recordings;
+  for (const std::string& path : paths) recordings.push_back(Must(PrepareFile(path, options, given)));
+  return IdentifyJointly(options, std::move(recordings));
 }
 
 // datasets/README.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
-TEST(FitJointRun, TellsTheRigOfSeveralRecordings) {
-  const auto run = Joined("datasets/runs_2.csv,datasets/runs_3.csv", "datasets/textbook_rig.json");
+TEST(IdentifyJointly, TellsTheRigOfSeveralRecordings) {
+  const auto run = Joined({"datasets/runs_2.csv", "datasets/runs_3.csv"}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
-  const RunReport& report = run->report;
+  const Identification& report = *run;
   ASSERT_EQ(report.fits.size(), 1);
   EXPECT_EQ(report.fits[0].termination, Termination::kConverged) << report.fits[0].reason;
   const ParameterEstimate* const inertia = report.fits[0].Find("inertia");
@@ -47,8 +51,8 @@ TEST(FitJointRun, TellsTheRigOfSeveralRecordings) {
   EXPECT_TRUE(report.joint[0].homogeneity.agrees()) << report.joint[0].homogeneity.verdict;
 }
 
-TEST(FitJointRun, RefusesARecordingThatIsNamedTwice) {
-  const auto run = Joined("datasets/runs_1.csv,datasets/../datasets/runs_1.csv");
+TEST(IdentifyJointly, RefusesARecordingThatIsNamedTwice) {
+  const auto run = Joined({"datasets/runs_1.csv", "datasets/../datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(
@@ -57,18 +61,11 @@ TEST(FitJointRun, RefusesARecordingThatIsNamedTwice) {
       "once");
 }
 
-TEST(FitJointRun, RefusesOneSwing) {
-  const auto run = Joined("datasets/runs_1.csv");
+TEST(IdentifyJointly, RefusesOneSwing) {
+  const auto run = Joined({"datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
   EXPECT_THAT(run.error().message, HasSubstr("there is one swing"));
-}
-
-TEST(FitJointRun, NamesTheRecordingThatCannotBeRead) {
-  const auto run = Joined("datasets/runs_1.csv,datasets/nowhere.csv");
-  ASSERT_FALSE(run);
-  EXPECT_EQ(run.error().code, StatusCode::kNotFound);
-  EXPECT_THAT(run.error().message, StartsWith("datasets/nowhere.csv: "));
 }
 
 /// Copies of two recordings, each with a rig of its own.
@@ -83,12 +80,12 @@ class DifferentRigs : public testing::Test {
     std::filesystem::remove(second_);
   }
 
-  const std::string start_ = testing::TempDir() + "fit_joint_run_test_" + std::to_string(getpid());
+  const std::string start_ = testing::TempDir() + "identify_jointly_test_" + std::to_string(getpid());
   const std::string first_ = start_ + "_1.csv", second_ = start_ + "_2.csv";
 };
 
 TEST_F(DifferentRigs, AreRefused) {
-  const auto run = Joined(first_ + "," + second_);
+  const auto run = Joined({first_, second_});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(run.error().message,
@@ -96,11 +93,11 @@ TEST_F(DifferentRigs, AreRefused) {
 }
 
 TEST_F(DifferentRigs, GiveWayToTheOneOfTheCommandLine) {
-  const auto run = Joined(first_ + "," + second_, "datasets/textbook_rig.json");
+  const auto run = Joined({first_, second_}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
-  ASSERT_TRUE(run->report.rig);
-  EXPECT_NEAR(run->report.rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, datasets/README.md
+  ASSERT_TRUE(run->rig);
+  EXPECT_NEAR(run->rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, datasets/README.md
 }
 
 }  // namespace
-}  // namespace pendulum::fit_joint_run_test
+}  // namespace pendulum::identify_jointly_test

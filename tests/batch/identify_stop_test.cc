@@ -10,13 +10,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/fit_run.h"
 #include "pendulum/batch/provenance.h"
+#include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/small_batch.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum::fit_run_stop_test {
+namespace pendulum::identify_stop_test {
 namespace {
 
 using small_batch::OptionsFor;
@@ -27,15 +27,15 @@ using testing::StartsWith;
 
 using Clock = std::chrono::steady_clock;
 
-ReadSwings Read(const std::string& path, const RunOptions& options) {
-  return Must(ReadOne(options, path, std::nullopt));
+PreparedRecording Read(const std::string& path, const IdentifyOptions& options) {
+  return Must(PrepareFile(path, options, std::nullopt));
 }
 
-Result<FitRun> FitFirst(const RunOptions& options, const ReadSwings& swings) {
-  return std::move(FitRuns(options, swings).front());
+Result<Identification> FitFirst(const IdentifyOptions& options, const PreparedRecording& swings) {
+  return std::move(IdentifyEach(options, swings).front());
 }
 
-void ExpectStopped(const Result<FitRun>& run) {
+void ExpectStopped(const Result<Identification>& run) {
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kTryAgain);
   EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
@@ -43,9 +43,9 @@ void ExpectStopped(const Result<FitRun>& run) {
 
 /// Stops a run at `count` instants, evenly spread over about as long as it takes: the result is either that of a run
 /// which is not stopped, byte for byte, or the error.
-void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
+void StopEverywhere(IdentifyOptions options, const PreparedRecording& swings, int count) {
   const Clock::time_point begin = Clock::now();
-  const std::string whole = ToJsonText(Must(FitFirst(options, swings)).report);
+  const std::string whole = ToJsonText(Must(FitFirst(options, swings)));
   const Clock::duration duration = Clock::now() - begin;
   for (int i = 0; i < count; ++i) {
     std::stop_source stop;
@@ -54,7 +54,7 @@ void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
       std::this_thread::sleep_for(wait);
       stop.request_stop();
     });
-    const Result<FitRun> run = FitFirst(options, swings);
+    const Result<Identification> run = FitFirst(options, swings);
     if (run) {
       EXPECT_EQ(ToJsonText(run->report), whole) << i;
     } else {
@@ -64,18 +64,18 @@ void StopEverywhere(RunOptions options, const ReadSwings& swings, int count) {
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
-  const RunOptions options = OptionsFor({"viscous", "coulomb", "stribeck"});
+  const IdentifyOptions options = OptionsFor({"viscous", "coulomb", "stribeck"});
   StopEverywhere(options, Read("datasets/coulomb.csv", options), 6);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingOnTheWayToRest) {
-  const RunOptions options = OptionsFor({"coulomb"});
+  const IdentifyOptions options = OptionsFor({"coulomb"});
   StopEverywhere(options, Read("datasets/to_rest.csv", options), 6);
 }
 
 TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
   for (const IntervalMethod method : {IntervalMethod::kProfile, IntervalMethod::kBootstrap}) {
-    RunOptions options = OptionsFor({"coulomb"});
+    IdentifyOptions options = OptionsFor({"coulomb"});
     options.fit.interval = method;
     StopEverywhere(options, Read("datasets/coulomb.csv", options), 4);
   }
@@ -84,17 +84,17 @@ TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
 TEST(StoppedFitRuns, AreAllOrNothingOnCoarseLevelsWithoutNoise) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
-  const RunOptions options = OptionsFor({"coulomb"});
-  StopEverywhere(options, Must(FindSwings(Must(SimulateRecording(run)), {}, std::nullopt)), 6);
+  const IdentifyOptions options = OptionsFor({"coulomb"});
+  StopEverywhere(options, Must(PrepareRecording(Must(SimulateRecording(run)), {}, std::nullopt)), 6);
 }
 
 TEST(StoppedFitRuns, AreErrorsFromTheBeginning) {
   std::stop_source stop;
   stop.request_stop();
   for (const bool closed_form_only : {false, true}) {
-    RunOptions options = OptionsFor({"viscous", "coulomb"});
+    IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
     options.closed_form_only = closed_form_only;
-    const ReadSwings swings = Read("datasets/coulomb.csv", options);
+    const PreparedRecording swings = Read("datasets/coulomb.csv", options);
     options.fit.stop = stop.get_token();
     ExpectStopped(FitFirst(options, swings));
   }
@@ -106,15 +106,15 @@ TEST(StoppedFitRuns, NameEachOfSeveralSwings) {
   Recording recording = Must(SimulateRecording(run));
   recording.path = "two.csv";
   const FreeSwing whole = Must(FindFreeSwings(recording)).front();
-  RunOptions options = OptionsFor({"viscous"});
+  IdentifyOptions options = OptionsFor({"viscous"});
   std::stop_source stop;
   stop.request_stop();
   options.fit.stop = stop.get_token();
-  ReadSwings swings;
+  PreparedRecording swings;
   swings.samples = recording.size();
   swings.recording = std::move(recording);
   swings.swings = {{whole, whole}, {1, 2}};
-  const auto runs = FitRuns(options, std::move(swings));
+  const auto runs = IdentifyEach(options, std::move(swings));
   ASSERT_THAT(runs, SizeIs(2));
   for (const auto& [index, name] : {std::pair(0, "two.csv: free swing 1: "), std::pair(1, "two.csv: free swing 2: ")}) {
     ExpectStopped(runs[static_cast<std::size_t>(index)]);
@@ -123,9 +123,9 @@ TEST(StoppedFitRuns, NameEachOfSeveralSwings) {
 }
 
 TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
-  RunOptions options = OptionsFor({"viscous", "coulomb"});
+  IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   options.fit.interval = IntervalMethod::kBootstrap;
-  const ReadSwings swings = Read("datasets/coulomb.csv", options);
+  const PreparedRecording swings = Read("datasets/coulomb.csv", options);
   for (const int number : {1, 5, 12}) {  // of its reports, nine to each model
     std::stop_source stop;
     int reports = 0;
@@ -153,8 +153,8 @@ Recording OneReadingAMinute() {
 }
 
 TEST(StoppedFitRuns, EndInTheMidstOfATrajectoryOfMillionsOfSteps) {
-  RunOptions options = OptionsFor({"coulomb"});
-  const ReadSwings swings = Must(FindSwings(OneReadingAMinute(), {}, std::nullopt));
+  IdentifyOptions options = OptionsFor({"coulomb"});
+  const PreparedRecording swings = Must(PrepareRecording(OneReadingAMinute(), {}, std::nullopt));
   std::stop_source stop;
   options.fit.stop = stop.get_token();
   const std::jthread other([&stop] {
@@ -164,19 +164,19 @@ TEST(StoppedFitRuns, EndInTheMidstOfATrajectoryOfMillionsOfSteps) {
   ExpectStopped(FitFirst(options, swings));
 }
 
-TEST(FitRunsThatMayBeStopped, AreTheSameWhenTheyAreNot) {
+TEST(IdentifyEachThatMayBeStopped, AreTheSameWhenTheyAreNot) {
   for (const char* const path : {"datasets/coulomb.csv", "datasets/to_rest.csv"}) {
-    RunOptions options = OptionsFor({"viscous", "coulomb"});
-    const ReadSwings swings = Read(path, options);
-    const std::string never = ToJsonText(Must(FitFirst(options, swings)).report);
+    IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
+    const PreparedRecording swings = Read(path, options);
+    const std::string never = ToJsonText(Must(FitFirst(options, swings)));
     const std::stop_source stop;
     options.fit.stop = stop.get_token();
-    EXPECT_EQ(ToJsonText(Must(FitFirst(options, swings)).report), never) << path;
+    EXPECT_EQ(ToJsonText(Must(FitFirst(options, swings))), never) << path;
   }
 }
 
-TEST(FitRunsThatMayBeStopped, HaveTheSameProvenance) {
-  RunOptions options = OptionsFor({"coulomb"});
+TEST(IdentifyEachThatMayBeStopped, HaveTheSameProvenance) {
+  IdentifyOptions options = OptionsFor({"coulomb"});
   const std::string never = OptionsJson(options);
   std::stop_source stop;
   options.fit.stop = stop.get_token();
@@ -186,4 +186,4 @@ TEST(FitRunsThatMayBeStopped, HaveTheSameProvenance) {
 }
 
 }  // namespace
-}  // namespace pendulum::fit_run_stop_test
+}  // namespace pendulum::identify_stop_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 #include <string>
 
@@ -7,23 +7,28 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/recording/window.h"
-#include "tests/report/example_joint_report.h"
+#include "tests/analysis/fitted_run.h"
+#include "tests/identify/example_joint_identification.h"
 
-namespace pendulum::run_report_test {
+namespace pendulum::identification_test {
 namespace {
 
 using testing::ElementsAre;
 using testing::Field;
 using testing::StartsWith;
 
-TEST(SummarizeData, TellsTheWindowFromTheWhole) {
+TEST(SummarizeUsed, DescribesTheWindow) {
   Recording recording;
   recording.path = "a.csv";
   recording.time = Eigen::VectorXd::LinSpaced(101, 0, 10);
   recording.value = Eigen::VectorXd::Zero(101);
   recording.resolution = 0.5;
   recording.resolution_source = "file";
-  const DataSummary data = SummarizeData(recording, *SelectWindow(recording, 1.95, 4.05));
+  FreeSwing swing;
+  swing.begins = "as asked";
+  DataSummary data;
+  data.samples = 101;
+  SummarizeUsed(*SelectWindow(recording, 1.95, 4.05), swing, data);
   EXPECT_EQ(data.path, "a.csv");
   EXPECT_EQ(data.samples, 101);
   EXPECT_EQ(data.used_samples, 21);
@@ -33,12 +38,14 @@ TEST(SummarizeData, TellsTheWindowFromTheWhole) {
   EXPECT_DOUBLE_EQ(data.sample_rate(), 10);
   EXPECT_EQ(data.resolution, 0.5);
   EXPECT_EQ(data.resolution_source, "file");
+  EXPECT_EQ(data.begins, "as asked");
   recording.resolution = 0;
-  EXPECT_EQ(SummarizeData(recording, recording).resolution_source, "");
+  SummarizeUsed(recording, swing, data);
+  EXPECT_EQ(data.resolution_source, "");
 }
 
 TEST(AllWarnings, SaysEachOnceDataFirst) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.push_back(report.fits.front());
   report.fits.back().warnings.push_back({"gap", "another gap"});
   EXPECT_THAT(AllWarnings(report),
@@ -46,8 +53,8 @@ TEST(AllWarnings, SaysEachOnceDataFirst) {
                           Field(&Warning::message, std::string(report.fits[1].model.name) + ": another gap")));
 }
 
-TEST(RunReport, HasTheCheckOfAFitOrNone) {
-  RunReport report = ExampleReport();
+TEST(Identification, HasTheCheckOfAFitOrNone) {
+  Identification report = ExampleReport();
   EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
   EXPECT_EQ(report.CheckOf(1), nullptr);
   report.checks.clear();
@@ -55,13 +62,13 @@ TEST(RunReport, HasTheCheckOfAFitOrNone) {
 }
 
 TEST(AllWarnings, AreThoseOfTheRecordingWithoutAFit) {
-  RunReport report = ExampleReport();
+  Identification report = ExampleReport();
   report.fits.clear();
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
 }
 
 TEST(AllWarnings, OfAJointFitSayWhoseTheyAre) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
   report.runs[1].warnings = report.runs[0].warnings;
   EXPECT_THAT(AllWarnings(report),
@@ -77,7 +84,7 @@ TEST(AllWarnings, OfAJointFitSayWhoseTheyAre) {
 }
 
 TEST(RecordingLabel, IsItsNumberAndItsFile) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   EXPECT_TRUE(report.is_joint());
   EXPECT_FALSE(ExampleReport().is_joint());
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv)");
@@ -86,7 +93,7 @@ TEST(RecordingLabel, IsItsNumberAndItsFile) {
 }
 
 TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
-  RunReport report = ExampleJointReport();
+  Identification report = ExampleJointReport();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 3;
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv, free swing 1)");
@@ -95,15 +102,8 @@ TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 
-TEST(Correlation, IsCovarianceOverBothStandardErrors) {
-  const FitReport fit = ExampleFit();
-  EXPECT_DOUBLE_EQ(Correlation(fit, 0, 1), 0.5);
-  EXPECT_EQ(Correlation(fit, 2, 2), 1);
-  EXPECT_EQ(Correlation(fit, 0, 2), 0);
-}
-
 TEST(MainFit, IsTheRecommendedElseTheFirstThatConverged) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   EXPECT_EQ(report.MainFit(), 0);
   report.comparison->recommended = "drag";
   EXPECT_EQ(report.MainFit(), 1);
@@ -117,11 +117,47 @@ TEST(MainFit, IsTheRecommendedElseTheFirstThatConverged) {
 }
 
 TEST(IsShownInFull, IsTrueOfAllFitsThatAreNotCompared) {
-  RunReport report = ExampleComparedReport();
+  Identification report = ExampleComparedReport();
   report.comparison.reset();
   EXPECT_TRUE(report.IsShownInFull(0));
   EXPECT_TRUE(report.IsShownInFull(1));
 }
 
+Identification RunThatEnded(const std::vector<Termination>& fits) {
+  Identification run;
+  for (const Termination termination : fits) {
+    run.fits.emplace_back();
+    run.fits.back().termination = termination;
+  }
+  return run;
+}
+
+TEST(ExitCode, IsThatOfTheFitThatStandsForTheRun) {
+  EXPECT_EQ(ExitCode(RunThatEnded({})), 0);  // closed forms alone
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kConverged})), 0);
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kNotConverged})), 1);
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kNotIdentifiable})), 1);
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kFailed})), 1);
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kFailed, Termination::kConverged})), 0);
+  EXPECT_EQ(ExitCode(RunThatEnded({Termination::kFailed, Termination::kNotConverged})), 1);
+}
+
+TEST(ExitCode, IsThatOfTheRecommendedFit) {
+  Identification run = RunThatEnded({Termination::kConverged, Termination::kNotIdentifiable});
+  run.fits[0].model = Must(FindMotionModel("viscous"));
+  run.fits[1].model = Must(FindMotionModel("coulomb"));
+  run.comparison.emplace();
+  run.comparison->recommended = "coulomb";
+  EXPECT_EQ(ExitCode(run), 1);
+  run.comparison->recommended = "viscous";
+  EXPECT_EQ(ExitCode(run), 0);
+}
+
+TEST(Parts, AreTheRecordingsOfAJointIdentificationOrTheOneItself) {
+  const Identification joint = ExampleJointReport(), single = ExampleReport();
+  EXPECT_THAT(joint.Parts(), ElementsAre(&joint.runs[0], &joint.runs[1]));
+  EXPECT_THAT(single.Parts(), ElementsAre(&single));
+}
+
 }  // namespace
-}  // namespace pendulum::run_report_test
+}  // namespace pendulum::identification_test

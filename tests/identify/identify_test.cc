@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/batch/fit_run.h"
+#include "pendulum/identify/identify.h"
 
 #include <algorithm>
 #include <string>
@@ -10,9 +10,10 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/recording/readers/read_recording.h"
 #include "tests/fitting/fit_support.h"
 
-namespace pendulum::fit_run_test {
+namespace pendulum::identify_test {
 namespace {
 
 using testing::HasSubstr;
@@ -21,29 +22,29 @@ using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
-RunOptions OptionsFor(const std::vector<std::string>& models) {
-  RunOptions options;
+IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
+  IdentifyOptions options;
   options.models = models;
   options.fit.model = models.front();
   return options;
 }
 
 /// The textbook's rig, I_O = 0.079 kg m² (datasets/README.md), held until 1.9 s.
-std::vector<Result<FitRun>> FitTextbook(const RunOptions& options) {
-  auto one = ReadOne(options, "datasets/textbook_rig.csv", Must(ReadRig("datasets/textbook_rig.json")));
-  return FitRuns(options, Must(std::move(one)));
+std::vector<Result<Identification>> FitTextbook(const IdentifyOptions& options) {
+  auto one = PrepareFile("datasets/textbook_rig.csv", options, Must(ReadRig("datasets/textbook_rig.json")));
+  return IdentifyEach(options, Must(std::move(one)));
 }
 
 // Seconds that are called milliseconds make it swing a thousand times as fast as its masses and length let expect.
-TEST(FitRuns, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
-  const RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyEach, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
+  const IdentifyOptions options = OptionsFor({"viscous"});
   const Rig rig = Must(ReadRig("datasets/textbook_rig.json"));
   for (const double factor : {1e-3, 1.0}) {
     Recording recording = Must(ReadRecording("datasets/textbook_rig.csv"));
     recording.time *= factor;
-    const auto runs = FitRuns(options, Must(FindSwings(std::move(recording), options.swing, rig)));
+    const auto runs = IdentifyEach(options, Must(PrepareRecording(std::move(recording), options, rig)));
     ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-    const bool warns = std::ranges::count(runs[0]->report.warnings, "rig_frequency", &Warning::code) > 0;
+    const bool warns = std::ranges::count(runs[0]->warnings, "rig_frequency", &Warning::code) > 0;
     EXPECT_EQ(warns, factor != 1);
   }
 }
@@ -67,15 +68,15 @@ Recording TwoReleases() {
   return both;
 }
 
-std::vector<Result<FitRun>> FitTwoReleases(const RunOptions& options) {
-  return FitRuns(options, Must(FindSwings(TwoReleases(), options.swing, std::nullopt)));
+std::vector<Result<Identification>> FitTwoReleases(const IdentifyOptions& options) {
+  return IdentifyEach(options, Must(PrepareRecording(TwoReleases(), options, std::nullopt)));
 }
 
-TEST(FitRuns, PutsAllThatIsConcludedBesideTheFit) {
+TEST(IdentifyEach, PutsAllThatIsConcludedBesideTheFit) {
   const auto runs = FitTextbook(OptionsFor({"viscous"}));
   ASSERT_THAT(runs, SizeIs(1));
   ASSERT_TRUE(runs[0]) << runs[0].error().message;
-  const RunReport& report = runs[0]->report;
+  const Identification& report = *runs[0];
   ASSERT_THAT(report.fits, SizeIs(1));
   const ParameterEstimate& inertia = *report.fits[0].Find("inertia");
   EXPECT_NEAR(inertia.estimate, 0.079, 4 * inertia.std_error.value());
@@ -85,15 +86,14 @@ TEST(FitRuns, PutsAllThatIsConcludedBesideTheFit) {
   EXPECT_FALSE(report.comparison);
   EXPECT_EQ(report.data.path, "datasets/textbook_rig.csv");
   EXPECT_EQ(report.data.samples, 2000);  // 20 s at 100 Hz
-  ASSERT_THAT(runs[0]->used, SizeIs(1));
-  EXPECT_EQ(runs[0]->used[0].size(), report.data.used_samples);
-  EXPECT_EQ(ExitCodeOf(*runs[0]), 0);
+  EXPECT_EQ(runs[0]->used.size(), report.data.used_samples);
+  EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 
-TEST(FitRuns, ComparesSeveralModelsInTheOrderAskedFor) {
+TEST(IdentifyEach, ComparesSeveralModelsInTheOrderAskedFor) {
   const auto runs = FitTextbook(OptionsFor({"coulomb", "viscous"}));
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-  const RunReport& report = runs[0]->report;
+  const Identification& report = *runs[0];
   ASSERT_THAT(report.fits, SizeIs(2));
   EXPECT_EQ(report.fits[0].model.name, "coulomb");
   EXPECT_EQ(report.fits[1].model.name, "viscous");
@@ -101,49 +101,48 @@ TEST(FitRuns, ComparesSeveralModelsInTheOrderAskedFor) {
   EXPECT_EQ(report.closed_forms_model, report.fits[report.MainFit()].model.name);
 }
 
-TEST(FitRuns, MakesClosedFormsWithoutAFit) {
-  RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyEach, MakesClosedFormsWithoutAFit) {
+  IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   const auto runs = FitTextbook(options);
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-  EXPECT_THAT(runs[0]->report.fits, IsEmpty());
-  EXPECT_TRUE(runs[0]->report.closed_forms);
-  EXPECT_EQ(runs[0]->report.closed_forms_model, "viscous");
-  EXPECT_EQ(ExitCodeOf(*runs[0]), 0);
+  EXPECT_THAT(runs[0]->fits, IsEmpty());
+  EXPECT_TRUE(runs[0]->closed_forms);
+  EXPECT_EQ(runs[0]->closed_forms_model, "viscous");
+  EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 
-TEST(FitRuns, TakesTheClosedFormsOfSmallAnglesForReadingsInAnUnknownUnit) {
-  RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyEach, TakesTheClosedFormsOfSmallAnglesForReadingsInAnUnknownUnit) {
+  IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   Recording counts = Must(SimulateRecording(NoisyRun("viscous")));
   counts.value = counts.value.array() * 300 + 512;
   counts.unit = "counts";
-  const auto runs = FitRuns(options, Must(FindSwings(counts, options.swing, std::nullopt)));
+  const auto runs = IdentifyEach(options, Must(PrepareRecording(counts, options, std::nullopt)));
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-  EXPECT_EQ(runs[0]->report.closed_forms_model, "linear");
-  ASSERT_THAT(runs[0]->report.warnings, Not(IsEmpty()));
-  EXPECT_EQ(runs[0]->report.warnings.back().code, "uncalibrated");
-  EXPECT_THAT(runs[0]->report.warnings.back().message,
-              StartsWith("the readings are in counts, not in an angle's unit"));
+  EXPECT_EQ(runs[0]->closed_forms_model, "linear");
+  ASSERT_THAT(runs[0]->warnings, Not(IsEmpty()));
+  EXPECT_EQ(runs[0]->warnings.back().code, "uncalibrated");
+  EXPECT_THAT(runs[0]->warnings.back().message, StartsWith("the readings are in counts, not in an angle's unit"));
 }
 
-TEST(FitRuns, FitsEachReleaseThatWasChosen) {
-  RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyEach, FitsEachReleaseThatWasChosen) {
+  IdentifyOptions options = OptionsFor({"viscous"});
   options.swing.release = SwingChoice::kAll;
   const auto runs = FitTwoReleases(options);
   ASSERT_THAT(runs, SizeIs(2));
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_TRUE(runs[i]) << runs[i].error().message;
-    EXPECT_EQ(runs[i]->report.data.release, i + 1);
-    EXPECT_EQ(runs[i]->report.data.path, "two.csv");
-    EXPECT_EQ(runs[i]->report.data.samples, 900 + 400 + 1000);
-    EXPECT_EQ(ExitCodeOf(*runs[i]), 0);
+    EXPECT_EQ(runs[i]->data.release, i + 1);
+    EXPECT_EQ(runs[i]->data.path, "two.csv");
+    EXPECT_EQ(runs[i]->data.samples, 900 + 400 + 1000);
+    EXPECT_EQ(ExitCode(*runs[i]), 0);
   }
-  EXPECT_LT(runs[0]->report.data.to, runs[1]->report.data.from);
+  EXPECT_LT(runs[0]->data.to, runs[1]->data.from);
 }
 
-TEST(FitRuns, SaysOfSeveralWhichCouldNotBeFitted) {
-  RunOptions options = OptionsFor({"magic"});
+TEST(IdentifyEach, SaysOfSeveralWhichCouldNotBeFitted) {
+  IdentifyOptions options = OptionsFor({"magic"});
   options.swing.release = SwingChoice::kAll;
   const auto runs = FitTwoReleases(options);
   ASSERT_THAT(runs, SizeIs(2));
@@ -155,15 +154,15 @@ TEST(FitRuns, SaysOfSeveralWhichCouldNotBeFitted) {
   }
 }
 
-TEST(FitRuns, SaysOfOneAlonePlainlyWhyItCouldNotBeFitted) {
+TEST(IdentifyEach, SaysOfOneAlonePlainlyWhyItCouldNotBeFitted) {
   const auto runs = FitTextbook(OptionsFor({"magic"}));
   ASSERT_FALSE(runs.at(0));
   EXPECT_EQ(runs[0].error().code, StatusCode::kInvalidArgument);
   EXPECT_THAT(runs[0].error().message, StartsWith("there is no model 'magic'"));
 }
 
-TEST(FitRuns, SaysWhyThereAreNeitherFitsNorClosedForms) {
-  RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyEach, SaysWhyThereAreNeitherFitsNorClosedForms) {
+  IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   options.swing.from = 1.9;
   options.swing.to = 2.9;  // one turning point
@@ -173,35 +172,5 @@ TEST(FitRuns, SaysWhyThereAreNeitherFitsNorClosedForms) {
   EXPECT_THAT(runs[0].error().message, HasSubstr("turn"));
 }
 
-FitRun RunThatEnded(const std::vector<Termination>& fits) {
-  FitRun run;
-  for (const Termination termination : fits) {
-    run.report.fits.emplace_back();
-    run.report.fits.back().termination = termination;
-  }
-  return run;
-}
-
-TEST(ExitCodeOf, IsThatOfTheFitThatStandsForTheRun) {
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({})), 0);  // closed forms alone
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kConverged})), 0);
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kNotConverged})), 1);
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kNotIdentifiable})), 1);
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed})), 1);
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed, Termination::kConverged})), 0);
-  EXPECT_EQ(ExitCodeOf(RunThatEnded({Termination::kFailed, Termination::kNotConverged})), 1);
-}
-
-TEST(ExitCodeOf, IsThatOfTheRecommendedFit) {
-  FitRun run = RunThatEnded({Termination::kConverged, Termination::kNotIdentifiable});
-  run.report.fits[0].model = Must(FindMotionModel("viscous"));
-  run.report.fits[1].model = Must(FindMotionModel("coulomb"));
-  run.report.comparison.emplace();
-  run.report.comparison->recommended = "coulomb";
-  EXPECT_EQ(ExitCodeOf(run), 1);
-  run.report.comparison->recommended = "viscous";
-  EXPECT_EQ(ExitCodeOf(run), 0);
-}
-
 }  // namespace
-}  // namespace pendulum::fit_run_test
+}  // namespace pendulum::identify_test

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/batch/fit_bytes.h"
-
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -11,12 +9,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/run_parts.h"
+#include "pendulum/identify/identify.h"
+#include "pendulum/identify/prepared_recording.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/small_batch.h"
 
-namespace pendulum::fit_bytes_test {
+namespace pendulum::identify_bytes_test {
 namespace {
 
 using small_batch::OptionsFor;
@@ -44,45 +43,44 @@ std::string CountsText() {
   return text;
 }
 
-Status FaultOf(const RunOptions& options, RunFiles files) {
-  const auto run = FitBytes(options, std::move(files));
+Status FaultOf(const IdentifyOptions& options, RunFiles files) {
+  const auto run = IdentifyBytes(options, std::move(files));
   EXPECT_FALSE(run);
   return run ? Status{StatusCode::kInternal, ""} : run.error();
 }
 
 // What fit_pendulum does with the files: it reads them itself.
-TEST(FitBytes, EqualsTheFitOfTheFiles) {
-  const RunOptions options = OptionsFor({"viscous", "coulomb"});
+TEST(IdentifyBytes, EqualsTheFitOfTheFiles) {
+  const IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   const std::string data = "datasets/textbook_rig.csv", rig = "datasets/textbook_rig.json";
-  const auto from_bytes = FitBytes(options, {{data, FileText(data)}, Share({rig, FileText(rig)}), {}});
+  const auto from_bytes = IdentifyBytes(options, {{data, FileText(data)}, Share({rig, FileText(rig)}), {}});
   ASSERT_TRUE(from_bytes) << from_bytes.error().message;
-  auto one = ReadOne(options, data, ReadRig(rig).value());
+  auto one = PrepareFile(data, options, ReadRig(rig).value());
   ASSERT_TRUE(one) << one.error().message;
-  const auto from_files = FitRuns(options, *std::move(one));
+  const auto from_files = IdentifyEach(options, *std::move(one));
   ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
-  EXPECT_EQ(ToJson(from_bytes->report).dump(2), ToJson(from_files[0]->report).dump(2));
-  ASSERT_EQ(from_bytes->used.size(), 1U);
-  EXPECT_EQ(from_bytes->used[0].time, from_files[0]->used[0].time);
+  EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
+  EXPECT_EQ(from_bytes->used.time, from_files[0]->used.time);
 }
 
-TEST(FitBytes, EqualsTheFitOfTheFilesWithACalibration) {
+TEST(IdentifyBytes, EqualsTheFitOfTheFilesWithACalibration) {
   const small_batch::Folder folder("fit_bytes");
   folder.Write("counts.csv", CountsText());
   folder.Write("calibration.json", kCalibration);
-  RunOptions options = OptionsFor({"viscous"});
+  IdentifyOptions options = OptionsFor({"viscous"});
   const std::string data = folder / "counts.csv";
-  const auto from_bytes = FitBytes(options, {{data, CountsText()}, {}, Share({"calibration", kCalibration})});
+  const auto from_bytes = IdentifyBytes(options, {{data, CountsText()}, {}, Share({"calibration", kCalibration})});
   ASSERT_TRUE(from_bytes) << from_bytes.error().message;
   options.read.calibration = ReadCalibration(folder / "calibration.json").value();
-  auto one = ReadOne(options, data, std::nullopt);
+  auto one = PrepareFile(data, options, std::nullopt);
   ASSERT_TRUE(one) << one.error().message;
-  const auto from_files = FitRuns(options, *std::move(one));
+  const auto from_files = IdentifyEach(options, *std::move(one));
   ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
-  EXPECT_EQ(ToJson(from_bytes->report).dump(2), ToJson(from_files[0]->report).dump(2));
+  EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
 }
 
-TEST(FitBytes, SaysWhichOfThemIsAtFaultAndWhere) {
-  const RunOptions options = OptionsFor({"viscous"});
+TEST(IdentifyBytes, SaysWhichOfThemIsAtFaultAndWhere) {
+  const IdentifyOptions options = OptionsFor({"viscous"});
   const std::string good = small_batch::RecordingText(1);
   const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
   EXPECT_EQ(data.code, StatusCode::kDataLoss);
@@ -95,7 +93,7 @@ TEST(FitBytes, SaysWhichOfThemIsAtFaultAndWhere) {
   EXPECT_THAT(calibration.message, StartsWith("cal: "));
 }
 
-TEST(FitBytes, SaysThatNothingSwings) {
+TEST(IdentifyBytes, SaysThatNothingSwings) {
   std::string rest = "time_s,angle_rad\n";
   for (int i = 0; i < 100; ++i) rest += std::to_string(i) + ",0\n";
   const Status fault = FaultOf(OptionsFor({"viscous"}), {{"rest.csv", rest}, {}, {}});
@@ -104,4 +102,4 @@ TEST(FitBytes, SaysThatNothingSwings) {
 }
 
 }  // namespace
-}  // namespace pendulum::fit_bytes_test
+}  // namespace pendulum::identify_bytes_test

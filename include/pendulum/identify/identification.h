@@ -14,11 +14,10 @@
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/homogeneity.h"
 #include "pendulum/analysis/model_comparison.h"
-#include "pendulum/base/status.h"
 #include "pendulum/closed_form/closed_forms.h"
+#include "pendulum/closed_form/free_swing.h"
 #include "pendulum/closed_form/sampling.h"
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
@@ -42,12 +41,8 @@ struct DataSummary {
   double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, the mean
 };
 
-DataSummary SummarizeData(const Recording& recording, const Recording& used);
-
-/// The same, and why: `used` is what was fitted of `swing`, number `release` of those that were found in a recording of
-/// so many samples.
-DataSummary SummarizeData(const Recording& used, const FreeSwing& swing, const ChosenSwings& swings, int release,
-                          Eigen::Index samples);
+/// Sets what the used samples of a swing say: all but samples, releases and release.
+void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& data);
 
 /// What a fit of several recordings has besides.
 struct JointPart {
@@ -56,9 +51,11 @@ struct JointPart {
   std::vector<std::string> alone;  ///< How the fit to each recording alone ended: its status, and why if not converged.
 };
 
-/// All that a run of fit_pendulum found, or a joint fit of several recordings (then `data`, sampling, calibration and
-/// closed forms stand in `runs`, and `fits` have what is shared): what every form of the report is made from.
-struct RunReport {
+/// Everything that was identified from a free swing, or from several recordings together. Of a joint identification,
+/// used samples, data, sampling, calibration and closed forms are in `runs`, and `fits` hold what is shared. Reports in
+/// every format are made from it.
+struct Identification {
+  Recording used;  ///< The N samples that were fitted, without warnings.
   DataSummary data;
   std::optional<Rig> rig;
   nlohmann::ordered_json calibration;  ///< What turned counts or volts into angles, as it was given; null for none.
@@ -71,7 +68,7 @@ struct RunReport {
   std::optional<Comparison> comparison;     ///< Of the fits, where several were asked for.
   std::vector<Constancy> constancy;         ///< One for each fit, in their order, or none at all.
   std::vector<JointPart> joint;             ///< One for each fit of several recordings together, else empty.
-  std::vector<RunReport> runs;              ///< Of a joint fit: each recording, with `fits` as they see it.
+  std::vector<Identification> runs;         ///< Of a joint fit: each recording, with `fits` as they see it.
   std::vector<Warning> warnings;            ///< Of the recording; a fit's own stand in its FitReport.
 
   /// The check of the fit of that index, or nullptr.
@@ -82,6 +79,9 @@ struct RunReport {
 
   bool is_joint() const { return !runs.empty(); }
 
+  /// The identifications of single recordings: `runs` of a joint one, else this one alone.
+  std::vector<const Identification*> Parts() const;
+
   /// The fit that stands for the run: the recommended one, else the first that converged, else the first.
   std::size_t MainFit() const;
 
@@ -89,17 +89,17 @@ struct RunReport {
   bool IsShownInFull(std::size_t fit) const { return !comparison || fit == MainFit(); }
 };
 
+/// The exit code of a run: that of its main fit; 0 for closed forms alone.
+int ExitCode(const Identification& one);
+
 /// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about;
 /// of several recordings, with the one it is about, or that it is about each.
-std::vector<Warning> AllWarnings(const RunReport& report);
+std::vector<Warning> AllWarnings(const Identification& report);
 
 /// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
-bool IsOneOfSeveral(const RunReport& report, std::size_t run);
+bool IsOneOfSeveral(const Identification& report, std::size_t run);
 
 /// "recording 2 (b.csv)": recording `run` (0-based) of a joint fit.
-std::string RecordingLabel(const RunReport& report, std::size_t run);
-
-/// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
-double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
+std::string RecordingLabel(const Identification& report, std::size_t run);
 
 }  // namespace pendulum

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/report/run_report.h"
+#include "pendulum/identify/identification.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "pendulum/fitting/swing/choose_swings.h"
 
 namespace pendulum {
 namespace {
@@ -25,9 +22,9 @@ bool SaidByAll(const std::vector<FitReport>& fits, const Warning& warning) {
 }
 
 /// The warnings of the recordings of a joint fit: whose each is, or that it is each one's.
-std::vector<Warning> WarningsOfRuns(const RunReport& report) {
+std::vector<Warning> WarningsOfRuns(const Identification& report) {
   std::vector<std::vector<Warning>> runs;
-  for (const RunReport& run : report.runs) runs.push_back(AllWarnings(run));
+  for (const Identification& run : report.runs) runs.push_back(AllWarnings(run));
   std::vector<Warning> all;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     for (Warning warning : runs[k]) {
@@ -41,12 +38,10 @@ std::vector<Warning> WarningsOfRuns(const RunReport& report) {
 
 }  // namespace
 
-DataSummary SummarizeData(const Recording& recording, const Recording& used) {
-  DataSummary data;
-  data.path = recording.path;
-  data.sha256 = recording.sha256;
+void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& data) {
+  data.path = used.path;
+  data.sha256 = used.sha256;
   data.unit = used.value_unit();
-  data.samples = recording.size();
   data.used_samples = used.size();
   data.from = used.time[0];
   data.to = used.time[used.size() - 1];
@@ -54,22 +49,18 @@ DataSummary SummarizeData(const Recording& recording, const Recording& used) {
   data.resolution_source = used.resolution > 0 ? used.resolution_source : "";
   data.clock_scale = used.clock_scale;
   data.clock_scale_std_dev = used.clock_scale_std_dev;
-  return data;
-}
-
-DataSummary SummarizeData(const Recording& used, const FreeSwing& swing, const ChosenSwings& swings, int release,
-                          Eigen::Index samples) {
-  DataSummary data = SummarizeData(used, used);
-  data.samples = samples;
   data.begins = swing.begins;
   data.ends = swing.ends;
-  if (swing.from_given && swing.to_given) return data;
-  for (const FreeSwing& found : swings.found) data.releases.push_back({found.from, found.to});
-  data.release = release;
-  return data;
 }
 
-std::size_t RunReport::MainFit() const {
+std::vector<const Identification*> Identification::Parts() const {
+  if (!is_joint()) return {this};
+  std::vector<const Identification*> parts;
+  for (const Identification& run : runs) parts.push_back(&run);
+  return parts;
+}
+
+std::size_t Identification::MainFit() const {
   const auto index_of = [&](const auto& is_it) {
     return static_cast<std::size_t>(std::ranges::find_if(fits, is_it) - fits.begin());
   };
@@ -83,7 +74,7 @@ std::size_t RunReport::MainFit() const {
   return converged < fits.size() ? converged : 0;
 }
 
-std::vector<Warning> AllWarnings(const RunReport& report) {
+std::vector<Warning> AllWarnings(const Identification& report) {
   std::vector<Warning> all;
   AddOnce(report.warnings, all);
   for (const FitReport& fit : report.fits) {
@@ -97,13 +88,13 @@ std::vector<Warning> AllWarnings(const RunReport& report) {
   return all;
 }
 
-bool IsOneOfSeveral(const RunReport& report, std::size_t run) {
+bool IsOneOfSeveral(const Identification& report, std::size_t run) {
   const DataSummary& data = report.runs[run].data;
-  const auto is_it = [&](const RunReport& other) { return other.data.path == data.path; };
+  const auto is_it = [&](const Identification& other) { return other.data.path == data.path; };
   return data.release > 0 && std::ranges::count_if(report.runs, is_it) > 1;
 }
 
-std::string RecordingLabel(const RunReport& report, std::size_t run) {
+std::string RecordingLabel(const Identification& report, std::size_t run) {
   const DataSummary& data = report.runs[run].data;
   std::string label = "recording " + std::to_string(run + 1);
   if (data.path.empty()) return label;
@@ -111,9 +102,6 @@ std::string RecordingLabel(const RunReport& report, std::size_t run) {
          (IsOneOfSeveral(report, run) ? ", free swing " + std::to_string(data.release) : "") + ")";
 }
 
-double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) {
-  if (row == column) return 1;
-  return fit.covariance(row, column) / std::sqrt(fit.covariance(row, row) * fit.covariance(column, column));
-}
+int ExitCode(const Identification& one) { return one.fits.empty() ? 0 : ExitCode(one.fits[one.MainFit()].termination); }
 
 }  // namespace pendulum

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/identify/identification.h"
 #include "pendulum/model/friction/registry.h"
-#include "pendulum/report/run_report.h"
 
 namespace pendulum {
 
@@ -205,8 +205,8 @@ inline Comparison ExampleComparison() {
 }
 
 /// A run with a rig whose masses are uncertain, and one warning of the recording.
-inline RunReport ExampleReport() {
-  RunReport report;
+inline Identification ExampleReport() {
+  Identification report;
   report.data.path = "swing.csv";
   report.data.sha256 = std::string(64, 'a');
   report.data.samples = 2000;
@@ -233,8 +233,8 @@ inline RunReport ExampleReport() {
 }
 
 /// The same for a gyro, without a rig, and not converged: no standard errors, nor closed forms.
-inline RunReport ExampleRateReport() {
-  RunReport report = ExampleReport();
+inline Identification ExampleRateReport() {
+  Identification report = ExampleReport();
   report.rig.reset();
   report.sampling.reset();
   report.closed_forms.reset();
@@ -271,8 +271,8 @@ inline RunReport ExampleRateReport() {
 }
 
 /// The example beside a fit that did not converge, compared with it; inertia follows the amplitude.
-inline RunReport ExampleComparedReport() {
-  RunReport report = ExampleReport();
+inline Identification ExampleComparedReport() {
+  Identification report = ExampleReport();
   FitReport drag = ExampleRateReport().fits.front();
   drag.model = {"drag", "drag", Gravity::kSine};
   drag.quantity = Quantity::kAngle;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/identify/identification.h"
+#include "pendulum/identify/identify_options.h"
+#include "pendulum/identify/prepared_recording.h"
+
+namespace pendulum {
+
+/// Identifies the pendulum from each chosen swing of one recording by itself: fits, comparison of models, constancy,
+/// closed forms and checks. An element that cannot be identified holds its error: as FitModels, or kFailedPrecondition
+/// if there are neither fits nor closed forms; if several swings were chosen, the message names the swing. Once
+/// options.fit.stop is requested, all elements that are not finished are kTryAgain.
+std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording);
+
+/// Identifies one pendulum from all chosen swings of all recordings together, with options.shared in common. Each swing
+/// is fitted alone first, on options.fit.threads threads. Errors name the recording: as IdentifyEach; kInvalidArgument:
+/// fewer than two swings, the same readings twice, or one options.read.resolution for readings of several units;
+/// kDataLoss: the recordings describe different rigs.
+Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings);
+
+/// The bytes of a file, and the name it has in messages.
+struct NamedBytes {
+  std::string name, bytes;
+};
+
+/// A file that all runs of a batch share; null if there is none.
+using SharedFile = std::shared_ptr<const NamedBytes>;
+
+inline SharedFile Share(NamedBytes file) { return std::make_shared<const NamedBytes>(std::move(file)); }
+
+/// The files of one run.
+struct RunFiles {
+  NamedBytes data;              ///< The recording. Its name is that of the result's data, too.
+  SharedFile rig, calibration;  ///< JSON.
+};
+
+/// Reads and identifies a recording from bytes in memory. If several swings are chosen, the first is used. Errors as
+/// ParseRig, ParseCalibration, ParseRecording, PrepareRecording and IdentifyEach.
+Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files);
+
+}  // namespace pendulum

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/recording/readers/columns/read_options.h"
+
+namespace pendulum {
+
+/// What is asked of recordings: how to read them, which swings to use, which models to fit, and how.
+struct IdentifyOptions {
+  ReadOptions read;
+  SwingChoice swing;
+  std::vector<std::string> models;  ///< In the order asked for; several are compared.
+  FitOptions fit;                   ///< Its model is the first of `models`; its rig is replaced by the recording's.
+  bool closed_form_only = false;    ///< No fit is made; of `fit`, only the model and the stop token are used.
+  std::vector<std::string> shared;  ///< Of a joint identification: names of the parameters that all recordings share.
+};
+
+}  // namespace pendulum

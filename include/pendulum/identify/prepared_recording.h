@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "pendulum/base/status.h"
+#include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/identify/identification.h"
+#include "pendulum/identify/identify_options.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// A recording that is ready to be fitted: repaired, with the free swings that were chosen in it.
+struct PreparedRecording {
+  Recording recording;
+  ChosenSwings swings;
+  Eigen::Index samples = 0;  ///< As read, before repairs.
+  Identification known;      ///< What the identifications of all its swings have in common: rig, calibration, warnings.
+};
+
+/// Repairs a recording, takes the edges of an event-driven one (unless options.fit.noise asks otherwise), and chooses
+/// its swings. `rig` replaces the rig that the recording describes. Errors as ParseRig and ChooseSwings.
+Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions& options, std::optional<Rig> rig);
+
+/// The same from a file; "-" is standard input. Errors as ReadRecording too.
+Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig);
+
+/// The error of one run among several, with its recording and, unless it is 0, its release in the message.
+tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release);
+
+}  // namespace pendulum

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identify/conclusions.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "pendulum/analysis/closed_form_check.h"
+#include "pendulum/base/format.h"
+#include "pendulum/closed_form/closed_forms.h"
+#include "pendulum/closed_form/sampling.h"
+#include "pendulum/fitting/swing/undersampled.h"
+
+namespace pendulum {
+namespace {
+
+void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Identification& one) {
+  auto forms = EstimateClosedForms(one.used, model, stop);
+  if (!forms) {
+    one.no_closed_forms = forms.error().message;
+    return;
+  }
+  one.closed_forms = *std::move(forms);
+  one.closed_forms_model = model.name;
+}
+
+/// A fit that failed has an empty check.
+void AddChecks(const std::stop_token& stop, Identification& one) {
+  if (!one.closed_forms) return;
+  for (const FitReport& fit : one.fits) {
+    one.checks.emplace_back();
+    if (fit.termination == Termination::kFailed) continue;
+    const bool same = fit.model.name == one.closed_forms_model;
+    const auto own = same ? Result<ClosedForms>(*one.closed_forms) : EstimateClosedForms(one.used, fit.model, stop);
+    if (own) one.checks.back() = CheckClosedForms(one.used, *own, fit, one.rig, stop);
+  }
+}
+
+/// The frequency that the rig's geometry predicts is rough, but not by a factor of two.
+void WarnOfFrequency(const Sampling& sampling, Identification& one) {
+  constexpr double kFar = 2;
+  const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
+  if (!(seen > 0) || (seen < kFar * expected && expected < kFar * seen)) return;
+  one.warnings.push_back({"rig_frequency", "it swings at " + NumberText(seen, 3) + " Hz, and the rig's inertia lets " +
+                                               NumberText(expected, 3) +
+                                               " Hz expect; check the unit of time, and the rig's units (SI)"});
+}
+
+/// An undersampled swing shows no turning points; its fit has warned already.
+void AddSampling(const FreeSwing& swing, Identification& one) {
+  const double clock_scale = one.used.clock_scale;
+  double half_period = swing.half_period;
+  if (!(half_period > 0) && one.closed_forms) half_period = one.closed_forms->table.half_period / clock_scale;
+  const bool is_seen = half_period > 0 && !(swing.undersampled && one.rig);
+  const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
+  std::optional<double> expected = ExpectedFrequency(one.rig);
+  if (expected) *expected *= clock_scale;
+  const bool is_fitted = swing.undersampled && !one.fits.empty() && ExitCode(one.fits[one.MainFit()].termination) == 0;
+  if (expected && is_fitted) expected = 0.5 / swing.half_period;
+  one.sampling = DescribeSampling(one.used, seen, expected);
+  WarnOfFrequency(*one.sampling, one);
+  if (swing.undersampled || one.used.edge) return;  // an event-driven recording has no sampling rate
+  std::ranges::move(SamplingWarnings(*one.sampling), std::back_inserter(one.warnings));
+}
+
+}  // namespace
+
+void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model, const std::stop_token& stop,
+                    Identification& one) {
+  if (model) {
+    AddClosedForms(*model, stop, one);
+    AddChecks(stop, one);
+  } else {
+    one.no_closed_forms =
+        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+  }
+  AddSampling(swing, one);
+}
+
+}  // namespace pendulum

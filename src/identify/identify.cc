@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/identify/identify.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "identify/conclusions.h"
+#include "pendulum/analysis/constancy.h"
+#include "pendulum/analysis/fit_models.h"
+#include "pendulum/analysis/inconstancy.h"
+#include "pendulum/analysis/joint_comparison.h"
+#include "pendulum/analysis/joint_fit.h"
+#include "pendulum/analysis/model_comparison.h"
+#include "pendulum/base/parallel.h"
+#include "pendulum/closed_form/free_swing.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/recording/readers/read_recording.h"
+#include "pendulum/recording/sensor.h"
+#include "pendulum/recording/window.h"
+
+namespace pendulum {
+namespace {
+
+/// One chosen swing on its way through the pipeline: Take -> FitAlone -> (FitTogether) -> Conclude.
+struct Swing {
+  std::string path;
+  Recording recording;
+  FreeSwing found;
+  Identification known;
+  int release = 0;  ///< Number of the swing if several of its recording were chosen, else 0.
+};
+
+/// Takes the swing of that number (from 1) out of a prepared recording. The last chosen one takes the samples, for a
+/// copy of a long recording is large.
+Swing Take(PreparedRecording& from, int release) {
+  const bool last = release == from.swings.chosen.back();
+  Swing swing;
+  swing.path = from.recording.path;
+  swing.found = from.swings.found[static_cast<std::size_t>(release - 1)];
+  swing.known = from.known;
+  swing.release = from.swings.chosen.size() > 1 ? release : 0;
+  swing.known.data.samples = from.samples;
+  if (!(swing.found.from_given && swing.found.to_given)) {
+    for (const FreeSwing& found : from.swings.found) swing.known.data.releases.push_back({found.from, found.to});
+    swing.known.data.release = release;
+  }
+  swing.recording = last ? std::exchange(from.recording, {}) : from.recording;
+  return swing;
+}
+
+/// The samples of a swing, without a fit.
+Result<FittedModels> SelectSwing(Recording recording, const FreeSwing& swing) {
+  auto used = SelectWindow(std::move(recording), swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  used->warnings.clear();
+  return FittedModels{*std::move(used), swing, {}};
+}
+
+/// Fits every model to one swing and tests whether each fit holds over the whole of it. The samples move into the
+/// result.
+Result<RunModels> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
+  if (options.fit.stop.stop_requested()) return FitStopped();
+  auto models = options.closed_form_only
+                    ? SelectSwing(std::move(swing.recording), swing.found)
+                    : FitModels(std::move(swing.recording), swing.found, fit_options, options.models);
+  if (!models) return tl::unexpected(models.error());
+  RunModels run{{}, *std::move(models), {}};
+  for (const FitReport& fit : run.alone.fits) {
+    const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
+    run.constancy.push_back(TestConstancy(run.alone.used, fit, own));
+  }
+  if (options.fit.stop.stop_requested()) return FitStopped();
+  return run;
+}
+
+/// The model whose closed forms are computed without a fit. Readings in an unknown unit have only those of small
+/// angles.
+MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one) {
+  const MotionModel asked = *FindMotionModel(options.fit.model);
+  const MotionModel linear = *FindMotionModel("linear");
+  if (one.used.is_calibrated() || asked.name == linear.name) return asked;
+  one.warnings.push_back({"uncalibrated", "the readings are in " + one.used.unit +
+                                              ", not in an angle's unit; the closed forms are those of model linear, "
+                                              "which takes small angles for granted"});
+  return linear;
+}
+
+/// Completes what is known of a swing by its samples, fits and constancy, and by what is concluded from these. Closed
+/// forms have the friction of the model of fit `main`.
+void Conclude(const IdentifyOptions& options, RunModels run, std::size_t main, Identification& one) {
+  SummarizeUsed(run.alone.used, run.alone.swing, one.data);
+  one.used = std::move(run.alone.used);
+  one.constancy = std::move(run.constancy);
+  std::optional<MotionModel> model;
+  if (!run.alone.swing.undersampled) model = one.fits.empty() ? ClosedFormModel(options, one) : one.fits[main].model;
+  AddConclusions(run.alone.swing, model, options.fit.stop, one);
+}
+
+Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) {
+  FitOptions fit_options = options.fit;
+  fit_options.rig = swing.known.rig;
+  auto run = FitAlone(options, fit_options, swing);
+  if (!run) return tl::unexpected(run.error());
+  Identification one = std::move(swing.known);
+  if (run->alone.fits.size() > 1) one.comparison = CompareModels(run->alone, fit_options);
+  one.fits = std::move(run->alone.fits);
+  for (std::size_t m = 0; m < one.fits.size(); ++m) CountInconstancy(run->constancy[m], one.fits[m]);
+  Conclude(options, *std::move(run), one.MainFit(), one);
+  if (options.fit.stop.stop_requested()) return FitStopped();
+  if (options.closed_form_only && !one.closed_forms) {
+    return Error(StatusCode::kFailedPrecondition, one.no_closed_forms);
+  }
+  return one;
+}
+
+// ---- Several recordings of one pendulum
+// ------------------------------------------------------------------------------
+
+Result<std::vector<Swing>> TakeAll(std::vector<PreparedRecording> recordings) {
+  std::vector<Swing> swings;
+  for (PreparedRecording& recording : recordings) {
+    for (const int release : recording.swings.chosen) swings.push_back(Take(recording, release));
+  }
+  if (swings.size() > 1) return swings;
+  return Error(StatusCode::kInvalidArgument,
+               "--shared is for several recordings, or the releases of one (--release all), and there is one swing");
+}
+
+/// The same readings twice would count as two recordings with independent errors.
+Result<void> CheckDifferent(const std::vector<Swing>& swings) {
+  for (std::size_t k = 0; k < swings.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      const Recording& one = swings[i].recording;
+      const Recording& other = swings[k].recording;
+      if (one.size() != other.size() || swings[i].release != swings[k].release) continue;
+      if (one.time != other.time || one.value != other.value) continue;
+      return Error(StatusCode::kInvalidArgument, swings[i].path + " and " + swings[k].path +
+                                                     " are the same recording, reading for reading; name it once");
+    }
+  }
+  return {};
+}
+
+/// A resolution that is given for all recordings is in the unit of their readings, which must be the same.
+Result<void> CheckResolution(const IdentifyOptions& options, const std::vector<Swing>& swings) {
+  if (!options.read.resolution) return {};
+  const Swing& first = swings.front();
+  for (const Swing& swing : swings) {
+    if (swing.recording.unit == first.recording.unit) continue;
+    return Error(StatusCode::kInvalidArgument, "--resolution is in the file's unit, and " + first.path + " is in " +
+                                                   first.recording.unit + ", " + swing.path + " in " +
+                                                   swing.recording.unit +
+                                                   "; write it into each file instead, as a line # resolution: VALUE");
+  }
+  return {};
+}
+
+/// The one rig that the user gave or that the recordings describe.
+Result<std::optional<Rig>> CommonRig(const std::vector<Swing>& swings) {
+  const Swing* known = nullptr;
+  for (const Swing& swing : swings) {
+    if (!swing.known.rig) continue;
+    if (known == nullptr) known = &swing;
+    const auto& torque = swing.known.rig->gravity_torque;
+    const auto& first = known->known.rig->gravity_torque;
+    if (torque.value == first.value && torque.std_dev == first.std_dev) continue;
+    return Error(StatusCode::kDataLoss, known->path + " and " + swing.path +
+                                            " describe different rigs (# rig), and one rig's recordings are fitted "
+                                            "together; give the one of all with --rig, or fit them apart with --shared "
+                                            "none");
+  }
+  return known == nullptr ? std::nullopt : known->known.rig;
+}
+
+/// The names of the recordings in sentences.
+std::vector<std::string> LabelsOf(const std::vector<Swing>& swings) {
+  Identification all;
+  for (const Swing& swing : swings) {
+    all.runs.emplace_back();
+    all.runs.back().data.path = swing.path;
+    all.runs.back().data.release = swing.release;
+  }
+  std::vector<std::string> labels;
+  for (std::size_t k = 0; k < swings.size(); ++k) labels.push_back(RecordingLabel(all, k));
+  return labels;
+}
+
+/// Fits each swing alone, several at a time.
+Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, const FitOptions& fit_options,
+                                            std::vector<Swing>& swings) {
+  const std::vector<std::string> labels = LabelsOf(swings);
+  std::vector<Result<RunModels>> fitted(swings.size());
+  FitOptions each = fit_options;
+  each.threads = 1;
+  ParallelFor(static_cast<int>(swings.size()), fit_options.threads, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    fitted[k] = FitAlone(options, each, swings[k]);
+    if (fitted[k]) fitted[k]->label = labels[k];
+  });
+  std::vector<RunModels> runs;
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    if (!fitted[k]) return ErrorAmong(fitted[k].error(), swings[k].path, swings[k].release);
+    runs.push_back(*std::move(fitted[k]));
+  }
+  return runs;
+}
+
+/// The warnings of a fit alone that the joint fit does not repeat: of its window, its sampling, other minima.
+void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& one) {
+  constexpr std::array<std::string_view, 8> kOfTheFit = {"lack_of_fit",  "correlated_residuals", "zero_drift",
+                                                         "quiet_sensor", "trace_accuracy",       "prior_conflict",
+                                                         "at_bound",     "stop_is_a_kink"};
+  for (const Warning& warning : alone.warnings) {
+    const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
+    if (!of_the_fit && !joint.Warns(warning.code)) one.warnings.push_back(warning);
+  }
+  if (alone.termination == Termination::kConverged) return;
+  one.warnings.push_back(
+      {"not_alone", "fitted alone it is " + std::string(TerminationName(alone.termination)) + ": " + alone.reason});
+}
+
+JointPart PartOf(const JointModels& joint, std::size_t m) {
+  JointPart part{joint.joint[m].shared, joint.homogeneity[m], {}};
+  for (const RunModels& run : joint.runs) {
+    const FitReport& fit = run.alone.fits[m];
+    const std::string status(TerminationName(fit.termination));
+    part.alone.push_back(fit.termination == Termination::kConverged ? status : status + ": " + fit.reason);
+  }
+  return part;
+}
+
+/// What holds for all recordings together.
+Identification WholeOf(const JointModels& joint, const FitOptions& options) {
+  Identification whole;
+  whole.rig = options.rig;
+  whole.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
+  for (std::size_t m = 0; m < joint.models.size(); ++m) {
+    whole.fits.push_back(joint.joint[m].whole);
+    whole.joint.push_back(PartOf(joint, m));
+  }
+  if (joint.models.size() > 1) whole.comparison = CompareJointModels(joint, options);
+  return whole;
+}
+
+}  // namespace
+
+std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
+  std::vector<Result<Identification>> all;
+  const std::vector<int> chosen = recording.swings.chosen;
+  const std::string path = recording.recording.path;
+  for (const int release : chosen) {
+    auto one = IdentifyOne(options, Take(recording, release));
+    if (!one && options.fit.stop.stop_requested()) one = FitStopped();  // whatever the stop made of it
+    if (!one && chosen.size() > 1) one = ErrorAmong(one.error(), path, release);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings) {
+  auto swings = TakeAll(std::move(recordings));
+  if (!swings) return tl::unexpected(swings.error());
+  if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckResolution(options, *swings); !checked) return tl::unexpected(checked.error());
+  const auto rig = CommonRig(*swings);
+  if (!rig) return tl::unexpected(rig.error());
+  FitOptions fit_options = options.fit;
+  fit_options.rig = *rig;
+  auto alone = FitEachAlone(options, fit_options, *swings);
+  if (!alone) return tl::unexpected(alone.error());
+  JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
+  Identification whole = WholeOf(joint, fit_options);
+  const std::size_t main = whole.MainFit();
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    Identification one = std::move((*swings)[k].known);
+    one.rig = *rig;
+    for (std::size_t m = 0; m < joint.models.size(); ++m) one.fits.push_back(joint.FitOf(k, m));
+    AddOwnWarnings(joint.runs[k].alone.fits[main], one.fits[main], one);
+    Conclude(options, std::move(joint.runs[k]), main, one);
+    whole.runs.push_back(std::move(one));
+  }
+  if (options.fit.stop.stop_requested()) return FitStopped();
+  return whole;
+}
+
+Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
+  std::optional<Rig> rig;
+  if (files.rig) {
+    auto parsed = ParseRig(files.rig->bytes, files.rig->name);
+    if (!parsed) return tl::unexpected(parsed.error());
+    rig = *std::move(parsed);
+  }
+  if (files.calibration) {
+    auto parsed = ParseCalibration(files.calibration->bytes, files.calibration->name);
+    if (!parsed) return tl::unexpected(parsed.error());
+    options.read.calibration = *std::move(parsed);
+  }
+  auto read = ParseRecording(files.data.bytes, files.data.name, options.read);
+  if (!read) return tl::unexpected(read.error());
+  files.data.bytes = {};  // a long one takes much memory
+  auto prepared = PrepareRecording(*std::move(read), options, std::move(rig));
+  if (!prepared) return tl::unexpected(prepared.error());
+  return std::move(IdentifyEach(options, *std::move(prepared)).front());
+}
+
+}  // namespace pendulum

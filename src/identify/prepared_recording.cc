@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/identify/prepared_recording.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/swing/undersampled.h"
+#include "pendulum/recording/readers/read_recording.h"
+#include "pendulum/recording/repair_values.h"
+
+namespace pendulum {
+
+Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions& options, std::optional<Rig> rig) {
+  if (!rig && !read.rig_json.empty()) {
+    auto own = ParseRig(read.rig_json, read.path + ": # rig");
+    if (!own) return tl::unexpected(own.error());
+    rig = *std::move(own);
+  }
+  PreparedRecording prepared;
+  prepared.samples = read.size();
+  // Repairs compare a reading with its neighbours, which an undersampled recording does not allow.
+  prepared.recording =
+      IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), options.fit.noise);
+  // The edges of an event-driven recording include samples for its silences.
+  prepared.samples = std::max(prepared.samples, prepared.recording.size());
+  auto swings = ChooseSwings(prepared.recording, options.swing, rig);
+  if (!swings) return tl::unexpected(swings.error());
+  prepared.swings = *std::move(swings);
+  prepared.known.rig = std::move(rig);
+  prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
+  if (prepared.recording.calibration) prepared.known.calibration = prepared.recording.calibration->source;
+  return prepared;
+}
+
+Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig) {
+  auto read = ReadRecording(path, options.read);
+  if (!read) return tl::unexpected(read.error());
+  return PrepareRecording(*std::move(read), options, std::move(rig));
+}
+
+tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
+  const std::string name = path == "-" ? "standard input" : path;
+  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
+  const std::string where = name + ": ";
+  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
+  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
+                                status.message.substr(skip));
+}
+
+}  // namespace pendulum

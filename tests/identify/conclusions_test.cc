@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identify/conclusions.h"
+
+#include <optional>
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+#include "pendulum/model/rig.h"
+
+namespace pendulum::conclusions_test {
+namespace {
+
+/// 100 samples at 50 Hz, on a clock whose seconds are so many true ones.
+Recording EvenSamples(double clock_scale) {
+  Recording recording;
+  recording.time = Eigen::VectorXd::LinSpaced(100, 0, 1.98);
+  recording.value = (5 * recording.time.array()).sin();
+  recording.clock_scale = clock_scale;
+  return recording;
+}
+
+TEST(AddConclusions, TakesTheFrequencyFromTheHalfPeriodOfTheSwing) {
+  FreeSwing swing;
+  swing.half_period = 0.625;
+  Identification report;
+  report.used = EvenSamples(1);
+  AddConclusions(swing, std::nullopt, {}, report);
+  ASSERT_TRUE(report.sampling);
+  EXPECT_NEAR(report.sampling->rate_hz, 50, 1e-9);
+  EXPECT_DOUBLE_EQ(report.sampling->frequency_hz, 0.8);  // 1 / (2 · 0.625)
+  EXPECT_FALSE(report.sampling->expected_frequency_hz);
+}
+
+// sqrt(G / I_O) / 2π = sqrt(1.8 / 0.05) / 2π = 6 / 2π Hz in true seconds; 1.1 times as many cycles in one of the
+// file's.
+TEST(AddConclusions, ExpectsTheFrequencyOfTheRigOnTheClockOfTheFile) {
+  FreeSwing swing;
+  swing.half_period = 0.625;
+  Identification report;
+  report.rig = Rig{{1.8, 0}, RigValue{0.05, 0}, {}};
+  report.used = EvenSamples(1.1);
+  AddConclusions(swing, std::nullopt, {}, report);
+  ASSERT_TRUE(report.sampling && report.sampling->expected_frequency_hz);
+  EXPECT_NEAR(*report.sampling->expected_frequency_hz, 1.1 * 6 / (2 * 3.14159265358979), 1e-12);
+}
+
+TEST(AddConclusions, KnowsNoFrequencyOfASwingWithoutTurningPoints) {
+  Identification report;
+  report.used = EvenSamples(1);
+  AddConclusions(FreeSwing(), std::nullopt, {}, report);
+  ASSERT_TRUE(report.sampling);
+  EXPECT_EQ(report.sampling->frequency_hz, 0);
+}
+
+}  // namespace
+}  // namespace pendulum::conclusions_test

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/identify/prepared_recording.h"
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace pendulum::prepared_recording_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+// ---- ErrorAmong ----------------------------------------------------------------------------------------------------
+
+std::string MessageAmong(const std::string& message, const std::string& path, int release) {
+  const Status status = ErrorAmong({StatusCode::kFailedPrecondition, message}, path, release).value();
+  EXPECT_EQ(status.code, StatusCode::kFailedPrecondition);
+  return status.message;
+}
+
+TEST(ErrorAmong, NamesTheRecordingOnce) {
+  EXPECT_EQ(MessageAmong("no swing", "a.csv", 0), "a.csv: no swing");
+  EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 0), "a.csv: no swing");
+  EXPECT_EQ(MessageAmong("a.csv:7: no number", "a.csv", 0), "a.csv:7: no number");
+  EXPECT_EQ(MessageAmong("no swing", "-", 0), "standard input: no swing");
+}
+
+TEST(ErrorAmong, NamesTheReleaseBehindTheRecording) {
+  EXPECT_EQ(MessageAmong("no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
+  EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
+}
+
+// ---- PrepareFile
+// -------------------------------------------------------------------------------------------------------
+
+/// A copy of datasets/runs_1.csv with a line in front of it.
+class PrepareFileTest : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  Result<PreparedRecording> Read(const std::string& line, const std::optional<Rig>& rig = std::nullopt) const {
+    std::ofstream(path_) << line << '\n' << std::ifstream("datasets/runs_1.csv").rdbuf();
+    return PrepareFile(path_, {}, rig);
+  }
+
+  const std::string path_ = testing::TempDir() + "prepared_recording_test_" + std::to_string(getpid()) + ".csv";
+};
+
+TEST_F(PrepareFileTest, TakesTheRigThatTheRecordingDescribes) {
+  const auto one = Read(R"(# rig: {"gravity_torque": {"value": 1.8, "std_dev": 0.01}})");
+  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one->known.rig);
+  EXPECT_EQ(one->known.rig->gravity_torque.value, 1.8);
+  EXPECT_EQ(one->known.rig->gravity_torque.std_dev, 0.01);
+  EXPECT_EQ(one->samples, 1500);  // 15 s at 100 Hz (datasets/README.md)
+  EXPECT_THAT(one->swings.chosen, ElementsAre(1));
+  EXPECT_THAT(one->recording.warnings, IsEmpty());  // they are the report's
+}
+
+TEST_F(PrepareFileTest, PrefersTheRigThatIsGiven) {
+  const auto one = Read(R"(# rig: {"gravity_torque": 1.8})", Rig{{2.5, 0}, {}, {}});
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->known.rig->gravity_torque.value, 2.5);
+}
+
+TEST_F(PrepareFileTest, NamesTheMetadataOfARigThatIsWrong) {
+  const auto one = Read(R"(# rig: {"gravity_torque": -1})");
+  ASSERT_FALSE(one);
+  EXPECT_EQ(one.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(one.error().message, StartsWith(path_ + ": # rig"));
+}
+
+TEST_F(PrepareFileTest, HasNoRigWhereNoneIsDescribed) {
+  const auto one = Read("# a comment");
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_FALSE(one->known.rig);
+}
+
+}  // namespace
+}  // namespace pendulum::prepared_recording_test
