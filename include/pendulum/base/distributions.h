@@ -3,12 +3,12 @@
 
 namespace pendulum {
 
-// Distributions of statistics, by Boost.Math, which takes seconds to compile: in the libraries distributions.cc alone
-// includes it. All numbers are dimensionless. Callers see to it that x and f are finite and at least 0, t is a number,
-// degrees of freedom above 0, whole or not, and probabilities strictly between 0 and 1: otherwise Boost throws
-// std::domain_error or std::overflow_error.
+// Statistical distributions, computed by Boost.Math. Its headers take seconds to compile, so of the libraries only
+// distributions.cc includes them. All numbers are dimensionless. The caller ensures that x and f are finite and at
+// least 0, t is not NaN, degrees of freedom are above 0 (not necessarily whole) and probabilities lie strictly between
+// 0 and 1. Otherwise Boost throws std::domain_error or std::overflow_error.
 
-/// The x below which a standard normal value lies with this probability.
+/// The quantile of the standard normal distribution: the x with P(X < x) = `probability`.
 double NormalQuantile(double probability);
 
 /// P(X > x) of a sum X of squares of `freedom` independent standard normal values.
