@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run that is cut where the recording was to end, and losses of several kinds together.
+// Runs cut at the planned end of the recording, and losses of several kinds together.
 #include <cstdint>
 
 #include <gtest/gtest.h>

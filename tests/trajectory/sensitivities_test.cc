@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of the motion carried by dual numbers, against differences, closed forms and the theory of reversals.
+// Compares derivatives carried by dual numbers with differences, closed forms and the theory of reversals.
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of synthetic recordings share.
+// Shared by the tests of synthetic recordings.
 #pragma once
 
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What theory says of the motion, against what is traced.
+// Compares traced motions with theory.
 
 #include <algorithm>
 #include <array>
