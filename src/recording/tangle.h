@@ -8,16 +8,16 @@
 
 #include <Eigen/Core>
 
-/// Stretches of stamps that are out of order, and the fewest rows to leave out of them.
+/// Groups of stamps that are out of order, and the fewest rows to leave out of them.
 namespace pendulum {
 
-/// Rows [begin, end) that must be looked at together: all before are earlier, all after are later.
+/// Rows [begin, end) that must be examined together: all previous rows are earlier, all following ones later.
 struct Tangle {
   Eigen::Index begin;
   Eigen::Index end;
 };
 
-/// All tangles of two rows and more.
+/// All tangles of at least two rows.
 inline std::vector<Tangle> FindTangles(const Eigen::VectorXd& time) {
   std::vector<double> earliest_after(time.size(), std::numeric_limits<double>::infinity());
   for (Eigen::Index i = time.size() - 1; i > 0; --i) earliest_after[i - 1] = std::min(earliest_after[i], time[i]);
@@ -32,11 +32,11 @@ inline std::vector<Tangle> FindTangles(const Eigen::VectorXd& time) {
   return tangles;
 }
 
-/// Marks all rows of the tangle but a longest increasing sequence of them (patience sorting, O(n log n)).
+/// Marks all rows of the tangle except a longest increasing sequence (patience sorting, O(n log n)).
 inline Eigen::Index LeaveOutFewest(const Eigen::VectorXd& time, Tangle tangle, std::vector<bool>& keep) {
-  std::vector<Eigen::Index> tails;  // Of the sequences of each length the lowest last row.
+  std::vector<Eigen::Index> tails;  // For sequences of each length, the smallest last row.
   std::vector<Eigen::Index> before(tangle.end - tangle.begin,
-                                   Eigen::Index{-1});  // The row before each row in its sequence.
+                                   Eigen::Index{-1});  // The previous row in each row's sequence.
   for (Eigen::Index i = tangle.begin; i < tangle.end; ++i) {
     keep[i] = false;
     const auto place = std::ranges::lower_bound(tails, time[i], {}, [&](Eigen::Index row) { return time[row]; });
