@@ -12,7 +12,7 @@ namespace wire = pendulum_logger;
 
 std::span<const std::uint16_t> Sums(const wire::Data& frame) { return {frame.sums, frame.count}; }
 
-/// For a longer gap, a 32-bit count of ticks may also have gone back. 2^31 ticks are 18 minutes.
+/// A step above half the range of the 32-bit tick counter, 18 minutes, could also be a step back.
 constexpr std::uint32_t kLongestGap = std::uint32_t{1} << 31;
 
 /// How far a logger's clock may get ahead of the host's from one frame to the next, s. The host may have read the

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include <asm/termbits.h>  // not <termios.h>, which knows no termios2
+#include <asm/termbits.h>  // <termios.h> does not define termios2
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>

@@ -183,7 +183,7 @@ struct Ending {
 Ending End(const TurnTable& table, const Run& run) {
   const Recording& recording = table.recording;
   const Index turn = table.turns[run.last].sample;
-  // What moves the pendulum next may have held it before, so no rest belongs to the swing.
+  // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
   if (run.last < table.half_swings()) return {turn, "the last turning point before the pendulum is moved otherwise"};
   const Index limit = recording.size() - 1;
   if (IsStopped(table, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};

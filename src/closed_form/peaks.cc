@@ -229,7 +229,7 @@ Result<PeakTable> LocatePeaks(const Recording& recording, const Kink& kink) {
     table.peaks.push_back(fit->peak);
   }
   if (table.peaks.size() < 3) return TooFew(extrema->size(), table.peaks.size());
-  constexpr double kRounding = 1e-12;  // of the range: least noise, for readings without any
+  constexpr double kRounding = 1e-12;  // of the range: least noise assumed for noise-free readings
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   table.noise = std::max(std::sqrt(sum_of_squares / static_cast<double>(freedom)), kRounding * range);
   const double middle = 0.5 * (table.peaks[0].value + table.peaks[1].value);

@@ -40,8 +40,8 @@ Eigen::MatrixXd Powers(const Eigen::VectorXd& reading, const Scale& scale, Index
   return powers;
 }
 
-/// K x K matrix that converts coefficients of powers of z to those of powers of the reading, by expanding (x - center)ʲ
-/// / half_spanʲ.
+/// K x K matrix that converts coefficients of powers of z to those of powers of the reading, by expanding
+/// (x - center)ʲ / half_spanʲ.
 Eigen::MatrixXd RawFromScaled(const Scale& scale, Index count) {
   Eigen::MatrixXd raw = Eigen::MatrixXd::Zero(count, count);
   raw(0, 0) = 1;

@@ -10,7 +10,7 @@
 namespace pendulum {
 namespace {
 
-/// The first such byte, or nullptr.
+/// The first byte equal to `wanted`, or nullptr.
 const char* Find(const char* from, const char* end, char wanted) {
   return from == end ? nullptr : static_cast<const char*>(std::memchr(from, wanted, end - from));
 }

@@ -58,8 +58,8 @@ Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& nam
   return {};
 }
 
-/// Checks the sizes of the variables of version 5, each of which precedes its variable. matio itself does not report
-/// that the last one is cut off.
+/// In version 5 each variable is preceded by its size. These sizes are checked here, because matio does not report that
+/// the last variable is cut off.
 Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kOrderAt = 126;
   if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};

@@ -23,8 +23,8 @@ constexpr double kTurn = kPi / kFrequency;  // s
 /// A small swing with turning points at 0.3 s + k kTurn, at 0.02 ± 0.4.
 double Cosine(double t) { return 0.02 + 0.4 * std::cos(kFrequency * (t - 0.3)); }
 
-/// A linear pendulum with dry friction alone, released at 0. Each half swing lasts kTurn, ends 2 x_k smaller and is
-/// centred at the point where friction holds.
+/// A linear pendulum with dry friction alone, released at 0. Each half swing lasts kTurn, is centred at the point where
+/// friction holds, and reduces the amplitude by 2 x_k.
 double DryDecay(double t) {
   constexpr double kAmplitude = 0.4, kSticking = 0.01;
   const double k = std::floor(t / kTurn);

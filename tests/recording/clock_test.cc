@@ -161,7 +161,7 @@ struct Rounding {
   double grid;
   double rate_hz;
   double start;
-  double freedom = 0.1;  // In grid steps: uncertainty that the stamps leave, over all of them.
+  double freedom = 0.1;  // In grid steps: largest error that the stamps permit.
 };
 
 /// Compares with the true clock, from which the stamps were rounded, except for a common shift that rounding hides.
@@ -209,7 +209,7 @@ TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
           const double step = (repaired.time[100 * seconds] - repaired.time[0]) / (100 * seconds);
           const double half_width = std::sqrt(3.0) * repaired.clock_std_dev;  // For a uniform distribution.
           EXPECT_LE(std::abs(0.01 / step - 1), half_width) << name;
-          // The first and the last grid step alone, each known to within a row, give the same uncertainty.
+          // The bound uses only the first and the last grid step, whose positions are each known to within one row.
           EXPECT_LE(half_width, 0.01 / (seconds - 2 * grid)) << name;
         }
       }

@@ -32,8 +32,8 @@ double StudentQuantile(double probability, double freedom);
 /// P(F > f) of a ratio F of two mean squares.
 double FisherTail(double f, double numerator_freedom, double denominator_freedom);
 
-/// Limits of the probability of a success after 0 <= `successes` <= `trials`: the truth lies beyond each with
-/// probability `tail` at most (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
+/// Confidence limits of the probability of success after 0 <= `successes` <= `trials`. The true value lies beyond each
+/// limit with probability `tail` at most (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 double BinomialLowerLimit(int successes, int trials, double tail);
 double BinomialUpperLimit(int successes, int trials, double tail);
 

@@ -16,8 +16,9 @@ struct Extremum {
 /// neighbours. Curvature between samples counts as noise; quantized data may give 0.
 double SuccessiveDifferenceNoise(const Recording& recording);
 
-/// How far a reading must move back before a turning point counts [unit of the recording]. The maximum of: noise, 2
-/// sqrt(2 ln N) + 1 of its standard deviations; two resolutions; 3 % of the range (at most 2π for an angle).
+/// How far a reading must move back before a turning point counts [unit of the recording]. This is the maximum of 2
+/// sqrt(2 ln N) + 1 standard deviations of `noise`, two resolutions, and 3 % of the range (of an angle's range at most
+/// one turn counts).
 double TurningThreshold(const Recording& recording, double noise);
 
 /// The turning points that FindExtrema finds, preceded by the first candidate, which may be the start or lie in a hold.

@@ -19,7 +19,7 @@ struct FreeSwing {
   double amplitude = 0;          ///< rad or rad/s: the largest distance of its turning points from their zero
   double amplitude_outside = 0;  ///< rad or rad/s: the same for turning points that belong to no free swing
   std::vector<double> turns;     ///< s, its turning points
-  std::string begins, ends;      ///< Why it begins and ends there, to follow "begins: " and "ends: ".
+  std::string begins, ends;      ///< Reasons for its beginning and end, after "begins: " and "ends: ".
   double behind_hold = 0;        ///< s, the first sample after its initial hold; `from` without a hold
   bool from_given = false;       ///< The user gave `from`; to_given: the user gave `to`.
   bool to_given = false;

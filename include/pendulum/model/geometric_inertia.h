@@ -14,7 +14,7 @@ struct GeometricInertia {
   bool is_point_mass = false;  ///< True for (M + m) l²: the rod's mass counts as part of the bob.
   double value = 0;
   std::optional<double> std_error;  ///< std::nullopt if the rig file gives no standard deviations.
-  /// Standard deviation of value - fitted due to the rig's errors alone. Both depend on the same masses and lengths.
+  /// Standard deviation of (value - fitted) due to the rig's errors alone. Both depend on the same masses and lengths.
   double difference_std_error = 0;
 };
 

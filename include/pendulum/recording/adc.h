@@ -8,8 +8,8 @@
 namespace pendulum {
 
 /// A potentiometer across a supply. An analog-to-digital converter (ADC) reads its wiper through a voltage divider.
-/// Angles are in deg from the middle of the travel. Along the travel the wiper's voltage rises linearly from 0 to the
-/// supply voltage:
+/// Angles are in deg from the middle of the travel. The wiper's voltage rises linearly along the travel, from 0 to
+/// supply:
 ///   volts = divider supply (1/2 + angle / travel),   counts = ⌊volts 2ᵇⁱᵗˢ / reference⌋, from 0 to 2ᵇⁱᵗˢ - 1
 /// (MODEL.md eq. (43)). Sources: Microchip, ATmega328P data sheet (DS40002061), "ADC Conversion Result": ADC = V_IN
 /// 1024 / V_REF; full scale represents V_REF minus one step. Divider and converter are assumed to draw no current from
