@@ -234,7 +234,7 @@ TEST(FindFreeSwings, NoiseBreaksNoSwing) {
 }
 
 TEST(FindFreeSwings, EndsWhereAHandBrakes) {
-  // At its twelfth passage through the bottom it is slowed to the speed of a swing of 0.2 rad.
+  // At its thirteenth passage through the bottom it is slowed to the speed of a swing of 0.2 rad.
   const Recording swing = Swing(0.5, 20);
   const double brake = Crossing(swing, 12);
   const Recording after = Part(Swing(0.2, 12), Crossing(Swing(0.2, 12), 0));
