@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the logger and its host say to each other, for both of them: firmware/README.md, "Protocol". C++11 without a
-// standard library, for avr-g++ has none.
+// The protocol between the logger and its host, used by both: firmware/README.md, "Protocol". Written in C++11 without
+// a standard library, because avr-g++ has none.
 //
-// A frame is a payload of at most kMostPayload bytes and its CRC, encoded by COBS so that no byte of it is 0, and a 0.
-// Numbers are little endian. The first byte of the payload says what it is.
+// A frame is a payload of at most kMostPayload bytes and its CRC, encoded by COBS so that it contains no 0, and a final
+// 0. Numbers are little endian. The first byte of the payload identifies the message.
 #pragma once
 
 #include <stddef.h>
@@ -18,13 +18,15 @@ constexpr uint16_t kFirmware = 0x0100;  // version 1.0
 constexpr uint32_t kTickHz = 2000000;   // Timer 1: 16 MHz / 8
 constexpr uint8_t kAdcBits = 10;
 constexpr uint8_t kMostBlock = 16;                      // samples in a frame
-constexpr uint8_t kMostOversample = 64;                 // conversions in a sample: their sum fits 16 bits
+constexpr uint8_t kMostOversample = 64;                 // conversions in a sample: their sum fits in 16 bits
 constexpr uint16_t kLeastPeriod = 250;                  // ticks between conversions; one takes 216
-constexpr uint16_t kMostPeriod = 62500;                 // ticks: a late interrupt must be told from an early one
+constexpr uint16_t kMostPeriod = 62500;                 // ticks: a late interrupt must be distinguishable from an early
+                                                        // one
 constexpr uint8_t kMostPayload = 48;                    // bytes
-constexpr uint8_t kMostEncoded = kMostPayload + 2 + 1;  // bytes, with the CRC and what COBS adds, without the 0
+constexpr uint8_t kMostEncoded = kMostPayload + 2 + 1;  // bytes, including the CRC and the overhead of COBS, without
+                                                        // the 0
 
-// Frames of the logger, and commands of the host. A command is answered by an Ack, kAskInfo by an Info.
+// Frames of the logger, and commands of the host. An Ack answers a command; an Info answers kAskInfo.
 constexpr uint8_t kInfo = 'I', kData = 'D', kAck = 'A', kEnd = 'E';
 constexpr uint8_t kAskInfo = 'I', kStart = 'S', kStop = 'X', kSetRate = 'R', kStoreCalibration = 'W';
 
@@ -32,7 +34,7 @@ enum Board : uint8_t { kUno = 1, kMega2560 = 2 };
 
 enum AckStatus : uint8_t { kDone = 0, kUnknown = 1, kOutOfRange = 2, kRunning = 3 };
 
-// angle [deg] = offset_deg + deg_per_count * counts, and the covariance of the two; 0 where it is not known.
+// angle [deg] = offset_deg + deg_per_count * counts, and the covariance of both coefficients; 0 if it is unknown.
 struct StraightLine {
   float offset_deg, deg_per_count;
   float offset_variance, covariance, slope_variance;  // deg^2, deg^2 per count, deg^2 per count^2
@@ -47,26 +49,26 @@ struct StraightLine {
   }
 };
 
-// What the logger is and how it is set.
+// The logger's properties and settings.
 struct Info {
   static constexpr uint8_t kKind = kInfo;
   uint8_t protocol;
   uint16_t firmware;  // major * 256 + minor
   uint8_t board;
-  uint8_t reference;  // Arduino's number: EXTERNAL 0, DEFAULT 1 (the supply), INTERNAL 3, on a Mega INTERNAL1V1 2
+  uint8_t reference;  // Arduino's number: EXTERNAL 0, DEFAULT 1 (the supply), INTERNAL 3; on a Mega INTERNAL1V1 2
   uint8_t adc_bits;
   uint32_t tick_hz;
   uint32_t baud;
   uint16_t period;     // ticks between two conversions
-  uint8_t oversample;  // conversions added up to a sample
+  uint8_t oversample;  // conversions added to form a sample
   uint8_t is_running;
-  uint16_t run;  // how often it was started, in its whole life
+  uint16_t run;  // how often it has been started in its lifetime
   uint8_t has_calibration;
   StraightLine calibration;
 
   template <class Archive>
   void Fields(Archive& archive) {
-    archive(protocol);  // first in every version
+    archive(protocol);  // first in every protocol version
     archive(firmware);
     archive(board);
     archive(reference);
@@ -82,13 +84,13 @@ struct Info {
   }
 };
 
-// Samples at equal intervals, period * oversample ticks. A sample is the sum of its conversions.
+// Samples at equal intervals of period * oversample ticks. A sample is the sum of its conversions.
 struct Data {
   static constexpr uint8_t kKind = kData;
-  uint16_t sequence;  // of the frame, from 0 at the start, modulo 2^16
+  uint16_t sequence;  // number of the frame, from 0 at the start, modulo 2^16
   uint32_t tick;      // when the first conversion of the first sample was triggered, modulo 2^32
-  uint16_t dropped;   // samples since the start that found no room, 65535 for more
-  uint16_t late;      // conversions since the start that could not begin in time, 65535 for more
+  uint16_t dropped;   // samples since the start that had no room; 65535 means at least so many
+  uint16_t late;      // conversions since the start that could not start in time; 65535 means at least so many
   uint8_t count;
   uint16_t sums[kMostBlock];
 
@@ -104,20 +106,20 @@ struct Data {
   }
 };
 
-// Bytes of a frame with so many samples: payload, CRC, what COBS adds, and the 0.
+// Size in bytes of a frame with `count` samples: payload, CRC, COBS overhead, and the 0.
 constexpr int DataFrameSize(int count) { return 12 + 2 * count + 2 + 1 + 1; }
 
-// How many samples that come every so many ticks go into a frame: some 25 frames a second, while they have room.
+// The number of samples in a frame when samples come every `step` ticks: about 25 frames per second, if they have room.
 constexpr int BlockSize(uint32_t step) {
   return kTickHz / 25 / step < 1            ? 1
          : kTickHz / 25 / step > kMostBlock ? kMostBlock
                                             : static_cast<int>(kTickHz / 25 / step);
 }
 
-// The end of a run: how much was sent, so that the host knows whether it has everything.
+// The end of a run: how much was sent, so that the host can detect losses at the end.
 struct End {
   static constexpr uint8_t kKind = kEnd;
-  uint32_t samples, dropped, late;  // samples sent; as in Data, but whole
+  uint32_t samples, dropped, late;  // samples sent; the others as in Data, but not limited to 65535
 
   template <class Archive>
   void Fields(Archive& archive) {
@@ -160,7 +162,7 @@ struct StoreCalibration {
   }
 };
 
-// A payload that is its first byte alone: kAskInfo, kStart, kStop.
+// A payload that consists only of its first byte: kAskInfo, kStart, kStop.
 template <uint8_t kCommand>
 struct Command {
   static constexpr uint8_t kKind = kCommand;
@@ -169,7 +171,7 @@ struct Command {
   void Fields(Archive&) {}
 };
 
-// CRC-16/IBM-3740: polynomial 0x1021, begins with 0xFFFF, most significant bit first; 0x29B1 of "123456789".
+// CRC-16/IBM-3740: polynomial 0x1021, initial value 0xFFFF, most significant bit first; 0x29B1 for "123456789".
 inline uint16_t Crc16(const uint8_t* bytes, size_t count) {
   uint16_t crc = 0xFFFF;
   for (size_t i = 0; i < count; ++i) {
@@ -182,7 +184,7 @@ inline uint16_t Crc16(const uint8_t* bytes, size_t count) {
   return crc;
 }
 
-// Writes fields one after the other, as far as there is room.
+// Writes fields one after the other while there is room.
 class Writer {
  public:
   Writer(uint8_t* bytes, size_t room) : bytes_(bytes), room_(room) {}
@@ -208,7 +210,7 @@ class Writer {
   size_t room_, size_ = 0;
 };
 
-// Reads them again; fields beyond the end are left as they are.
+// Reads the fields back. Fields beyond the end keep their values.
 class Reader {
  public:
   Reader(const uint8_t* bytes, size_t size) : bytes_(bytes), size_(size) {}
@@ -224,7 +226,7 @@ class Reader {
 
   void Fail() { is_good_ = false; }
 
-  // Everything was there, and nothing else.
+  // All fields were present, and nothing else.
   bool IsComplete() const { return is_good_ && at_ == size_; }
 
  private:
@@ -240,9 +242,9 @@ class Reader {
 };
 
 // Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Trans. Networking 7(2), 1999) of fewer than 254 bytes:
-// each 0 is replaced by the distance to the next one. `encoded` has room for count + 1; gives how many there are.
+// replaces each 0 by the distance to the next one. `encoded` must have room for count + 1 bytes. Returns their number.
 inline size_t CobsEncode(const uint8_t* bytes, size_t count, uint8_t* encoded) {
-  size_t code = 0;  // where the distance to the next 0 belongs
+  size_t code = 0;  // position for the distance to the next 0
   for (size_t i = 0; i < count; ++i) {
     encoded[i + 1] = bytes[i];
     if (bytes[i] != 0) continue;
@@ -253,7 +255,7 @@ inline size_t CobsEncode(const uint8_t* bytes, size_t count, uint8_t* encoded) {
   return count + 1;
 }
 
-// The other way, in place: gives how many bytes there are; 0 for what CobsEncode does not make.
+// Inverse of CobsEncode, in place. Returns the number of decoded bytes; 0 if CobsEncode cannot have produced the input.
 inline size_t CobsDecode(uint8_t* bytes, size_t count) {
   size_t code = 0;
   while (code < count && bytes[code] != 0 && code + bytes[code] <= count) {
@@ -266,7 +268,7 @@ inline size_t CobsDecode(uint8_t* bytes, size_t count) {
   return count - 1;
 }
 
-// The frame of a message; `frame` has room for kMostEncoded + 1 bytes. Gives how many there are.
+// Builds the frame of a message. `frame` must have room for kMostEncoded + 1 bytes. Returns the number of bytes.
 template <class Message>
 size_t MakeFrame(Message message, uint8_t* frame) {
   uint8_t payload[kMostPayload + 2];
@@ -282,7 +284,7 @@ size_t MakeFrame(Message message, uint8_t* frame) {
   return encoded + 1;
 }
 
-// A message as it goes over the line.
+// A message as it is sent over the line.
 struct Frame {
   uint8_t bytes[kMostEncoded + 1];
   size_t size;
@@ -291,15 +293,17 @@ struct Frame {
   explicit Frame(const Message& message) : size(MakeFrame(message, bytes)) {}
 };
 
-// Finds frames in a stream of bytes, whatever else is in it: after an error it goes on behind the next 0.
+// Finds frames in a stream of bytes that may contain other data. After an error it continues after the next 0.
 class Receiver {
  public:
   enum Event : uint8_t { kNothing, kFrame, kRejected };
 
-  // kFrame: payload() is that of a frame whose CRC is right. kRejected: what ended with this byte was none.
+  // kFrame: payload() is that of a frame with the right CRC. kRejected: the bytes before this 0 are not a frame.
   Event Take(uint8_t byte) {
     if (byte != 0) {
-      if (received_ <= kMostEncoded) bytes_[received_++] = byte;  // one more than fits tells that it was too long
+      if (received_ <= kMostEncoded)
+        bytes_[received_++] = byte;  // one byte beyond the limit marks the frame as too
+                                     // long
       return kNothing;
     }
     const uint8_t received = received_;
@@ -313,11 +317,11 @@ class Receiver {
     return crc == Crc16(bytes_, size_) ? kFrame : kRejected;
   }
 
-  // Of the last frame, until the next byte is taken: its bytes, the first of which says what it is.
+  // Bytes of the last frame, valid until the next byte is taken. The first byte identifies the message.
   const uint8_t* payload() const { return bytes_; }
   uint8_t size() const { return size_; }
 
-  // The payload as this message; false where it is none.
+  // Reads the payload as this message. Returns false if it is another message.
   template <class Message>
   bool Read(Message& message) const {
     if (bytes_[0] != Message::kKind) return false;
@@ -326,7 +330,7 @@ class Receiver {
     return reader.IsComplete();
   }
 
-  // Nothing but ends of lines has come since the last 0.
+  // Only line ends have arrived since the last 0.
   bool IsAtLineStart() const {
     for (uint8_t i = 0; i < received_; ++i) {
       if (bytes_[i] != '\r' && bytes_[i] != '\n') return false;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Records a potentiometer at exact intervals, for record_pendulum: firmware/README.md has the wiring. Timer 1 starts
-// each conversion in hardware, and its count is the sample's time stamp, so that no delay of the program is in either.
+// Records a potentiometer at exact intervals, for record_pendulum; firmware/README.md shows the wiring. Timer 1 starts
+// each conversion in hardware, and its count is the time stamp of the sample. Delays of the program affect neither.
 //
-// analogRead(), Servo and PWM on the pins of Timers 1 and 2 cannot be used beside it.
+// analogRead(), Servo and PWM on the pins of Timers 1 and 2 cannot be used at the same time.
 #include <Arduino.h>
 #include <avr/eeprom.h>
 
 #include "frame.h"
 
-// ---- What you may change -----------------------------------------------------------------------------------------
+// ---- Settings you may change -------------------------------------------------------------------------------------
 
 #ifndef LOGGER_BAUD
-#define LOGGER_BAUD 115200  // 500000 and 1000000 carry more; then say record_pendulum --baud
+#define LOGGER_BAUD 115200  // 500000 and 1000000 transfer more; then also set record_pendulum --baud
 #endif
 #ifndef LOGGER_CHANNEL
 #define LOGGER_CHANNEL 0  // the wiper is on A0
@@ -39,11 +39,11 @@
 
 using namespace pendulum_logger;
 
-// What a simulator may skip: nothing is to be done until the next interrupt. The processor must not sleep here, for
-// falling asleep with the converter on starts a conversion that nobody asked for.
+// Called when there is nothing to do until the next interrupt; a simulator may skip the time. The processor must not
+// sleep here: falling asleep with the converter on starts an unwanted conversion.
 extern "C" __attribute__((noinline, used, externally_visible)) void logger_idle() { __asm__ __volatile__(""); }
 
-// ---- Between the interrupts and the rest -------------------------------------------------------------------------
+// ---- Data shared by the interrupts and the main loop ------------------------------------------------------------
 
 struct Sample {
   uint32_t tick;
@@ -52,9 +52,9 @@ struct Sample {
 
 static const uint8_t kRoom = 64;  // samples, a power of 2
 static Sample ring[kRoom];
-static volatile uint8_t ring_head = 0, ring_tail = 0;  // the next to be written and to be read
+static volatile uint8_t ring_head = 0, ring_tail = 0;  // the next index to write and to read
 
-// Between the two and the samples they stand for the compiler must not move anything.
+// Keeps the compiler from moving accesses to samples across accesses to these indices.
 static inline void Fence() { __asm__ __volatile__("" ::: "memory"); }
 
 static uint16_t period = 10000;  // ticks between conversions: 200 Hz
@@ -62,22 +62,23 @@ static uint8_t oversample = 1;
 static bool is_running = false;
 
 static uint32_t next_tick;        // when Timer 1 starts the next conversion
-static uint32_t conversion_tick;  // when it started the one under way
-static uint32_t sample_tick;      // when it started the first of this sample
+static uint32_t conversion_tick;  // when it started the current conversion
+static uint32_t sample_tick;      // when it started the first conversion of this sample
 static bool is_converting, is_spoilt;
-static uint8_t conversions;  // in this sample so far
+static uint8_t conversions;  // number in this sample so far
 static uint16_t sum;
 static volatile uint32_t dropped, late;
 
 static const uint8_t kConverterOn = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
 
-// How far Timer 1 is before next_tick: more than a period once it has passed it. It turns in 32 ms, so interrupts must
-// not be held back for longer, or times would be off by that; nothing here holds them for long.
+// Ticks from Timer 1 to next_tick; more than a period once Timer 1 has passed it. Timer 1 wraps around after 32 ms, so
+// interrupts must not be blocked longer than that, or times would be wrong by that amount. No code here blocks them
+// long.
 static inline uint16_t TicksAhead() { return static_cast<uint16_t>(static_cast<uint16_t>(next_tick) - TCNT1); }
 
-// The compare match has started a conversion already; this is told when, and says when the next one is due.
+// The compare match has already started a conversion. This records its time and schedules the next one.
 ISR(TIMER1_COMPB_vect) {
-  if (is_converting) {  // the one before is not finished, so this one did not begin
+  if (is_converting) {  // the previous conversion is not finished, so this one did not start
     ++late;
     is_spoilt = true;
   } else {
@@ -86,7 +87,7 @@ ISR(TIMER1_COMPB_vect) {
   }
   next_tick += period;
   OCR1B = static_cast<uint16_t>(next_tick);
-  while (TicksAhead() > period && !(TIFR1 & _BV(OCF1B))) {  // too late for it: the match would be a turn later
+  while (TicksAhead() > period && !(TIFR1 & _BV(OCF1B))) {  // too late: this match would occur one wrap-around later
     ++late;
     is_spoilt = true;
     next_tick += period;
@@ -96,9 +97,9 @@ ISR(TIMER1_COMPB_vect) {
 
 ISR(ADC_vect) {
   const uint16_t code = ADC;
-  if (!is_converting) return;  // after the end
+  if (!is_converting) return;  // after the end of the run
   is_converting = false;
-  if (is_spoilt) {  // a sample is conversions without a gap
+  if (is_spoilt) {  // a sample consists of conversions without a gap
     is_spoilt = false;
     conversions = 0;
     return;
@@ -131,7 +132,7 @@ static uint16_t ConvertOnce() {
 }
 
 static void SetUpConverter() {
-  TCCR2A = TCCR2B = 0;  // the core's PWM
+  TCCR2A = TCCR2B = 0;  // switches off the core's PWM
 #if defined(TCCR3A)
   TCCR3A = TCCR3B = TCCR4A = TCCR4B = TCCR5A = TCCR5B = 0;
 #endif
@@ -149,8 +150,8 @@ static void StartSampling() {
   dropped = late = 0;
   is_converting = is_spoilt = false;
   is_running = true;
-  ConvertOnce();                     // the first one after the converter is switched on takes twice as long
-  ADCSRB = _BV(ADTS2) | _BV(ADTS0);  // started by compare match B of Timer 1
+  ConvertOnce();                     // the first conversion after the converter is switched on takes twice as long
+  ADCSRB = _BV(ADTS2) | _BV(ADTS0);  // compare match B of Timer 1 starts conversions
   noInterrupts();
   next_tick = static_cast<uint32_t>(TCNT1) + 1000;
   OCR1B = static_cast<uint16_t>(next_tick);
@@ -162,7 +163,7 @@ static void StartSampling() {
 
 static void StopSampling() {
   TIMSK1 = 0;
-  delayMicroseconds(150);  // for the conversion under way
+  delayMicroseconds(150);  // lets the current conversion finish
   ADCSRA = kConverterOn;
   ADCSRB = 0;
 }
@@ -195,10 +196,10 @@ static void WriteCalibration(StraightLine& line) {
   eeprom_update_block(bytes, kCalibrationAddress, sizeof bytes);
 }
 
-// ---- What is sent ------------------------------------------------------------------------------------------------
+// ---- Messages ----------------------------------------------------------------------------------------------------
 
-static Data block;          // the next frame of samples
-static uint8_t block_size;  // samples it is sent with
+static Data block;          // the frame being filled
+static uint8_t block_size;  // number of samples at which it is sent
 static uint32_t sent_samples;
 
 static void Send(const Frame& frame) { Serial.write(frame.bytes, frame.size); }
@@ -240,13 +241,13 @@ static void SendBlock() {
   block.count = 0;
 }
 
-// Whether a sample of that tick belongs into the block: there is room, and it comes one step after the last one there.
+// Whether a sample of that tick fits into the block: there is room, and it follows one step after the last sample.
 static bool Continues(uint32_t tick) {
   const uint32_t step = static_cast<uint32_t>(period) * oversample;
   return block.count == 0 || (block.count < block_size && tick == block.tick + step * block.count);
 }
 
-// One step of passing samples on, which never waits for the line; false where there is nothing to do yet.
+// One step of passing samples on, without waiting for the line. Returns false if there is nothing to do yet.
 static bool PassOn() {
   const uint8_t tail = ring_tail;
   const bool is_waiting = tail != ring_head;
@@ -307,7 +308,7 @@ static AckStatus TakeCalibration(StoreCalibration& store) {
   if (is_running) return kRunning;
   const StraightLine& line = store.calibration;
   const float all = line.offset_deg + line.deg_per_count + line.offset_variance + line.covariance + line.slope_variance;
-  if (all - all != 0 || line.deg_per_count == 0) return kOutOfRange;  // one of them is no number
+  if (all - all != 0 || line.deg_per_count == 0) return kOutOfRange;  // at least one is not finite
   WriteCalibration(store.calibration);
   return kDone;
 }
@@ -324,12 +325,12 @@ static void Obey(const Receiver& receiver) {
   SendAck(kind, kUnknown);
 }
 
-// Behind text for people, so that it is not taken for the beginning of a frame.
+// Called after text for people, so that the text is not taken for the beginning of a frame.
 static void EndText() { Serial.write(static_cast<uint8_t>(0)); }
 
 // The answer to ? in the Serial Monitor.
 static void TellReading() {
-  if (is_running) return;  // a conversion by hand would end those of the timer
+  if (is_running) return;  // a manual conversion would end the timer's conversions
   const uint16_t counts = ConvertOnce();
   StraightLine line;
   Serial.print(F("pendulum_logger "));
@@ -357,7 +358,7 @@ static void TakeCommands() {
   static Receiver receiver;
   while (Serial.available() > 0) {
     const uint8_t byte = static_cast<uint8_t>(Serial.read());
-    if (byte == '?' && receiver.IsAtLineStart()) {  // no command begins with it: it would be 62 bytes long
+    if (byte == '?' && receiver.IsAtLineStart()) {  // no command starts with '?': it would be 62 bytes long
       receiver.Take(0);
       TellReading();
     } else if (receiver.Take(byte) == Receiver::kFrame) {

@@ -21,10 +21,10 @@ constexpr std::size_t kLeastPoints = 6;
 constexpr double kLeastSeconds = 10;
 constexpr double kMostMemory = 0.9;
 
-/// host = offset + scale device, about the middle of the points.
+/// The line host = offset + scale (device - middle).
 struct Line {
   double scale = 1, std_dev = 0;
-  double middle = 0, offset = 0;  // device time, and the host's there
+  double middle = 0, offset = 0;  // device time at the middle of the points, and host time there
 
   double Lateness(const Arrival& arrival) const {
     return arrival.host_time - offset - scale * (arrival.device_time - middle);
@@ -54,13 +54,14 @@ Line LeastSquares(const std::vector<Arrival>& points) {
     products += lateness * before;
     before = lateness;
   }
-  // Neighbours that are late together are one, and Student's t of so few is wider than a normal distribution.
+  // Neighbours that are late together count as one point: the autocorrelation enlarges the error. The divisor count - 4
+  // allows for Student's t, which for so few points is wider than a normal distribution.
   const double memory = rss > 0 ? std::clamp(products / rss, 0.0, kMostMemory) : 0;
   line.std_dev = std::sqrt(rss / (count - 4) / sxx * (1 + memory) / (1 - memory));
   return line;
 }
 
-/// The least late arrival of each stretch of equal duration.
+/// The earliest arrival, relative to a line of slope `scale`, in each of `stretches` parts of equal duration.
 std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t stretches, double scale) {
   const double begin = arrivals.front().device_time;
   const double duration = (arrivals.back().device_time - begin) / static_cast<double>(stretches);
@@ -78,7 +79,7 @@ std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t str
   return points;
 }
 
-/// The points without those that lie late by more than three standard deviations of the others, by their median.
+/// The points without those that are late by more than three standard deviations, estimated from the median.
 std::vector<Arrival> Punctual(const std::vector<Arrival>& points, const Line& line) {
   constexpr double kDeviations = 3, kStdDevOfMedian = 1.4826;
   std::vector<double> sizes(points.size());
@@ -117,7 +118,7 @@ DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, do
   const std::optional<Line> line = FitLine(arrivals);
   if (!line) return clock;
   const double seconds = arrivals.back().device_time - arrivals.front().device_time;
-  const double rounding = polling / std::sqrt(6.0) / seconds;  // of both ends, each uniform
+  const double rounding = polling / std::sqrt(6.0) / seconds;  // Rounding of both ends, each uniformly distributed.
   const double std_dev = std::hypot(line->std_dev, rounding, host_std_dev * line->scale);
   clock.is_implausible = !(std::abs(line->scale - 1) - 3 * std_dev <= kMostDeviation);
   if (clock.is_implausible || !(std_dev < kResonatorStdDev)) return clock;

@@ -12,7 +12,7 @@ namespace {
 
 namespace wire = pendulum_logger;
 
-constexpr double kRepeatSeconds = 0.5;  // a command that was not answered is sent again
+constexpr double kRepeatSeconds = 0.5;  // an unanswered command is then sent again
 constexpr int kTries = 4;
 
 tl::unexpected<Status> Interrupted() {
@@ -24,7 +24,7 @@ bool AreEqual(const wire::StraightLine& a, const wire::StraightLine& b) {
          a.covariance == b.covariance && a.slope_variance == b.slope_variance;
 }
 
-/// A message as the answer to that command; none where it is none.
+/// The message as the answer to the command `kind`; std::nullopt if it is not that answer.
 std::optional<wire::Ack> AckOf(std::uint8_t kind, const TimedMessage& received) {
   const auto* ack = std::get_if<wire::Ack>(&received.message);
   return ack != nullptr && ack->command == kind ? std::optional(*ack) : std::nullopt;
@@ -68,7 +68,8 @@ tl::unexpected<Status> Logger::NoAnswer(double seconds) const {
                                           "board, with the baud rate that --baud says?");
 }
 
-/// Sends commands, and again where nothing comes that `pick` makes an answer of: an optional, of which none is none.
+/// Sends commands, and repeats them until `pick` accepts a message as the answer. `pick` returns an optional;
+/// std::nullopt means that the message is not the answer.
 template <typename Pick>
 auto Logger::Exchange(const std::vector<std::uint8_t>& commands, int tries, const Pick& pick) {
   using Answer = Result<decltype(pick(TimedMessage()))>;
@@ -107,7 +108,7 @@ tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
                    "; put the firmware/pendulum_logger of the same release on the board");
 }
 
-/// What the host takes for granted, for it reads times and counts by it.
+/// Checks the properties that the host relies on to interpret times and counts.
 Result<wire::Info> Logger::Checked(const wire::Info& info) const {
   const auto differs = [&](const std::string& what, std::uint32_t its, std::uint32_t ours) {
     return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " has " + std::to_string(its) + " " + what +
@@ -119,7 +120,7 @@ Result<wire::Info> Logger::Checked(const wire::Info& info) const {
   return info;
 }
 
-/// Of a logger that has said what it is.
+/// The error for a logger that answered before but does not answer now.
 tl::unexpected<Status> Logger::NoAnswerTo(std::uint8_t kind) const {
   if (stop_) return Interrupted();
   return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " said what it is, and now does not answer '" +
@@ -156,15 +157,15 @@ Result<void> Logger::Start() {
   rejected_before_ = decoder_.rejected();
   const auto pick = [this](const TimedMessage& received) -> std::optional<wire::Ack> {
     if (!std::holds_alternative<wire::Data>(received.message)) return AckOf(wire::kStart, received);
-    pending_.push_front(received);  // it has started, and only its answer was lost
+    pending_.push_front(received);  // the run has started; only the answer was lost
     return wire::Ack{wire::kStart, wire::kDone};
   };
   const auto ack = Exchange(CommandBytes(wire::Command<wire::kStart>{}), kTries, pick);
   if (!ack || !*ack) {
-    RequestStop();  // it may have started, and all that it said was lost
+    RequestStop();  // the run may have started although all its messages were lost
     return ack ? NoAnswerTo(wire::kStart) : tl::unexpected(ack.error());
   }
-  // Already running: it was the answer to the first of several tries that was lost.
+  // kRunning: only the answer to an earlier try was lost.
   if ((*ack)->status == wire::kDone || (*ack)->status == wire::kRunning) return {};
   return Error(StatusCode::kDataLoss, "the logger refuses to start: " + Refusal((*ack)->status));
 }

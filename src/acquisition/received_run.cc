@@ -12,13 +12,14 @@ namespace wire = pendulum_logger;
 
 std::span<const std::uint16_t> Sums(const wire::Data& frame) { return {frame.sums, frame.count}; }
 
-/// Beyond half its range a 32-bit count of ticks cannot be told from one that went back: 18 minutes.
+/// A step above half the range of the 32-bit tick counter, 18 minutes, could also be a step back.
 constexpr std::uint32_t kLongestGap = std::uint32_t{1} << 31;
 
-/// By how much a logger may be ahead of the host from one frame to the next, s: the host may have been busy before.
+/// How far a logger's clock may get ahead of the host's from one frame to the next, s. The host may have read the
+/// previous frame late.
 constexpr double kMostAhead = 30;
 
-constexpr std::uint16_t kSaturated = 65535;  // of the counts in a frame
+constexpr std::uint16_t kSaturated = 65535;  // largest value of the counters in a frame
 
 }  // namespace
 
@@ -37,8 +38,8 @@ bool ReceivedRun::Fits(const wire::Data& frame, double host_time) const {
   return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0 && ahead < kMostAhead;
 }
 
-/// What is missing before a frame that fits: of the beginning whole frames, later as many samples as its tick says.
-/// They were lost on the line if the frames are not numbered on, but for those that the logger says it dropped.
+/// Records the samples missing before an accepted frame. Before the first frame whole frames count, later the ticks. If
+/// frame numbers are missing, the samples were lost on the line, except those that the logger reports as dropped.
 void ReceivedRun::NoteGap(const wire::Data& frame) {
   const auto frames = static_cast<std::uint16_t>(frame.sequence - next_sequence_);
   std::int64_t missing = std::int64_t{frames} * wire::BlockSize(static_cast<std::uint32_t>(rate_.Ticks()));
@@ -104,7 +105,7 @@ void ReceivedRun::KeepUntil(double time) {
   if (gap.missing > 0) gaps_.push_back(gap);
 }
 
-/// Losses behind the last sample show in no gap: of those the End tells.
+/// Losses after the last sample cause no gap; only End reports them.
 RunLosses ReceivedRun::Losses() const {
   RunLosses losses{0, 0, late_, 0, contradicting_, end_.has_value()};
   for (const Gap& gap : gaps_) {

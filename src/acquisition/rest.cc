@@ -9,12 +9,12 @@ namespace pendulum {
 namespace {
 
 constexpr double kBlockSeconds = 0.1, kLongestBlockSeconds = 0.25;
-constexpr int kBlockSamples = 8;  // or fewer where these would take longer
-constexpr double kLeastTurn = 5;  // counts: what goes back less than that is noise
+constexpr int kBlockSamples = 8;  // fewer if these take longer than kLongestBlockSeconds
+constexpr double kLeastTurn = 5;  // counts: smaller reversals are noise
 
 }  // namespace
 
-/// No potentiometer is noisier than the largest: what varies more is motion.
+/// Limited to kLargest: no potentiometer is noisier, so a larger variance is motion.
 double RestDetector::Block::Variance() const {
   constexpr double kLargest = 16;  // counts²
   if (count < 2) return kLargest;
@@ -71,8 +71,8 @@ bool RestDetector::IsAtRest() const {
     samples += block.count;
   }
   const auto count = static_cast<double>(blocks_.size());
-  // Counts: between the means of blocks rounding leaves so much, between single readings twice that; noise adds some
-  // standard deviations, of a mean or of a reading.
+  // In counts. Rounding can spread the means of blocks by kRounding and single readings by twice that. Noise adds
+  // several standard deviations of a mean or of a reading.
   constexpr double kRounding = 1.5, kDeviationsOfMeans = 5, kDeviations = 8;
   const double noise = std::sqrt(variance / count);
   if (high - low > kRounding + kDeviationsOfMeans * noise / std::sqrt(samples / count)) return false;

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// The double that is written as the float is: 0.1985, not 0.19850000739.
+/// The double with the shortest decimal text of the float: 0.1985, not 0.19850000739.
 double AsWritten(float value) {
   constexpr std::size_t kLongest = 32;
   std::array<char, kLongest> text{};
@@ -26,7 +26,7 @@ double AsWritten(float value) {
 std::string Line(const std::string& text) { return "# " + text + "\n"; }
 
 std::string ClockLines(const DeviceClock& clock) {
-  constexpr int kDigits = 9;  // of a scale near 1
+  constexpr int kDigits = 9;  // for a scale near 1
   return Line(clock.is_measured ? "the clock was compared with the host's: true seconds in one of the times below"
                                 : "the clock was not measured: its error is that of a ceramic resonator") +
          Line("clock_scale: " + NumberText(clock.scale, kDigits)) +

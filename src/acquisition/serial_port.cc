@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include <asm/termbits.h>  // not <termios.h>, which knows no termios2
+#include <asm/termbits.h>  // <termios.h> does not define termios2
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int kWriteMilliseconds = 1000;
 
-/// The first line of a small file; empty where there is none.
+/// The first line of a small file; empty if there is no such file.
 std::string LineOf(const fs::path& path) {
   std::string line;
   std::ifstream file(path);
@@ -33,13 +33,13 @@ std::string LineOf(const fs::path& path) {
   return line;
 }
 
-/// Vendors of boards and of the bridges on their clones: Arduino (two), WCH CH340, FTDI, Silicon Labs CP210x.
+/// USB vendors of boards and of the bridges on clones: Arduino (two), WCH CH340, FTDI, Silicon Labs CP210x.
 bool IsArduinoVendor(const std::string& vendor) {
   constexpr std::array<std::string_view, 5> kVendors = {"2341", "2a03", "1a86", "0403", "10c4"};
   return std::ranges::find(kVendors, vendor) != kVendors.end();
 }
 
-/// Goes up from the interface of a port to its USB device, which is the one that has a vendor.
+/// Searches upwards from the port's interface to its USB device, which has a vendor.
 PortName Described(const fs::path& device, const std::string& path) {
   PortName port{path, "", false};
   std::error_code error;
@@ -105,7 +105,7 @@ Result<void> SerialPort::Configure(unsigned baud) {
   if (::ioctl(descriptor_, TCGETS2, &settings) != 0) {
     return Error(StatusCode::kDataLoss, path_ + " is no serial port; record_pendulum --list shows those there are");
   }
-  // TIOCEXCL keeps others from opening it, but not root; the lock is for those who ask.
+  // TIOCEXCL prevents other programs from opening the port, except root's. The lock is for programs that check it.
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     return Error(StatusCode::kTryAgain, path_ + " is in use by another record_pendulum");
   }
@@ -113,9 +113,9 @@ Result<void> SerialPort::Configure(unsigned baud) {
   settings.c_iflag = IGNBRK | IGNPAR;
   settings.c_oflag = 0;
   settings.c_lflag = 0;
-  settings.c_cflag = CS8 | CREAD | CLOCAL | BOTHER;  // without HUPCL: closing it does not reset the board
+  settings.c_cflag = CS8 | CREAD | CLOCAL | BOTHER;  // without HUPCL, so closing the port does not reset the board
   settings.c_ispeed = settings.c_ospeed = baud;
-  settings.c_cc[VMIN] = 1;  // so that nothing read means that the port is gone
+  settings.c_cc[VMIN] = 1;  // reading 0 bytes then means that the port is gone
   settings.c_cc[VTIME] = 0;
   if (::ioctl(descriptor_, TCSETS2, &settings) != 0) {
     return Error(StatusCode::kDataLoss,

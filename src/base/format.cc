@@ -8,7 +8,7 @@
 namespace pendulum {
 namespace {
 
-/// True when `text` begins with a letter such as ° or θ: two bytes of valid UTF-8 that no terminal obeys.
+/// True when `text` begins with a letter such as ° or θ: two bytes of valid UTF-8 that control no terminal.
 bool StartsWithLetterBeyondAscii(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   return text.size() > 1 && byte(0) >= 0xC2 && byte(0) <= 0xDF && (byte(1) & 0xC0) == 0x80 &&

@@ -13,11 +13,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Watches the parser: which key of the outermost object is being read, which key an object has twice, and whether
-/// there is more of it than anything here needs.
+/// Watches the parser. It records the key of the outermost object that is being read, a repeated key, and whether the
+/// object exceeds kMostJsonDepth or kMostJsonKeys.
 class KeyWatch {
  public:
-  /// Whether to keep what comes.
+  /// Whether the parser should keep the value.
   bool See(int depth, Json::parse_event_t event, const Json& parsed) {
     if (depth > kMostJsonDepth || seen_ > kMostJsonKeys) is_too_much_ = true;
     if (!is_too_much_) Note(depth, event, parsed);
@@ -42,13 +42,13 @@ class KeyWatch {
     }
   }
 
-  std::vector<std::vector<std::string>> keys_;  // Of the object open at each depth.
+  std::vector<std::vector<std::string>> keys_;  // For each depth, the keys of the open object.
   std::optional<std::string> repeated_;
-  int seen_ = 0;  // keys
+  int seen_ = 0;  // Number of keys.
   bool is_too_much_ = false;
 };
 
-/// The parser counts bytes; a person counts lines.
+/// Converts the parser's byte offset into line and column.
 tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, const Json::parse_error& error) {
   const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
   const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the first line.
@@ -89,7 +89,7 @@ Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std
     return json;
   } catch (const Json::parse_error& error) {
     return NotJson(text, name, error);
-  } catch (const Json::exception&) {  // A number overflows.
+  } catch (const Json::exception&) {  // A number is too large for a double.
     return Fault(name, Quoted(watch.outermost_key()) + " is beyond what a number can be (about 1e308); correct it");
   }
 }

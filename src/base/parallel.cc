@@ -10,7 +10,7 @@
 namespace pendulum {
 
 int ThreadsOrCores(int threads) {
-  // Counted once: it takes longer than some of the work.
+  // Counted only once, because counting takes longer than some of the work.
   static const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
   return threads > 0 ? threads : cores;
 }
@@ -26,7 +26,7 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   try {
     for (int i = 1; i < used; ++i) others.emplace_back(take);
   } catch (const std::system_error&) {
-    // Those that there are will do.
+    // The threads started so far do the work.
   }
   take();
 }

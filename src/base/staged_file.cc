@@ -22,12 +22,12 @@ tl::unexpected<Status> CannotWrite(const std::string& path, const std::string& w
 }
 
 fs::path FollowLinks(fs::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel's own limit
+  constexpr int kMostLinks = 40;  // The kernel has the same limit.
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;  // an absolute target replaces the whole
+    path = path.parent_path() / target;  // If the target is absolute, `/` returns the target alone.
   }
   return path;
 }
@@ -60,7 +60,7 @@ StagedFile::~StagedFile() {
 Result<void> StagedFile::Open() {
   const fs::path directory = target_.has_parent_path() ? target_.parent_path() : ".";
   while (descriptor_ < 0) {
-    // A name may be taken by what a process of that number left when it was killed: the next one is tried.
+    // A killed process with the same number may have left a file of this name. Then the next name is tried.
     static std::atomic<std::uint64_t> names = 0;
     std::string name(kPrefix);
     name.append(std::to_string(::getpid()) + "." + std::to_string(names++)).append(kSuffix);
@@ -94,7 +94,8 @@ Result<void> StagedFile::Commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) return CannotWrite(path_, SystemWords(errno));
   temporary_.clear();
   if (durability_ == Durability::kDeferred) return {};
-  // So that the name outlives a loss of power; where a folder cannot be opened or synchronised, that is as it is.
+  // Synchronise the folder so that the name survives a loss of power. Failure is ignored: some folders cannot be opened
+  // or synchronised.
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return {};
@@ -103,7 +104,7 @@ Result<void> StagedFile::Commit() {
   return {};
 }
 
-/// Mode of the file to be replaced, and its owner where we may.
+/// Copies the mode of the replaced file, and its owner where permitted.
 void StagedFile::KeepPermissions() const {
   constexpr mode_t kPermissions = 07777;
   struct stat old {};

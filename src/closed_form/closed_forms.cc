@@ -13,14 +13,14 @@
 namespace pendulum {
 namespace {
 
-/// A law that turning points like these follow in fewer cases than this is none of theirs.
+/// A law is rejected if turning points like these have a smaller probability under it.
 constexpr double kRejected = 0.01;
 
 std::string Describe(const EnvelopeLaw& law) {
   return law.shape + " (" + law.term + " friction alone, p " + ProbabilityText(law.probability) + ")";
 }
 
-/// Which law the amplitudes follow.
+/// A sentence: which law the amplitudes follow.
 std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
   constexpr double kUntold = 10;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
@@ -37,11 +37,11 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
   return "as " + followed + (rejected.empty() ? "; the turning points exclude none" : "; not as " + rejected);
 }
 
-/// How the law that was fitted fails where one with all terms of friction does not: by the F test, which does not mind
+/// Describes how the fitted law fails although all friction terms together fit. Uses the F test, which allows for
 /// turning points that scatter more than their errors.
 std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeComparison& laws) {
   constexpr double kSurely = 1e-4;
-  constexpr double kMost = 0.5;  // of what the law leaves, others must explain
+  constexpr double kMost = 0.5;  // other terms must explain at least half of what the law leaves
   const int more = decrement.freedom - laws.richest_freedom;
   if (more < 1 || decrement.Probability() >= kRejected) return "";
   const double own = decrement.chi_square / decrement.freedom;
@@ -54,7 +54,7 @@ std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeCompariso
          " friction and " + NumberText(richest, 3) + " with viscous, dry and quadratic";
 }
 
-/// Turning points that scatter about every law scatter by more than their errors say.
+/// If turning points scatter about every law, their errors are too small. This enlarges them.
 void Inflate(double scatter, PeakTable& table) {
   const double factor = std::max(scatter, 1.0);
   for (Peak& peak : table.peaks) peak.covariance *= factor;

@@ -22,14 +22,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Turning points that follow each other: [first, first + count) of the table.
+/// Turning points that follow each other: [first, first + count) in the table.
 struct PeakRun {
   std::size_t first;
   std::size_t count;
   Index row = 0;  // of its first residual
 };
 
-/// Runs of at least two; a lone turning point tells nothing but the zero.
+/// Runs of at least two turning points; a single one only determines the zero.
 std::vector<PeakRun> Runs(const PeakTable& table) {
   std::vector<PeakRun> runs;
   for (std::size_t i = 0; i < table.peaks.size(); ++i) {
@@ -40,10 +40,10 @@ std::vector<PeakRun> Runs(const PeakTable& table) {
   return runs;
 }
 
-/// The least squares over x = (zero, natural frequency, friction (K), amplitude and time of each run).
+/// The least-squares problem for x = (zero, natural frequency, friction (K), amplitude and time of each run).
 ///
-/// Amplitude and time of a run are those of the turning point it begins with; seen by a rate sensor, whose readings
-/// peak between turning points, of the one before its first peak.
+/// Amplitude and time of a run are those of its first turning point. For a rate sensor, whose readings peak between
+/// turning points, they are those of the turning point before its first peak.
 class DecrementProblem {
  public:
   DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included,
@@ -63,7 +63,7 @@ class DecrementProblem {
   Index unknowns() const { return 2 + friction() + 2 * static_cast<Index>(runs_.size()); }
   Index observations() const { return 2 * peaks_; }
 
-  /// The unknowns that are sought.
+  /// The unknowns that are fitted.
   std::vector<Index> Free() const {
     std::vector<Index> free;
     for (Index i = 0; i < unknowns(); ++i) {
@@ -73,7 +73,7 @@ class DecrementProblem {
     return free;
   }
 
-  /// Small viscous-like friction, and periods and amplitudes as they stand in the table.
+  /// Start values: no friction, and periods and amplitudes as in the table.
   VectorXd Start() const {
     VectorXd x = VectorXd::Zero(unknowns());
     x[0] = table_.zero.value;
@@ -82,7 +82,7 @@ class DecrementProblem {
     x[1] = kPi / table_.half_period;
     if (model_.gravity == Gravity::kSine) {
       const double angle = AngleAmplitude(table_.quantity, amplitude, x[1], model_.gravity);
-      x[1] *= PeriodRatio(0.8 * angle);  // most of the run is at smaller amplitudes
+      x[1] *= PeriodRatio(0.8 * angle);  // most swings of the run have smaller amplitudes
     }
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Index at = 2 + friction() + 2 * static_cast<Index>(r);
@@ -92,15 +92,16 @@ class DecrementProblem {
     return x;
   }
 
-  /// What the table has beyond the model, in standard errors; nothing where the model does not swing so far, or when
-  /// stopped.
+  /// The difference between table and model, in standard errors. Returns std::nullopt if the model does not swing so
+  /// far, or when stopped.
   std::optional<VectorXd> Residuals(const VectorXd& x) const {
     VectorXd residuals(observations());
     if (!SetAll(x, residuals)) return std::nullopt;
     return residuals;
   }
 
-  /// Takes derivatives (F x observations) by the residuals to those by (time, value) of each peak in the table.
+  /// Converts derivatives (F x observations) by the residuals to derivatives by (time, value) of each peak in the
+  /// table.
   MatrixXd ByPeaks(const MatrixXd& by_residuals) const {
     MatrixXd by_peaks = MatrixXd::Zero(by_residuals.rows(), 2 * static_cast<Index>(table_.peaks.size()));
     for (const PeakRun& run : runs_) {
@@ -113,7 +114,7 @@ class DecrementProblem {
     return by_peaks;
   }
 
-  /// Forward differences: good to 1e-6 of themselves, which Gauss-Newton does not notice.
+  /// Forward differences. Their relative error of 1e-6 does not matter to Gauss-Newton.
   MatrixXd Jacobian(const VectorXd& x, const VectorXd& residuals, const std::vector<Index>& free) const {
     constexpr double kStep = 1e-7;
     MatrixXd jacobian(residuals.size(), static_cast<Index>(free.size()));
@@ -124,7 +125,7 @@ class DecrementProblem {
       moved[i] += step;
       VectorXd there = residuals;
       const auto set = [&] { return i < 2 + friction() ? SetAll(moved, there) : SetRun(RunOf(i), moved, there); };
-      if (!set()) {  // the other way
+      if (!set()) {  // try the other direction
         moved[i] = x[i] - step;
         there = residuals;
         if (!set()) there = residuals;
@@ -135,13 +136,13 @@ class DecrementProblem {
   }
 
  private:
-  /// What change of an unknown matters.
+  /// The size of a significant change of an unknown.
   double Scale(Index i, const VectorXd& x) const {
     const double amplitude = x[2 + friction()];
     const double peak_rate = x[1] * amplitude;
     if (i == 0) return table_.quantity == Quantity::kAngle ? amplitude : peak_rate;
     if (i == 1) return x[1];
-    // A friction of 1 percent of gravity at the largest rate.
+    // Friction that is 1 percent of gravity at the largest rate.
     if (i < 2 + friction()) {
       const double unit = UnitTorque(i - 2, peak_rate);
       return unit > 0 ? 0.01 * amplitude / unit : std::max(std::abs(x[i]), 0.01);
@@ -159,7 +160,7 @@ class DecrementProblem {
     return torque;
   }
 
-  /// The run that an unknown amplitude or time belongs to.
+  /// The run to which an unknown amplitude or time belongs.
   std::size_t RunOf(Index i) const { return static_cast<std::size_t>((i - 2 - friction()) / 2); }
 
   bool SetAll(const VectorXd& x, VectorXd& residuals) const {
@@ -169,7 +170,7 @@ class DecrementProblem {
     return true;
   }
 
-  /// The residuals of one run; false where the model does not swing so far, or when stopped.
+  /// The residuals of one run. Returns false if the model does not swing so far, or when stopped.
   bool SetRun(std::size_t r, const VectorXd& x, VectorXd& residuals) const {
     Index row = runs_[r].row;
     const std::span<const double> friction_parameters(x.data() + 2, included_.size());
@@ -203,11 +204,11 @@ class DecrementProblem {
   const std::stop_token& stop_;
   std::vector<bool> included_;
   std::vector<PeakRun> runs_;
-  std::vector<Eigen::Matrix2d> whitening_;  // of each peak in the table
-  Index peaks_ = 0;                         // in the runs
+  std::vector<Eigen::Matrix2d> whitening_;  // for each peak in the table
+  Index peaks_ = 0;                         // number of peaks in the runs
 };
 
-/// Where a least squares ended; `free` unknowns were sought.
+/// The result of a least-squares fit with the unknowns `free`.
 struct LeastSquares {
   VectorXd x;
   MatrixXd inverse;   // (JᵀJ)⁻¹ over `free`
@@ -215,8 +216,8 @@ struct LeastSquares {
   double sum = 0;
 };
 
-/// Levenberg-Marquardt with Marquardt's scaling, until the Newton step that is left is a hundredth of the standard
-/// errors, as the residuals' own size makes them.
+/// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is a hundredth of the standard
+/// errors, scaled by the size of the residuals.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMostSteps = 100;
   constexpr double kSmallStep = 1e-4;  // squared, in standard errors
@@ -255,7 +256,7 @@ double ProbabilityBeyond(double chi_square, int freedom) {
   return ChiSquareTail(chi_square, freedom);
 }
 
-/// Unknowns of the fit to the quantities of Decrement: ω0 becomes I = 1/ω0², and errors follow.
+/// Converts the unknowns of the fit to the quantities of Decrement, with ω0 becoming I = 1/ω0², and their errors.
 void Report(const DecrementProblem& problem, const LeastSquares& solution, const std::vector<Index>& free,
             Decrement& decrement) {
   const auto size = static_cast<Index>(2 + decrement.friction.size());
@@ -283,7 +284,7 @@ void Report(const DecrementProblem& problem, const LeastSquares& solution, const
   for (Index k = 2; k < size; ++k) decrement.friction[static_cast<std::size_t>(k - 2)] = {solution.x[k], errors[k]};
 }
 
-/// The torque at rest of the friction that was found.
+/// The static torque of the fitted friction.
 double RestTorque(const Decrement& decrement) {
   double torque = 0;
   FrictionModels::Visit(decrement.model.friction, [&]<typename F>() {
@@ -294,14 +295,14 @@ double RestTorque(const Decrement& decrement) {
   return torque;
 }
 
-/// Whether the law has no reference rate, of which the turning points give no start value.
+/// Whether the law has no reference rate. The turning points give no start value for one.
 bool IsLinear(const MotionModel& model) {
   bool linear = true;
   FrictionModels::Visit(model.friction, [&]<typename F>() { linear = !HasRateScale<F>; });
   return linear;
 }
 
-/// The shape a single term gives the envelope.
+/// The shape of the envelope for a single friction term.
 std::string_view EnvelopeShape(std::string_view term) {
   if (term == kViscous.name) return "exponential";
   if (term == kCoulomb.name) return "straight line";

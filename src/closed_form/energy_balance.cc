@@ -21,8 +21,8 @@ double Potential(Gravity gravity, double angle) {
   return gravity == Gravity::kSine ? 1 - std::cos(angle) : 0.5 * angle * angle;
 }
 
-/// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0, but a reference rate at
-/// its value; θ = A sin φ smooths its ends.
+/// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0, except a reference rate,
+/// which keeps its value. The substitution θ = A sin φ makes the integrand smooth at the ends.
 template <FrictionModel F>
 Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency,
                                     double reference_rate) {
@@ -41,7 +41,8 @@ Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double na
   return loss;
 }
 
-/// Normal equations of U_i = U_run - Σ losses, one unknown U_run for each run without gaps (its means are subtracted).
+/// Normal equations of U_i = U_run - Σ losses, with one unknown U_run per run without gaps, eliminated by subtracting
+/// means.
 class LossEquations {
  public:
   explicit LossEquations(int size) : normal(Eigen::MatrixXd::Zero(size, size)), right(Eigen::VectorXd::Zero(size)) {}
@@ -94,10 +95,10 @@ EnergyBalance BalanceAt(const HalfSwingTable& table, double natural_frequency, d
   return {equations.normal, equations.right, reference_rate};
 }
 
-/// How much of the losses the best friction explains.
+/// The share of the losses that the best friction explains.
 double Gain(const EnergyBalance& balance) {
   const std::vector<double> friction = FrictionFrom(balance);
-  double gain = 0;  // of the reference rate nothing: its equation is not solved
+  double gain = 0;  // excludes the reference rate, whose equation is not solved
   for (std::size_t k = 0; k + 1 < friction.size(); ++k)
     gain += friction[k] * balance.right[static_cast<Eigen::Index>(k)];
   return gain;
@@ -114,8 +115,8 @@ double LargestRate(const HalfSwingTable& table, double natural_frequency) {
 
 }  // namespace
 
-/// At a turning point the energy is U = 1 - cos A; between two, friction takes ∫ T(ω(θ)) dθ with ω(θ) = ω0 sqrt(2 (cos
-/// θ - cos A)) and A the mean amplitude.
+/// At a turning point the energy is U = 1 - cos A. Between two of them friction takes ∫ T(ω(θ)) dθ, with
+/// ω(θ) = ω0 sqrt(2 (cos θ - cos A)) and A the mean amplitude.
 std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const HalfSwingTable& table,
                                          double natural_frequency) {
   std::vector<EnergyBalance> balances;
@@ -139,7 +140,7 @@ std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector
   Eigen::VectorXd best = Eigen::VectorXd::Zero(balance.right.size());
   if (has_rate) best[size] = balance.reference_rate;
   double best_gain = 0;
-  // Non-negative least squares by trying every set of positive components: exact, and K is at most a handful.
+  // Non-negative least squares that tries every set of positive components: exact, and fast because K is small.
   for (unsigned set = 1; set < (1U << size); ++set) {
     std::vector<int> chosen;
     bool allowed = true;
@@ -152,7 +153,7 @@ std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector
     const Eigen::VectorXd right = balance.right(chosen);
     const Eigen::VectorXd x = balance.normal(chosen, chosen).ldlt().solve(right);
     if (!x.allFinite() || x.minCoeff() < 0) continue;
-    const double gain = x.dot(right);  // how much of the losses is explained
+    const double gain = x.dot(right);  // how much of the losses these components explain
     if (gain <= best_gain) continue;
     best_gain = gain;
     best.head(size).setZero();

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Indices of confirmed turning points, and of the first candidate, which is the start of the recording or its hold.
+/// Indices of confirmed turning points, preceded by the first candidate: the start of the recording or a sample of its
+/// hold.
 std::vector<Index> TurningPoints(const Eigen::VectorXd& value, double threshold) {
   std::vector<Index> points;
   Index highest = 0;
@@ -44,7 +45,7 @@ double TypicalSpacing(const Eigen::VectorXd& time, const std::vector<Index>& poi
 }
 
 /// Vertex of the least-squares parabola through the samples within `half_width` of sample `point`, at least one on each
-/// side; the sample itself where the parabola has no vertex among them.
+/// side. Returns the sample itself if the parabola has no vertex among them.
 Extremum Vertex(const Recording& recording, Index point, double half_width) {
   const Eigen::VectorXd& time = recording.time;
   Index first = point;
@@ -67,7 +68,7 @@ Extremum Vertex(const Recording& recording, Index point, double half_width) {
 
 }  // namespace
 
-/// The 68 % quantile of the distances over sqrt(1 + w² + (1-w)²), w the interpolation's weight.
+/// The 68 % quantile of the distances divided by sqrt(1 + w² + (1-w)²), where w is the interpolation's weight.
 double SuccessiveDifferenceNoise(const Recording& recording) {
   const Eigen::VectorXd& t = recording.time;
   const Eigen::VectorXd& y = recording.value;
@@ -85,9 +86,9 @@ double SuccessiveDifferenceNoise(const Recording& recording) {
 
 double TurningThreshold(const Recording& recording, double noise) {
   double range = recording.value.maxCoeff() - recording.value.minCoeff();
-  // Turns over the top make no swing larger.
+  // Turns over the top do not make a swing larger.
   if (recording.quantity == Quantity::kAngle && recording.is_calibrated()) range = std::min(range, 2 * kPi);
-  // Twice what the largest of N deviations is expected to be, and one more: noise alone turns nowhere.
+  // Twice the expected largest of N deviations, plus one, so that noise alone causes no turning point.
   const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 1;
   return std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
 }
@@ -108,13 +109,13 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   const double threshold = TurningThreshold(recording, noise);
   std::vector<Extremum> extrema = FindTurns(recording, threshold);
   if (!extrema.empty()) {
-    // The first candidate may be where the recording began, or lie in its hold: then nothing before it is elsewhere,
-    // or what is before it is noise.
+    // The first candidate may be the start of the recording or lie in its hold. Then all earlier readings are equal to
+    // it, or differ only by noise.
     const Index first = extrema[0].sample;
     const auto before = recording.value.head(first + 1).array();
     const double spread = std::sqrt((before - before.mean()).square().mean());
     const double farthest = (before - recording.value[first]).abs().maxCoeff();
-    constexpr Index kFewestHeld = 8;  // fewer samples do not tell noise from a slope
+    constexpr Index kFewestHeld = 8;  // fewer samples cannot distinguish noise from a slope
     const bool is_noise = before.size() >= kFewestHeld && spread < 2 * noise;
     const bool turned = farthest > std::min(threshold, 0.1 * range) && !is_noise;
     if (!turned) extrema.erase(extrema.begin());

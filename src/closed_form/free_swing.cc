@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A run of free half swings: turns [first, last].
+/// A run of free half swings: turning points [first, last].
 struct Run {
   std::size_t first;
   std::size_t last;
@@ -47,7 +47,7 @@ std::vector<Run> FreeRuns(const TurnTable& table, const std::vector<Verdict>& ve
   return runs;
 }
 
-/// The first of the samples up to `sample` that all read within `band` of `level`.
+/// The first of the consecutive samples up to `sample` that all lie within `band` of `level`.
 Index FirstWithin(const Recording& recording, Index sample, double level, double band) {
   while (sample > 0 && std::abs(recording.value[sample - 1] - level) <= band) --sample;
   return sample;
@@ -58,15 +58,15 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
   return sample;
 }
 
-/// How a swing begins.
+/// Where and why a swing begins.
 struct Beginning {
   Index sample;
   std::string why;
   Index behind_hold = sample;
 };
 
-/// Whether samples [first, last] read one value: no creep beyond three standard deviations of noise, no more scatter
-/// than twice the noise.
+/// Whether samples [first, last] show one value: drift below three standard deviations of the noise, and scatter below
+/// twice the noise.
 bool IsSteady(const TurnTable& table, Index first, Index last) {
   const Recording& recording = table.recording;
   const Index count = last - first + 1;
@@ -79,10 +79,11 @@ bool IsSteady(const TurnTable& table, Index first, Index last) {
   return std::abs(line[1]) < 3 * noise && scatter < 2 * noise;
 }
 
-/// The end of a hold that is steady, or the moment it ends: a hand that moves holds nothing.
+/// Begins in the steady part at the end of a hold, or where the hold ends if it is not steady: a moving hand does not
+/// hold.
 Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   constexpr Index kFewest = 8;
-  // The release lies somewhere within the band too.
+  // The release also lies somewhere within the band.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
     if (IsSteady(table, begin, held)) return {begin, std::string(kHeld), last + 1};
@@ -90,11 +91,11 @@ Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   return {last, "after the release: the hold before it is not steady"};
 }
 
-/// The hold that the first turn of a run lies in, if it is one: the reading stays near it for longer than a swing does.
+/// The hold that contains the first turning point of a run, if the reading stays near it for longer than in a swing.
 std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
   const Recording& recording = table.recording;
   const bool rate = recording.quantity == Quantity::kRate;
-  // A rate is held at its zero, a quarter period before its first turn.
+  // For a rate the hold is at its zero, a quarter period before its first turning point.
   const double level = rate ? table.zero[turn] : table.turns[turn].value;
   const double band = 0.05 * table.amplitude[turn] + 5 * table.noise + 2 * recording.resolution;
   Index end = table.turns[turn].sample;
@@ -109,8 +110,8 @@ std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
   return SteadyPart(table, begin, LastWithin(recording, end, level, band));
 }
 
-/// After a fall from near the upright, which tells nothing of the release, or turns over the top: the next turning
-/// point.
+/// Begins at the next turning point after a fall from near the upright, which contains no information on the release,
+/// or after turns over the top.
 std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   constexpr double kOverTheTop = 185 * kRadFromDeg;
@@ -135,8 +136,8 @@ Beginning Begin(const TurnTable& table, const Run& run) {
   return {table.turns[run.first].sample, "the first turning point after the pendulum was moved otherwise"};
 }
 
-/// Amplitude of the oscillation of one small-swing period in the samples [first, first + count), over its standard
-/// error.
+/// Fits an oscillation with the period of small swings to samples [first, first + count). Returns its amplitude divided
+/// by its standard error.
 double AmplitudeOverError(const TurnTable& table, Index first, Index count) {
   const Recording& recording = table.recording;
   const Eigen::ArrayXd phase =
@@ -144,12 +145,12 @@ double AmplitudeOverError(const TurnTable& table, Index first, Index count) {
   Eigen::MatrixX3d basis(count, 3);
   basis << Eigen::ArrayXd::Ones(count), phase.cos(), phase.sin();
   const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(recording.value.segment(first, count));
-  // A reading that stands still has no noise at all; what a turn must stand out by gives a scale.
+  // A constant reading shows no noise at all; the threshold of turning points then gives a scale.
   const double noise = std::max({table.noise, 0.3 * recording.resolution, 1e-2 * table.threshold});
   return std::hypot(c[1], c[2]) / (noise * std::sqrt(2.0 / static_cast<double>(count)));
 }
 
-/// The sample up to which the reading moves, looking one period at a time from `sample` to `limit`.
+/// The last sample at which the reading moves; checks one period at a time from `sample` to `limit`.
 Index EndOfMotion(const TurnTable& table, Index sample, Index limit) {
   constexpr double kMoves = 5;
   constexpr Index kFewest = 6;
@@ -164,8 +165,8 @@ Index EndOfMotion(const TurnTable& table, Index sample, Index limit) {
   return end;
 }
 
-/// Whether the swing goes on after turn `last` as little as no friction would have it: the next turning point is
-/// missing though time was left for two.
+/// Whether the pendulum was stopped after turning point `last`: the next turning point is missing although there was
+/// time for two, and it would have been visible.
 bool IsStopped(const TurnTable& table, std::size_t last, Index limit) {
   if (last == 0) return false;
   const double time_left = table.recording.time[limit] - table.turns[last].time;
@@ -173,7 +174,7 @@ bool IsStopped(const TurnTable& table, std::size_t last, Index limit) {
   return time_left > 3 * table.half_period * table.Stretch(last) && next > table.threshold + table.Tolerance(last);
 }
 
-/// How a swing ends.
+/// Where and why a swing ends.
 struct Ending {
   Index sample;
   std::string why;
@@ -182,7 +183,7 @@ struct Ending {
 Ending End(const TurnTable& table, const Run& run) {
   const Recording& recording = table.recording;
   const Index turn = table.turns[run.last].sample;
-  // What moves it next may have held it before: no rest belongs to the swing then.
+  // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
   if (run.last < table.half_swings()) return {turn, "the last turning point before the pendulum is moved otherwise"};
   const Index limit = recording.size() - 1;
   if (IsStopped(table, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};
@@ -210,7 +211,8 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
   return swing;
 }
 
-/// An acceleration jumps at the release, which no sample dates.
+/// An acceleration jumps at the release, and no sample gives the instant of the release. The hold is therefore left
+/// out.
 void LeaveHoldsOut(std::vector<FreeSwing>& swings) {
   for (FreeSwing& swing : swings) {
     if (swing.begins != kHeld) continue;
@@ -228,14 +230,14 @@ double MedianOf(const std::vector<double>& values, std::size_t first, std::size_
   return Median(std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count)));
 }
 
-/// Median amplitude of the last third of turns [first, last] over that of the first.
+/// Median amplitude of the last third of turning points [first, last], divided by that of the first third.
 double Decay(const TurnTable& table, std::size_t first, std::size_t last) {
   const std::size_t third = std::max<std::size_t>((last - first + 1) / 3, 1);
   return MedianOf(table.amplitude, last + 1 - third, third) / MedianOf(table.amplitude, first, third);
 }
 
-/// Whether the amplitude goes down over turns [first, last]: clearly, or by three of its standard errors. Where the
-/// recording begins is no turning point.
+/// Whether the amplitude decreases over turning points [first, last], either clearly or by three standard errors. The
+/// start of the recording is not a turning point.
 bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
   first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
@@ -245,7 +247,7 @@ bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
   const Eigen::VectorXd amplitude = Eigen::Map<const Eigen::VectorXd>(table.amplitude.data() + first, count);
   Eigen::MatrixX3d basis(count, 3);
   const Eigen::ArrayXd index = Eigen::ArrayXd::LinSpaced(count, -1, 1);
-  // Turns to either side differ by what the zero is off.
+  // An error of the zero makes the amplitudes on both sides differ.
   basis << Eigen::ArrayXd::Ones(count), index,
       Eigen::ArrayXd::NullaryExpr(count, [](Index i) { return i % 2 ? 1 : -1; });
   const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(amplitude);
@@ -253,8 +255,8 @@ bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
   return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
 }
 
-/// Share of the half swings in which the amplitude climbs, by at least a tenth over three half swings or more. Where
-/// the recording begins is no turning point.
+/// Share of the half swings in which the amplitude climbs by at least a tenth over three or more half swings. The start
+/// of the recording is not a turning point.
 double ShareOfClimbs(const TurnTable& table) {
   constexpr std::size_t kFewest = 3;
   std::size_t climbing = 0;
@@ -276,7 +278,7 @@ double ShareOfClimbs(const TurnTable& table) {
   return static_cast<double>(climbing) / static_cast<double>(table.half_swings());
 }
 
-/// What is no free swing though it turns again and again: an error, or a swing that beats.
+/// Handles repeated turning points that are not a free swing: an error, or a swing that beats.
 Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vector<Run>& runs) {
   constexpr double kMostClimbs = 0.2;
   constexpr double kDecayed = 0.7;
@@ -295,7 +297,7 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   const double largest = *std::ranges::max_element(table.amplitude);
   const bool scattered = 3 * free < turns && (free < kFewest || table.amplitude[longest->first] < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
-  // What begins at rest and climbs was not released.
+  // A motion that begins at rest and climbs was not released.
   const bool from_rest = climbs && table.amplitude[1] < 0.35 * largest;
   if (from_rest || Decay(table, 0, turns - 1) > kDecayed) {
     if (climbs) return NoSwing("the amplitude climbs again and again: the pendulum is driven");
@@ -308,7 +310,7 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
   return swing;
 }
 
-/// The largest amplitude of turns that belong to no run. Runs stand in time order.
+/// The largest amplitude of turning points outside all runs. Runs are in time order.
 double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
   double largest = 0;
   auto run = runs.begin();
@@ -320,7 +322,7 @@ double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
   return largest;
 }
 
-/// A swing beyond the upright to both sides is none: most likely its unit is another.
+/// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
 Result<void> CheckUnit(const TurnTable& table) {
   constexpr double kMost = 3.3;  // rad
   const bool angle = table.recording.quantity == Quantity::kAngle && table.recording.is_calibrated();

@@ -18,15 +18,15 @@ namespace {
 constexpr int kNodes = 20;
 using Nodes = Eigen::Array<double, kNodes, 1>;
 
-/// P_0 to P_kNodes at x, by their three-term recurrence.
+/// P_0 to P_kNodes at x by the three-term recurrence.
 std::array<double, kNodes + 1> LegendrePolynomials(double x) {
   std::array<double, kNodes + 1> p{1, x};
   for (int n = 1; n < kNodes; ++n) p[n + 1] = ((2 * n + 1) * x * p[n] - n * p[n - 1]) / (n + 1);
   return p;
 }
 
-/// Gauss-Legendre nodes x and weights on [-1, 1], and integrals from -1 of what is known at the nodes only: its series
-/// Σ (2n + 1) / 2 P_n(x) Σ_j w_j P_n(x_j) f(x_j), term by term.
+/// Gauss-Legendre nodes x and weights on [-1, 1]. Also integrals from -1 of a function known only at the nodes, from
+/// its series Σ (2n + 1) / 2 P_n(x) Σ_j w_j P_n(x_j) f(x_j), term by term.
 class Collocation {
  public:
   Collocation() {
@@ -40,7 +40,7 @@ class Collocation {
     for (int i = 0; i < kNodes; ++i) integrate.row(i) = WeightsTo(x[i]);
   }
 
-  /// The weights with which the values at the nodes make the integral from -1 to x.
+  /// The weights that give the integral from -1 to `end` from values at the nodes.
   Eigen::Matrix<double, 1, kNodes> WeightsTo(double end) const {
     const auto at = LegendrePolynomials(end);
     Eigen::Matrix<double, 1, kNodes> weights;
@@ -59,7 +59,7 @@ class Collocation {
   std::array<std::array<double, kNodes + 1>, kNodes> polynomials_;
 };
 
-/// Potential energy in units of G, and the angle >= 0 that has it.
+/// Potential energy in units of G, and the angle >= 0 with that energy.
 double PotentialAt(Gravity gravity, double angle) {
   const double half_sine = std::sin(0.5 * angle);
   return gravity == Gravity::kSine ? 2 * half_sine * half_sine : 0.5 * angle * angle;
@@ -68,8 +68,8 @@ double AngleWith(Gravity gravity, double potential) {
   return gravity == Gravity::kSine ? 2 * std::asin(std::sqrt(0.5 * potential)) : std::sqrt(2 * potential);
 }
 
-/// The way from -before to after as θ = m + h sin(π x / 2), along which energy and rate over cos(π x / 2) are smooth,
-/// the turning points included.
+/// The path from -before to after as θ = m + h sin(π x / 2). Along it the energy and rate / cos(π x / 2) are smooth,
+/// including at the turning points.
 template <FrictionModel F>
 class HalfSwingWay {
  public:
@@ -80,7 +80,8 @@ class HalfSwingWay {
         natural_frequency_(natural_frequency),
         direction_(direction) {}
 
-  /// dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard's iteration on the energies at the nodes; `after` follows from the last.
+  /// Solves dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard iteration on the energies at the nodes. `after` follows from the
+  /// final energy.
   std::optional<HalfSwingEnd> Solve(bool wants_peak) {
     constexpr int kMostRounds = 200;
     constexpr double kSame = 4e-15;
@@ -107,7 +108,7 @@ class HalfSwingWay {
     return rule;
   }
 
-  /// Against the motion, whatever its direction.
+  /// The torque that opposes the motion, for both directions.
   double Torque(double rate) const { return direction_ * F::Torque(direction_ * rate, direction_, friction_); }
 
   double RateAt(double energy, double angle) const {
@@ -115,7 +116,7 @@ class HalfSwingWay {
     return natural_frequency_ * std::sqrt(std::max(2 * kinetic, 1e-30));
   }
 
-  /// T dθ/dx at the nodes; sets rate_ and slope_ on the way.
+  /// T dθ/dx at the nodes; also sets rate_ and slope_.
   Nodes Loss(const Nodes& energy, double after) {
     static const Nodes sine = (kPi / 2 * Rule().x).sin();
     static const Nodes cosine = (kPi / 2 * Rule().x).cos();
@@ -129,7 +130,7 @@ class HalfSwingWay {
     return loss;
   }
 
-  /// The rate is largest where g(θ) = -T(ω): a few rounds, for T hardly changes there.
+  /// The rate is largest where g(θ) = -T(ω). A few rounds suffice, because T hardly changes there.
   void FindPeak(const Nodes& loss, double after, HalfSwingEnd& end) const {
     constexpr int kMostRounds = 50;
     constexpr double kSame = 1e-13;

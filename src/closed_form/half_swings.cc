@@ -38,8 +38,8 @@ double LongestGap(const Eigen::VectorXd& time, double from, double to) {
   return gap;
 }
 
-/// When the reading passes zero between two turning points: least-squares line of time on reading, through the samples
-/// within 0.35 of the smaller amplitude, or the two samples around the passage.
+/// The time at which the reading passes zero between two turning points. Fits a least-squares line of time on reading
+/// to the samples within 0.35 of the smaller amplitude, or uses the two samples around the passage.
 double CrossingTime(const Recording& recording, double zero, const Extremum& from, const Extremum& to) {
   const double near = 0.35 * std::min(std::abs(from.value - zero), std::abs(to.value - zero));
   double n = 0, sum_y = 0, sum_t = 0, sum_yy = 0, sum_yt = 0;

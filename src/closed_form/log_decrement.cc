@@ -14,9 +14,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kFormulas = 7;  // those of LogDecrement, in its order
+constexpr Index kFormulas = 7;  // the number of formulas in LogDecrement, in its order
 
-/// First turning points of the runs, and one past the last.
+/// Indices of the first turning point of each run, followed by one past the last turning point.
 std::vector<std::size_t> RunStarts(const PeakTable& table) {
   std::vector<std::size_t> starts;
   for (std::size_t i = 0; i < table.peaks.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<std::size_t> RunStarts(const PeakTable& table) {
   return starts;
 }
 
-/// The n periods the formulas are applied to.
+/// The n periods to which the formulas are applied.
 struct Stretch {
   const PeakTable& table;
   Gravity gravity;
@@ -38,8 +38,8 @@ struct Stretch {
   const Peak& to() const { return table.peaks[last()]; }
 };
 
-/// What the formulas take: two times [s], two readings from the zero, and the mean over the half swings of their period
-/// over that of a small swing.
+/// Inputs of the formulas: two times [s], two readings relative to the zero, and the mean over the half swings of their
+/// period divided by that of a small swing.
 using Inputs = Eigen::Matrix<double, 5, 1>;
 using Outputs = Eigen::Matrix<double, kFormulas, 1>;
 
@@ -54,7 +54,7 @@ Outputs Formulas(const Inputs& inputs, int periods) {
   return outputs;
 }
 
-/// The mean period ratio, and its derivatives (M) with respect to the values of the turning points.
+/// The mean period ratio and its derivatives (M) by the values of the turning points.
 double MeanPeriodRatio(const Stretch& stretch, VectorXd& gradient) {
   gradient = VectorXd::Zero(static_cast<Index>(stretch.table.peaks.size()));
   if (stretch.gravity == Gravity::kLinear) return 1;
@@ -77,7 +77,7 @@ double MeanPeriodRatio(const Stretch& stretch, VectorXd& gradient) {
   return sum;
 }
 
-/// Derivatives (kFormulas x 2 M) with respect to the turning points, of whose values the zero is made too.
+/// Derivatives (kFormulas x 2 M) by the turning points. The zero also depends on their values.
 MatrixXd Gradient(const Stretch& stretch, const Inputs& inputs, const VectorXd& ratio_gradient) {
   constexpr double kStep = 1e-6;
   Eigen::Matrix<double, kFormulas, 5> slopes;
@@ -99,7 +99,7 @@ MatrixXd Gradient(const Stretch& stretch, const Inputs& inputs, const VectorXd& 
   return gradient;
 }
 
-/// Whether turning points `first` and n periods later belong to one run, and both lie where their side is.
+/// Whether the turning points `first` and n periods later belong to one run and lie on the same side of the zero.
 bool Reaches(const PeakTable& table, std::size_t first, int periods) {
   const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
   if (periods < 1 || last >= table.peaks.size()) return false;
@@ -109,7 +109,7 @@ bool Reaches(const PeakTable& table, std::size_t first, int periods) {
   return table.Side(first) == table.Side(last);
 }
 
-/// ζ of two turning points n periods apart, and its error without the rest of the formulas. zero_weights: the table's.
+/// ζ of two turning points n periods apart and its error, without the other formulas. zero_weights are the table's.
 std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zero_weights, std::size_t first,
                                      int periods) {
   if (!Reaches(table, first, periods)) return std::nullopt;
@@ -118,7 +118,7 @@ std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zer
   const double after = table.Amplitude(last);
   const double decrement = std::log(before / after) / periods;
   const double square = 4 * kPi * kPi + decrement * decrement;
-  // The zero, of which the amplitudes are counted, is made of all values, these two among them.
+  // The amplitudes are relative to the zero, which depends on all values, including these two.
   const double by_zero = table.Side(first) * (1 / after - 1 / before);
   double variance = std::pow(by_zero * table.zero.std_error, 2);
   for (const auto& [peak, slope] : {std::pair(first, 1 / before), std::pair(last, -1 / after)}) {

@@ -19,18 +19,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// How a turning point is fitted: what few samples allow.
+/// How a turning point is fitted, depending on the number of samples.
 struct Shape {
   int degree;
   double half_width;  // s
 };
 
 Shape ShapeFor(double samples_per_period, double period) {
-  if (samples_per_period < 14) return {2, period / 4};  // a sixth holds too few
+  if (samples_per_period < 14) return {2, period / 4};  // a sixth of a period has too few
   return {samples_per_period >= 36 ? 6 : samples_per_period >= 24 ? 4 : 2, period / 6};
 }
 
-/// cos x without its Taylor polynomial of the degree.
+/// cos x minus its Taylor polynomial of degree `degree`.
 ArrayXd CosineBeyond(int degree, const ArrayXd& x) {
   ArrayXd rest = x.cos();
   ArrayXd term = ArrayXd::Ones(x.size());
@@ -41,7 +41,7 @@ ArrayXd CosineBeyond(int degree, const ArrayXd& x) {
   return rest;
 }
 
-/// A polynomial about a turning point, before the noise is known.
+/// A polynomial fitted about a turning point, before the noise is known.
 struct LocalFit {
   Peak peak;  // without covariance
   double sum_of_squares = 0;
@@ -67,12 +67,12 @@ class PeakFitter {
 
   double half_period() const { return half_period_; }
 
-  /// Nothing where samples are missing, saturated or too few.
+  /// Returns std::nullopt if samples are missing, saturated or too few.
   std::optional<LocalFit> Fit(const Extremum& extremum) const {
     LocalFit fit;
     double centre = extremum.time;
     double value = extremum.value;
-    constexpr int kRounds = 2;  // the kink stands where the peak is
+    constexpr int kRounds = 2;  // the kink is at the peak, so its position is iterated
     for (int round = 0; round < kRounds; ++round) {
       if (!FitAbout(centre, value, fit)) return std::nullopt;
       centre = fit.peak.time;
@@ -82,7 +82,7 @@ class PeakFitter {
   }
 
  private:
-  /// What the readings have beside a polynomial: higher terms of the swing, and the kink of an angle.
+  /// The part of the readings that is not a polynomial: higher terms of the swing, and the kink of an angle.
   ArrayXd Known(const ArrayXd& delay, double distance) const {
     ArrayXd known = distance * CosineBeyond(shape_.degree, kPi / half_period_ * delay);
     if (recording_.quantity == Quantity::kAngle && kink_.sticking_angle != 0) {
@@ -111,7 +111,7 @@ class PeakFitter {
     MatrixXd powers(count, shape_.degree + 1);
     powers.col(0).setOnes();
     for (int k = 1; k <= shape_.degree; ++k) powers.col(k) = powers.col(k - 1).array() * delay / shape_.half_width;
-    // Of well-conditioned powers, so that the normal equations do: (XᵀX)⁻¹ Xᵀ is needed for the influence anyway.
+    // The powers are well conditioned, so the normal equations are too. The influence needs (XᵀX)⁻¹ Xᵀ anyway.
     const MatrixXd solver = (powers.transpose() * powers).ldlt().solve(powers.transpose());
     const VectorXd c = solver * rest;
     fit.sum_of_squares = (rest - powers * c).squaredNorm();
@@ -122,7 +122,7 @@ class PeakFitter {
     return true;
   }
 
-  /// Where the polynomial turns next to the centre.
+  /// Finds the extremum of the polynomial nearest to the centre.
   bool FindVertex(const VectorXd& c, double centre, Peak& peak, MatrixXd& gradient) const {
     constexpr int kMostSteps = 20;
     double x = 0;
@@ -154,7 +154,7 @@ class PeakFitter {
   Shape shape_{};
 };
 
-/// Two turning points follow each other when they lie on different sides and about half a period apart.
+/// Two turning points follow each other if they lie on different sides of the zero and about half a period apart.
 bool Follows(const Peak& before, const Peak& peak, double half_period, double zero) {
   constexpr double kLongest = 1.6;
   return (before.value > zero) != (peak.value > zero) && peak.time - before.time < kLongest * half_period;
@@ -229,7 +229,7 @@ Result<PeakTable> LocatePeaks(const Recording& recording, const Kink& kink) {
     table.peaks.push_back(fit->peak);
   }
   if (table.peaks.size() < 3) return TooFew(extrema->size(), table.peaks.size());
-  constexpr double kRounding = 1e-12;  // of the range: noise that is none
+  constexpr double kRounding = 1e-12;  // of the range: least noise assumed for noise-free readings
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   table.noise = std::max(std::sqrt(sum_of_squares / static_cast<double>(freedom)), kRounding * range);
   const double middle = 0.5 * (table.peaks[0].value + table.peaks[1].value);

@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// Crossing times against the time they would take at ω0 = 1, both with the mean of each run subtracted.
+/// Crossing times, and the times they would have at ω0 = 1. The mean of each run is subtracted from both.
 std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const HalfSwingTable& table,
                                                                           double natural_frequency) {
   std::vector<double> phase, time;
@@ -40,7 +40,7 @@ std::pair<std::vector<double>, std::vector<double>> CrossingsAgainstPhase(const 
   return {phase, time};
 }
 
-/// ω0 from the slope of the crossings, one over all runs without gaps, with amplitudes as they are at another ω0.
+/// ω0 from the slope of the crossings, common to all runs without gaps. Amplitudes are computed with the ω0 given.
 double FrequencyAtAmplitudesOf(const HalfSwingTable& table, double natural_frequency) {
   const auto [phase, time] = CrossingsAgainstPhase(table, natural_frequency);
   double phase_phase = 0, phase_time = 0;
@@ -74,8 +74,8 @@ double AngleAmplitude(Quantity quantity, double amplitude, double natural_freque
 double NaturalFrequency(const HalfSwingTable& table) {
   if (table.quantity == Quantity::kAngle || table.gravity == Gravity::kLinear)
     return FrequencyAtAmplitudesOf(table, kUnbounded);
-  // A rate's amplitudes depend on ω0 too: the larger ω0, the smaller they are and the smaller the ω0 they give, so that
-  // the two agree once. At the smallest ω0 the largest peak can belong to, the pendulum would swing to the top.
+  // The amplitudes of a rate also depend on ω0. A larger ω0 means smaller amplitudes, and these give a smaller ω0, so
+  // there is exactly one solution. At the smallest possible ω0 the largest peak would carry the pendulum to the top.
   double peak = 0;
   for (const HalfSwing& half : table.half_swings) peak = std::max({peak, half.before, half.after});
   const double smallest = 0.5 * peak;

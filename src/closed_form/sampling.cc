@@ -14,21 +14,21 @@ namespace {
 
 using Eigen::Index;
 
-/// Fewer samples a period leave a turning point, a parabola through three of them, off by more than 1 % of the
+/// With fewer samples per period a turning point, a parabola through three of them, is wrong by more than 1 % of the
 /// amplitude.
 constexpr double kFewestPerPeriod = 8;
 
-/// What to sample with: turning points are then good to a thousandth.
+/// The recommended number; turning points are then accurate to a thousandth.
 constexpr double kGoodPerPeriod = 20;
 
-/// Fewer levels peak to peak tell the amplitude to no better than some percent, whatever the noise. Near rest every
-/// swing spans few.
+/// With fewer levels peak to peak the amplitude is accurate only to some percent, regardless of the noise. Near rest
+/// every swing has few levels.
 constexpr double kFewestCounts = 8;
 
-/// An interval of so many ordinary ones lacks readings.
+/// An interval longer than this many typical ones contains missing readings.
 constexpr double kGap = 3;
 
-/// Beyond this share of the interval, methods that count samples instead of using their stamps go wrong.
+/// Above this share of the interval, methods that count samples instead of using time stamps fail.
 constexpr double kMuchJitter = 0.1;
 
 void DescribeIntervals(const Eigen::VectorXd& time, Sampling& sampling) {
@@ -64,7 +64,7 @@ std::string Hz(double frequency) { return NumberText(frequency, 3) + " Hz"; }
 
 std::string Advice(double frequency) { return "sample at least at " + Hz(kGoodPerPeriod * frequency); }
 
-/// Why the readings seem to swing more slowly than the pendulum.
+/// Explains why the readings appear to swing more slowly than the pendulum.
 Warning AliasedWarning(const Sampling& sampling, double expected) {
   const double apparent = ApparentFrequency(expected, sampling.rate_hz);
   const double cycles = std::round(expected / sampling.rate_hz);
@@ -144,7 +144,7 @@ Sampling DescribeSampling(const Recording& used, std::optional<double> half_peri
   DescribeIntervals(used.time, sampling);
   sampling.expected_frequency_hz = expected_frequency;
   if (half_period && *half_period > 0) sampling.seen_frequency_hz = 0.5 / *half_period;
-  // An aliased swing shows another frequency than its own.
+  // An aliased swing shows a wrong frequency.
   const double expected = expected_frequency.value_or(0);
   const bool aliases = (1 + kExpectedWithin) * expected > 0.5 * sampling.rate_hz;
   sampling.frequency_hz = aliases ? expected : sampling.seen_frequency_hz.value_or(expected);

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-/// The zero near each turn: the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over four turns to either side, so that it
-/// may drift.
+/// The zero near each turning point: the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over four turning points on either
+/// side, so that the zero may drift.
 std::vector<double> LocalZeros(const std::vector<Extremum>& turns) {
   constexpr std::ptrdiff_t kNeighbours = 4;
   const auto last = static_cast<std::ptrdiff_t>(turns.size()) - 2;
@@ -32,7 +32,7 @@ std::vector<double> LocalZeros(const std::vector<Extremum>& turns) {
   return zeros;
 }
 
-/// Whether the samples leave out so much of a half swing that turning points may be missing in it.
+/// Whether samples are missing for such a large part of half swing i that turning points may be missing.
 bool HasGap(const TurnTable& table, std::size_t i) {
   constexpr double kLongest = 0.4;
   const Eigen::VectorXd& time = table.recording.time;
@@ -42,13 +42,13 @@ bool HasGap(const TurnTable& table, std::size_t i) {
   return false;
 }
 
-/// Duration of half swing i over that of a small one.
+/// Duration of half swing i, divided by that of a small one.
 double RelativeDuration(const TurnTable& table, std::size_t i) {
   const double stretch = 0.5 * (table.Stretch(i) + table.Stretch(i + 1));
   return (table.turns[i + 1].time - table.turns[i].time) / (table.half_period * stretch);
 }
 
-/// How much longer half swing i is than the median of its neighbours, and what it may be by their scatter.
+/// How much longer half swing i is than the median of its neighbours, and the limit that follows from their scatter.
 struct Slip {
   double deviation = 0;
   double limit = kUnlimited;
@@ -58,7 +58,7 @@ struct Slip {
 Slip SlipOf(const TurnTable& table, std::size_t i) {
   constexpr std::size_t kNeighbours = 6;
   constexpr double kLeast = 0.025;
-  // The more half swings there are, the farther one of them lies by chance.
+  // With more half swings, the largest deviation by chance is larger.
   const double deviations = 6 + 2 * std::log(static_cast<double>(table.half_swings()));
   std::vector<double> near;
   for (std::size_t j = i - std::min(i, kNeighbours); j < std::min(i + kNeighbours + 1, table.half_swings()); ++j) {
@@ -70,9 +70,9 @@ Slip SlipOf(const TurnTable& table, std::size_t i) {
   return {RelativeDuration(table, i) - typical, std::max(kLeast, deviations * Median(std::move(near)))};
 }
 
-/// Whether time slips in half swing i: samples were lost, or the pendulum was touched. A turning point that is found a
-/// little late makes the next half swing as much shorter, and is none. After the last one there is none to tell; before
-/// a rest it hardly stands out, and when it was is a guess.
+/// Whether time slips in half swing i: samples were lost, or the pendulum was touched. If a turning point is merely
+/// located late, the next half swing is shorter by the same amount; that is not a slip. The last half swing has no
+/// successor to check. Its turning point counts only if it stands out, because before a rest its time is uncertain.
 bool Slips(const TurnTable& table, std::size_t i) {
   const Slip slip = SlipOf(table, i);
   const auto stays = [&](double neighbour) { return std::abs(slip.deviation + neighbour) > slip.limit; };
@@ -81,8 +81,8 @@ bool Slips(const TurnTable& table, std::size_t i) {
   return stays(SlipOf(table, i + 1).deviation);
 }
 
-/// Whether the amplitude grows in half swing i and stays so: one turning point alone may be an outlier, and at the
-/// edges of a gap there are two that are none.
+/// Whether the amplitude grows in half swing i and stays larger. A single turning point may be an outlier; at the edges
+/// of a gap two may be.
 bool Gains(const TurnTable& table, std::size_t i, bool near_gap) {
   const auto amplitude = table.amplitude.begin();
   const auto at = static_cast<std::ptrdiff_t>(i);
@@ -93,7 +93,7 @@ bool Gains(const TurnTable& table, std::size_t i, bool near_gap) {
   return after > before + table.Tolerance(i);
 }
 
-/// Whether half swing i loses far more amplitude than those around it: it was braked.
+/// Whether half swing i loses far more amplitude than its neighbours, that is, was braked.
 bool IsBraked(const TurnTable& table, std::size_t i) {
   constexpr std::size_t kNeighbours = 4;
   constexpr double kFarMore = 2.5;
@@ -103,7 +103,7 @@ bool IsBraked(const TurnTable& table, std::size_t i) {
   }
   if (losses.size() < kNeighbours) return false;
   const double typical = std::max(Median(std::move(losses)), 0.0);
-  // One turning point alone may be an outlier.
+  // A single turning point may be an outlier.
   const double after =
       i + 2 < table.turns.size() ? std::max(table.amplitude[i + 1], table.amplitude[i + 2]) : table.amplitude[i + 1];
   const double before = i > 0 ? std::min(table.amplitude[i - 1], table.amplitude[i]) : table.amplitude[i];
@@ -121,7 +121,7 @@ Verdict Judge(const TurnTable& table, std::size_t i) {
   constexpr double kLongest = 1.5;
   const double duration = RelativeDuration(table, i);
   if (duration > kLongest) return Verdict::kFreeAfterHold;
-  // Where a hand has raised it the half swing may begin with a hold, and is longer by the end of that.
+  // After a hand has raised the pendulum, the half swing may begin with the end of a hold and last longer.
   const bool may_be_held = i == 0 || Gains(table, i - 1, false);
   const bool irregular = duration < kShortest || (!may_be_held && Slips(table, i)) || (i > 0 && IsBraked(table, i));
   return irregular ? Verdict::kIrregular : Verdict::kFree;

@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Index;
 
-/// What readings reach, a few outliers apart.
+/// The smallest and largest readings, ignoring a few outliers.
 struct Extremes {
   double low = 0, high = 0;
 };
 
-/// Unlike the mean they are the same however long the recording goes on after the swing.
+/// Unlike the mean, these do not depend on how long the recording continues after the swing.
 Extremes ExtremesOf(const Recording& recording) {
   const std::size_t outliers = 2 + static_cast<std::size_t>(recording.size()) / 10000;
   std::vector<double> value(recording.value.begin(), recording.value.end());
@@ -29,23 +29,24 @@ Extremes ExtremesOf(const Recording& recording) {
   return {*low, *high};
 }
 
-/// The passages through the bottom: maxima of the reading.
+/// The passages through the bottom, which are maxima of the reading.
 std::vector<Extremum> Bottoms(const Recording& upright, double threshold) {
-  constexpr double kAlike = 0.25;  // of a swing of the reading; it falls with the energy, by less in one swing
+  constexpr double kAlike = 0.25;  // of a swing of the reading, which decreases with the energy, but less than this in
+                                   // one swing
   const std::vector<Extremum> turns = FindTurns(upright, threshold);
   std::vector<Extremum> bottoms;
-  for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima in turn
+  for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima alternate
     if (turns[i].value > turns[i + 1].value) bottoms.push_back(turns[i]);
   }
-  // The first may be where the recording began, in the middle of a swing.
+  // The first may be the start of the recording in the middle of a swing.
   if (bottoms.size() < 2) return bottoms;
   const double swing = bottoms[1].value - upright.value.minCoeff();
   if (bottoms[1].value - bottoms[0].value > kAlike * swing) bottoms.erase(bottoms.begin());
   return bottoms;
 }
 
-/// Joins what stands out on the two sides of each passage by a line: between them the root of noise has turning points
-/// of its own.
+/// Replaces small values around each passage by a line between the values on both sides. Otherwise the square root of
+/// the noise would have turning points of its own.
 void BridgePassages(const std::vector<Extremum>& bottoms, double least, Recording& view) {
   Eigen::VectorXd& value = view.value;
   for (const Extremum& bottom : bottoms) {
@@ -59,7 +60,7 @@ void BridgePassages(const std::vector<Extremum>& bottoms, double least, Recordin
   }
 }
 
-/// MODEL.md eq. (74), with the bottoms' readings joined by lines.
+/// MODEL.md eq. (74), with M interpolated linearly between the bottoms' readings.
 Recording Unfolded(Recording recording) {
   recording.value *= RadialSide(recording);
   const double threshold = TurningThreshold(recording, SuccessiveDifferenceNoise(recording));
@@ -76,7 +77,7 @@ Recording Unfolded(Recording recording) {
     const double share = step > 0 ? (time - before.time) / step : 0;
     const double bottom = before.value + share * (after.value - before.value);
     const double side = next % 2 == 0 ? 1 : -1;
-    // Beyond the last bottom that stands out of the noise there is no swing to be seen.
+    // After the last bottom larger than the noise, no swing is visible.
     const bool is_over = next == bottoms.size() && time > bottoms.back().time + spacing;
     recording.value[i] = is_over ? 0.0 : side * std::sqrt(std::max(bottom - recording.value[i], 0.0));
   }
@@ -104,7 +105,7 @@ Recording TurnsView(const Recording& recording) {
   const bool is_folded = recording.quantity == Quantity::kAcceleration && IsRadial(recording);
   Recording view = is_folded ? Unfolded(recording) : recording;
   if (is_folded) view.resolution = 0;
-  view.quantity = Quantity::kAngle;  // in a unit that is none, so that nobody takes it for radians
+  view.quantity = Quantity::kAngle;  // in a fictitious unit, so that no code takes it for radians
   return view;
 }
 

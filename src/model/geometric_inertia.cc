@@ -15,7 +15,7 @@ double ValueOf(const Json& entry) { return entry.is_object() ? entry.at("value")
 
 double DeviationOf(const Json& entry) { return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0; }
 
-/// What a description comes to.
+/// The quantities that follow from a rig's description.
 struct Inertias {
   double gravity_torque = 0;
   double own = 0;
@@ -34,7 +34,7 @@ std::optional<Inertias> InertiasOf(const Json& description) {
   return inertias;
 }
 
-/// The description with one of its values a standard deviation larger.
+/// The description with one value increased by its standard deviation.
 Json Varied(Json description, const std::string& key) {
   const double value = ValueOf(description.at(key)) + DeviationOf(description.at(key));
   description[key] = value;
@@ -45,7 +45,7 @@ Json Varied(Json description, const std::string& key) {
 
 std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted) {
   const std::optional<Inertias> base = InertiasOf(rig.source);
-  if (!base) {  // described by no file
+  if (!base) {  // The rig was not read from a file.
     if (!rig.inertia) return {};
     const auto [value, std_dev] = *rig.inertia;
     const double fitted_error = fitted * rig.gravity_torque.std_dev / rig.gravity_torque.value;

@@ -15,7 +15,8 @@ bool Has(const std::vector<ParameterInfo>& infos, std::string_view name) {
   return std::ranges::find(infos, name, &ParameterInfo::name) != infos.end();
 }
 
-/// Parameters of the richer law that make it the simpler one: the same torques, nothing more, any reference rate.
+/// Parameters of the richer law that reduce it to the simpler one: the same torques, all other torques 0, and any value
+/// for a reference rate.
 template <FrictionModel F>
 std::array<double, kFrictionParameters<F>> NullOf(const std::vector<ParameterInfo>& simpler) {
   std::array<double, kFrictionParameters<F>> p{};
@@ -28,7 +29,7 @@ std::array<double, kFrictionParameters<F>> NullOf(const std::vector<ParameterInf
   return p;
 }
 
-/// Whether the torque changes with parameter k, at some rate in some direction.
+/// Whether the torque changes with parameter k at any of a few rates, in either direction.
 template <FrictionModel F>
 bool Matters(std::array<double, kFrictionParameters<F>> p, std::size_t k) {
   const auto torques = [&] {

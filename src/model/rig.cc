@@ -27,7 +27,7 @@ using namespace std::string_view_literals;
 
 // ---- The descriptions of a rig -----------------------------------------------------------------------------------
 
-/// A factor by which an error enters, and that error's standard deviation.
+/// The derivative by one value, and the standard deviation of that value.
 struct ErrorTerm {
   double derivative;
   double std_dev;
@@ -69,7 +69,7 @@ void SetFromBody(RigValues values, Rig& rig) {
                                                               {mass.value * distance.value, gravity.std_dev}});
 }
 
-/// One way to describe a rig: the keys it must have, and what follows from their values.
+/// One way to describe a rig: the required keys, and a function that computes the rig from their values.
 struct Form {
   std::span<const std::string_view> keys;
   void (*set)(RigValues values, Rig& rig);
@@ -88,7 +88,7 @@ bool Has(const Form& form, std::string_view key) { return std::ranges::find(form
 
 // ---- From the object to numbers ----------------------------------------------------------------------------------
 
-/// Which description `rig` is; every key of it is there, and no other but `inertia`.
+/// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.
 Result<Form> FindForm(const Json& rig, const std::string& name) {
   std::optional<Form> form;
   std::string telling_key;
@@ -99,7 +99,7 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
       return Fault(name, Quoted(key) + " is not a key of a rig; a rig is " + std::string(kFormsText) +
                              ", each with optional \"inertia\"");
     }
-    // Gravity stands in two descriptions, so it does not tell which is meant.
+    // Two kinds of description have "gravity", so this key does not identify the kind.
     if (form || found == kForms.end() || key == "gravity") continue;
     form = *found;
     telling_key = key;
@@ -127,7 +127,7 @@ Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_
   return Fault(name, key + " is " + json.dump() + "; it must be " + (may_be_zero ? "0 or more" : "positive"));
 }
 
-/// The value under a key that is known to be there.
+/// The value of `key`, which must exist.
 Result<RigValue> ReadValue(const Json& rig, std::string_view key, const std::string& name) {
   const Json& json = *rig.find(key);
   const bool may_be_zero = key == "rod_mass";
@@ -150,7 +150,7 @@ Result<RigValue> ReadValue(const Json& rig, std::string_view key, const std::str
   return value;
 }
 
-/// Products and squares of it stay numbers.
+/// Whether products and squares of the value stay finite and nonzero.
 bool IsUsable(const RigValue& value) {
   constexpr double kSmallest = 1e-30;
   constexpr double kLargest = 1e30;

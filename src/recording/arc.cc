@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 /// Centre and radius.
 using Circle = Eigen::Vector3d;
 
-/// Taubin's fit of centred and scaled points, as a generalized eigenvalue problem: the smallest singular direction of
+/// Taubin's fit of centred and scaled points as a generalized eigenvalue problem: the smallest singular direction of
 /// [(z - z̄) / 2 sqrt(z̄), x, y], z = x² + y² (N. Chernov, Circular and Linear Regression, CRC 2010, section 5.10).
 Circle AlgebraicFit(const VectorXd& x, const VectorXd& y) {
   const VectorXd z = x.array().square() + y.array().square();
@@ -47,10 +47,10 @@ tl::unexpected<Status> NoArc(const std::string& why, const std::string& otherwis
                                                     "; choose one coordinate with --value_column" + otherwise);
 }
 
-/// The way from the centre to the middle of the points is down, unless they are all round it: a swing beyond the
-/// horizontal has as many above. In units of the radius.
+/// Checks that the direction from the centre to the middle of the points is down. It is undetermined if the points lie
+/// all round the centre: a swing beyond the horizontal has as many points above. In units of the radius.
 Result<void> CheckDown(const VectorXd& y, const Circle& circle) {
-  constexpr double kLeast = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii down
+  constexpr double kLeast = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii below the centre
   const double middle = -circle[1] / circle[2];
   const VectorXd height = (y.array() - circle[1]) / (middle < 0 ? -circle[2] : circle[2]);
   if (std::abs(middle) >= kLeast && height.maxCoeff() >= -height.minCoeff()) return {};
@@ -66,7 +66,7 @@ double Arc::Angle(double point_x, double point_y) const { return std::atan2(poin
 Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   constexpr int kMostSteps = 50;
   constexpr double kConverged = 1e-12;
-  constexpr double kLargestError = 0.2;  // of the radius: beyond, no angle is known to mean one
+  constexpr double kLargestError = 0.2;  // of the radius; with a larger error no angle can be trusted
   const double x_mean = x.mean();
   const double y_mean = y.mean();
   const double scale = std::sqrt(((x.array() - x_mean).square() + (y.array() - y_mean).square()).mean());

@@ -17,14 +17,14 @@ namespace {
 using Eigen::Index;
 using Check = Result<void>;
 
-/// Of a time in a message: those that a double always keeps, so that a counter is not shown with an exponent.
+/// Digits of a time in a message: a double keeps 15 digits, and a counter is not shown with an exponent.
 constexpr int kDigits = 15;
 
 std::string Count(Index count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
-/// A counter holds whole numbers and drops by nearly all of its range.
+/// A counter has whole numbers and drops by nearly its whole range when it wraps around.
 struct Counter {
   const char* range_text;
   double range;
@@ -34,7 +34,7 @@ struct Counter {
 constexpr std::array kCounters = {Counter{"2^32", 4294967296.0, 0}, Counter{"2^16", 65536.0, 0},
                                   Counter{"2^16", 65536.0, -32768.0}};
 
-/// One file's stamps under repair.
+/// Repairs the time stamps of one file.
 class ClockRepair {
  public:
   explicit ClockRepair(RawSamples samples) : samples_(std::move(samples)) {}
@@ -74,7 +74,7 @@ class ClockRepair {
   RawSamples samples_;
 };
 
-/// All steps alike to a tenth of the mean one: nothing to repair, whatever grid the stamps are on.
+/// All steps agree to a tenth of their mean: nothing to repair, regardless of the grid.
 bool ClockRepair::IsUniform() const {
   const Index steps = size() - 1;
   if (steps < 1) return true;
@@ -97,7 +97,7 @@ bool ClockRepair::Increases() const {
 
 bool ClockRepair::IsNotDecreasing() const { return std::is_sorted(time().begin(), time().end()); }
 
-/// Of the steps that go forward; 0 when there is none.
+/// Median of the forward steps; 0 if there is none.
 double ClockRepair::MedianStep() const {
   std::vector<double> steps;
   for (Index i = 1; i < size(); ++i) {
@@ -106,9 +106,9 @@ double ClockRepair::MedianStep() const {
   return steps.empty() ? 0 : Median(std::move(steps));
 }
 
-// ---- Counters that begin again -----------------------------------------------------------------------------------
+// ---- Counters that wrap around -----------------------------------------------------------------------------------
 
-/// The rows where the counter begins again; none when it does not fit.
+/// The rows where the counter wraps around; empty if it is not this counter.
 std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   std::vector<Index> wraps;
   for (Index i = 0; i < size(); ++i) {
@@ -119,8 +119,8 @@ std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   return wraps;
 }
 
-/// Whether the steps across look like the others. One of 16 bits begins again so often that any clock set back and any
-/// longer gap might pass for it: there all steps must be alike, but for short gaps.
+/// Whether the steps across the wrap are like the others. A 16-bit counter wraps so often that a clock set back, or a
+/// long gap, could look the same. Its steps must therefore all be alike, except short gaps.
 bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wraps) const {
   constexpr double kUsualSteps = 10, kAlike = 2, kShortGap = 1.0 / 64;
   const double usual = MedianStep();
@@ -170,8 +170,8 @@ bool IsMultiple(double number, double grid) {
   return std::abs(steps - std::round(steps)) < 1e-4;
 }
 
-/// The coarsest 1, 2 or 5 times a power of ten that all stamps lie on, counted from the first, when it is a tenth of
-/// the mean sampling interval or more.
+/// The coarsest grid on which all stamps lie, counted from the first: 1, 2 or 5 times a power of ten. It must be at
+/// least a tenth of the mean sampling interval.
 std::optional<double> ClockRepair::Grid() const {
   constexpr std::array kMantissas = {5.0, 2.0, 1.0};
   constexpr int kMostDecades = 12;
@@ -190,7 +190,7 @@ std::optional<double> ClockRepair::Grid() const {
   return std::nullopt;
 }
 
-/// How many steps differ from the median one by a step of the grid or more.
+/// The number of steps that differ from the median step by at least one step of the grid.
 Index ClockRepair::OddSteps(double grid) const {
   std::vector<double> steps;
   for (Index i = 1; i < size(); ++i) steps.push_back(std::round((time()[i] - time()[i - 1]) / grid));
@@ -198,7 +198,7 @@ Index ClockRepair::OddSteps(double grid) const {
   return std::ranges::count_if(steps, [usual](double step) { return step != usual; });
 }
 
-/// Replaces stamps by the middle of the uniform clocks that agree with every one of them to half a step of the grid.
+/// Replaces the stamps by the middle of the uniform clocks that agree with all of them to half a grid step.
 bool ClockRepair::MakeUniform(double grid) {
   const double first = time()[0];
   const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
@@ -222,7 +222,7 @@ bool ClockRepair::MakeUniform(double grid) {
   return true;
 }
 
-/// Stamps that increase although rounded: with regular sampling and gaps every step but a few is the usual one.
+/// Warns of stamps that increase although rounded. With regular sampling and gaps, nearly all steps would be equal.
 void ClockRepair::WarnOfScatter() {
   constexpr double kOddShare = 0.1;
   const std::optional<double> grid = Grid();
@@ -233,16 +233,17 @@ void ClockRepair::WarnOfScatter() {
            " " + samples_.time_unit);
 }
 
-// ---- Stamps that repeat ------------------------------------------------------------------------------------------
+// ---- Repeated stamps ---------------------------------------------------------------------------------------------
 
-/// The first row whose stamp the next row has too, or the number of rows.
+/// The first row whose stamp the next row repeats, or the number of rows.
 Index ClockRepair::FirstOfSharedStamp() const {
   Index row = 0;
   while (row + 1 < size() && time()[row + 1] != time()[row]) ++row;
   return row + 1 < size() ? row : size();
 }
 
-/// How many rows go when of successive rows with one stamp only those stay whose values are equal, and of them one.
+/// The number of rows to leave out. Of successive rows with the same stamp, one is kept if their values are equal, and
+/// none otherwise.
 Index ClockRepair::SharedRows(std::vector<bool>& keep) const {
   keep.assign(size(), true);
   Index gone = 0;

@@ -23,10 +23,10 @@ bool IsCalibratedAngle(const Recording& recording) {
   return recording.quantity == Quantity::kAngle && (recording.unit == "rad" || recording.unit == "deg");
 }
 
-/// Continues an angle across the jumps of a sensor that begins again after a turn.
+/// Makes an angle continuous if the sensor wraps around after a turn.
 void Unwrap(Recording& recording) {
   Eigen::VectorXd& value = recording.value;
-  // Such a sensor shows no more than one turn, and a step after the jump is taken out is no longer one itself.
+  // Such a sensor shows at most one turn, and without the jump a step is no longer a jump.
   constexpr double kRounding = 1.01;
   if (!IsCalibratedAngle(recording) || value.maxCoeff() - value.minCoeff() > kTurn * kRounding) return;
   Index jumps = 0;
@@ -43,14 +43,14 @@ void Unwrap(Recording& recording) {
     value[i] += turns * kTurn;
   }
   if (jumps == 0) return;
-  recording.range.reset();  // of an angle within a turn
+  recording.range.reset();  // it was the range of an angle within one turn
   recording.warnings.push_back(
       {"unwrapped",
        std::to_string(jumps) +
            " jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued"});
 }
 
-/// Keeps the samples that are marked, and nothing else.
+/// Keeps only the marked samples.
 void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
   Index count = 0;
   for (Index i = 0; i < recording.size(); ++i) {
@@ -63,7 +63,7 @@ void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
   recording.value.conservativeResize(count);
 }
 
-/// The least step that readings make: their resolution, or what a share of the changes stays below.
+/// The smallest step between readings: their resolution, or the quantile `share` of the changes.
 double LeastStep(const Recording& recording, double share) {
   std::vector<double> steps;
   steps.reserve(static_cast<std::size_t>(recording.size()));
@@ -77,8 +77,8 @@ double LeastStep(const Recording& recording, double share) {
   return std::max(*least, recording.resolution);
 }
 
-/// Runs of three and more readings at exactly one value, an extreme of all, that are entered and left in steps of many
-/// least ones: the top of a swing that is cut off.
+/// Counts runs of at least three readings equal to the extreme of all readings that are entered and left in large
+/// steps: clipped tops of a swing.
 Index FlatTops(const Eigen::VectorXd& value, double extreme, double least_step) {
   constexpr Index kFewest = 3;
   constexpr double kAtSpeed = 3;
@@ -95,7 +95,7 @@ Index FlatTops(const Eigen::VectorXd& value, double extreme, double least_step) 
   return tops;
 }
 
-/// Takes an extreme that swings are cut off at for an end of the sensor's range, where the file tells none.
+/// If the file gives no range, takes an extreme at which swings are clipped as an end of the sensor's range.
 void NoticeSaturation(double least_step, Recording& recording) {
   constexpr Index kFewest = 3;
   if (recording.range) return;
@@ -106,7 +106,7 @@ void NoticeSaturation(double least_step, Recording& recording) {
   if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
 }
 
-/// A row only where the value changes: steps of one size, never none, at uneven times.
+/// Warns if there are rows only where the value changes: steps of one size, never zero, at uneven times.
 void NoticeEvents(double least_step, Recording& recording) {
   constexpr double kSame = 1e-3;
   constexpr double kMostly = 0.3;
@@ -133,10 +133,10 @@ void NoticeEvents(double least_step, Recording& recording) {
        "count early all along, and the error bars know nothing of it; record at even times if you can"});
 }
 
-constexpr Index kStaleReach = 6;  // samples to either side by which stale readings are known
+constexpr Index kStaleReach = 6;  // samples on either side that are examined for stale readings
 
-/// Readings that only repeat the one before while those around them change by many least steps: at all, and in one
-/// direction.
+/// Readings that repeat the previous one although the readings around them change by many least steps, either overall
+/// (amid_change) or in one direction (amid_motion).
 struct Repeats {
   std::vector<bool> amid_change;
   std::vector<bool> amid_motion;
@@ -145,7 +145,7 @@ struct Repeats {
 };
 
 Repeats FindRepeats(double least_step, const Recording& recording) {
-  constexpr double kChange = 12;  // least steps in all
+  constexpr double kChange = 12;  // least steps overall
   constexpr double kMotion = 3;   // least steps from one sample to the next
   const Eigen::VectorXd& value = recording.value;
   const Index last = recording.size() - 1;
@@ -168,7 +168,7 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
   return repeats;
 }
 
-/// Whether readings change before sample `first` as well as after sample `last`: they do not at the end of a hold, nor
+/// Whether readings change both before sample `first` and after sample `last`. They do not at the end of a hold, nor
 /// where a pendulum stops.
 bool MovesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double least_step) {
   constexpr double kChange = 3;  // least steps
@@ -177,8 +177,8 @@ bool MovesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, dou
   return std::min(std::abs(before), std::abs(after)) > kChange * least_step;
 }
 
-/// Leaves out stale readings: where a tracker repeats many of its values all of them, else only three and more in a row
-/// amid motion.
+/// Leaves out stale readings: all of them if a tracker repeats many values, otherwise only three or more in a row
+/// during motion.
 void LeaveOutStale(double least_step, Recording& recording) {
   constexpr double kMany = 0.25;
   constexpr std::size_t kFewestInARow = 3;
@@ -204,8 +204,8 @@ void LeaveOutStale(double least_step, Recording& recording) {
                                                     "they are left out"});
 }
 
-/// Distance of each reading to the line through its two neighbours: median over blocks, and the largest of three blocks
-/// around a sample.
+/// Distance of each reading to the line through its two neighbours. Stores medians over blocks; At() returns the
+/// largest of the three blocks around a sample.
 class LocalScale {
  public:
   explicit LocalScale(const Recording& recording) {
@@ -233,21 +233,21 @@ class LocalScale {
   std::vector<double> medians_;
 };
 
-/// The reading at sample i if the line through samples a and b went on.
+/// The reading at sample i extrapolated along the line through samples a and b.
 double Extrapolated(const Recording& recording, Index a, Index b, Index i) {
   const double slope = (recording.value[b] - recording.value[a]) / (recording.time[b] - recording.time[a]);
   return recording.value[b] + slope * (recording.time[i] - recording.time[b]);
 }
 
-/// Leaves out readings that neither the two before nor the two after lead to: a kick or a release is led to by one
-/// side.
+/// Marks readings that neither the two previous nor the two following ones predict. A kick or a release is predicted
+/// from one side.
 struct Spikes {
   std::vector<bool> kept;
   Index count = 0;
 };
 
 Spikes FindSpikes(double least_step, const Recording& recording) {
-  constexpr double kSigmaPerMedian = 1.21;  // of the distance of Gaussian noise to the line through its neighbours
+  constexpr double kSigmaPerMedian = 1.21;  // for the distance of Gaussian noise to the line through its neighbours
   constexpr double kSteps = 2.5;
   const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 0.5;
   const double far_in_medians = kSigmaPerMedian * deviations;
@@ -267,7 +267,7 @@ Spikes FindSpikes(double least_step, const Recording& recording) {
 }
 
 void LeaveOutSpikes(double least_step, Recording& recording) {
-  constexpr int kMostPasses = 4;  // what stands next to a spike is judged without it
+  constexpr int kMostPasses = 4;  // neighbours of a spike are judged again without it
   constexpr Index kMostOf = 10;
   Spikes spikes = FindSpikes(least_step, recording);
   if (spikes.count == 0) return;

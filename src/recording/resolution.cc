@@ -18,7 +18,7 @@ using Eigen::Index;
 using Levels = std::vector<double>;  // distinct readings, increasing
 
 constexpr std::size_t kFewestLevels = 5;
-constexpr double kLargestSpread = 0.12;  // rms distance to the levels, in steps; 0.29 by chance
+constexpr double kLargestSpread = 0.12;  // rms distance to the levels, in steps; random readings have 0.29
 
 Levels SortedSample(const Eigen::VectorXd& value) {
   constexpr Index kMost = 20000;
@@ -29,9 +29,10 @@ Levels SortedSample(const Eigen::VectorXd& value) {
   return sample;
 }
 
-/// Distinct readings; without those met once where nearly all are met more often: these stand on no level.
+/// Distinct readings. If nearly all occur repeatedly, those that occur only once are omitted, because they are not
+/// levels.
 Levels DistinctReadings(const Levels& sorted) {
-  constexpr double kRounding = 1e-12;  // of a conversion of units
+  constexpr double kRounding = 1e-12;  // of a unit conversion
   constexpr double kNearlyAll = 0.9;
   const double same = kRounding * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
   Levels all;
@@ -49,7 +50,8 @@ Levels DistinctReadings(const Levels& sorted) {
   return nearly_all ? repeated : all;
 }
 
-/// Small gaps between neighbours and their parts: the step is one of them, nearly, if any two levels are close.
+/// Small gaps between neighbours and fractions of them. If any two levels are adjacent, one of these is nearly the
+/// step.
 Levels Candidates(const Levels& levels) {
   Levels gaps;
   for (std::size_t i = 1; i < levels.size(); ++i) gaps.push_back(levels[i] - levels[i - 1]);
@@ -63,12 +65,12 @@ Levels Candidates(const Levels& levels) {
   return candidates;
 }
 
-/// Improves a step by the distances between levels within a reach of each other; none if these are no multiples of it.
+/// Improves a step using the distances between levels within `reach`; std::nullopt if these are not multiples of it.
 std::optional<double> Improved(const Levels& levels, double step, double reach) {
   constexpr double kNear = 0.25;
-  constexpr double kMostFar = 0.3;  // of the pairs; a half by chance
+  constexpr double kMostFar = 0.3;  // share of the pairs; half for random readings
   constexpr double kOutliers = 2;
-  // Without the last ones, or all below would be paired with what may be outliers.
+  // Omits the last levels, which may be outliers and would otherwise be paired with all levels below.
   const double highest = levels[levels.size() - 1 - levels.size() / 50];
   double moment = 0;
   double inertia = 0;
@@ -95,13 +97,13 @@ std::optional<double> Improved(const Levels& levels, double step, double reach) 
   return moment / inertia;
 }
 
-/// A step with offset by least squares, and the rms distance of all levels to it.
+/// Step and offset from least squares, and the rms distance of all levels to this grid.
 struct Comb {
   double step = 0;
   double spread = 0;  ///< In steps.
 };
 
-/// Near the middle, where the phases of all levels agree best.
+/// The offset near the middle at which the phases of all levels agree best.
 double CommonOffset(const Levels& levels, double step) {
   const double middle = levels[levels.size() / 2];
   std::complex<double> sum = 0;
@@ -133,7 +135,7 @@ Comb FitComb(const Levels& levels, double step) {
   return comb;
 }
 
-/// Improves a step over distances of twice the reach each time, so that every one can be told from its neighbours.
+/// Improves a step over distances that double each time, so that adjacent multiples remain distinguishable.
 std::optional<Comb> Refined(const Levels& levels, double step) {
   const double span = levels.back() - levels.front();
   for (double reach = 1.5 * step; reach < 0.6 * span; reach *= 2) {
@@ -144,10 +146,10 @@ std::optional<Comb> Refined(const Levels& levels, double step) {
   return FitComb(levels, step);
 }
 
-/// Whether levels on a comb are beyond chance: their distance to it, as a normal density against a uniform one, is a
-/// likelihood ratio above e^16.
+/// Whether the levels fit the grid beyond chance: the likelihood ratio of a normal density of their distances to a
+/// uniform one exceeds e^16.
 bool IsBeyondChance(const Levels& levels, const Comb& comb) {
-  constexpr double kUniform = 0.2420;  // 1/sqrt(2 pi e): spread of the normal density with the entropy of a uniform one
+  constexpr double kUniform = 0.2420;  // 1/sqrt(2 pi e): spread of a normal density with the entropy of a uniform one
   constexpr double kLeastSpread = 1e-3;
   constexpr double kEvidence = 16;
   const double fitted = 2;  // step and offset
@@ -155,7 +157,7 @@ bool IsBeyondChance(const Levels& levels, const Comb& comb) {
   return comb.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
 }
 
-/// Even spacing without gaps and without repeats: readings of a ramp, not levels.
+/// Even spacing without gaps or repeats: a ramp, not levels.
 bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
   constexpr double kNearlyAll = 0.9;
   const double possible = (levels.back() - levels.front()) / comb.step + 1;
@@ -165,8 +167,8 @@ bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
 
 }  // namespace
 
-/// Where readings halfway between the levels are more than one in twenty of the distinct ones (averages of two
-/// readings) it is the finer spacing, else the sensor's own.
+/// If more than one in twenty distinct readings lie halfway between the levels (averages of two readings), it is the
+/// finer spacing, otherwise the sensor's own.
 double FindResolution(const Eigen::VectorXd& value) {
   constexpr double kFinest = 1e-6;
   if (value.size() < static_cast<Index>(kFewestLevels)) return 0;

@@ -22,10 +22,10 @@ constexpr std::string_view kForm =
     R"({"input": "counts", "angle_unit": "deg", "coefficients": [-49.6077, 0.1985]} with optional "schema_version", )"
     R"("covariance", "residual_std_dev" and "input_range")";
 
-/// No sensor's curve needs more, and higher powers of a count overflow.
+/// No sensor's curve needs more coefficients, and higher powers of a count overflow.
 constexpr std::size_t kMostCoefficients = 16;
 
-/// Reads one calibration key by key; every member names the key in its fault.
+/// Reads one calibration key by key. Every member function names the key in its error.
 class CalibrationReader {
  public:
   CalibrationReader(const Json& json, const std::string& name) : json_(json), name_(name) {}
@@ -130,7 +130,7 @@ Check CalibrationReader::ReadCovariance() {
   return CheckCovariance();
 }
 
-/// Symmetric, and no correlation beyond 1; both but for the rounding of a file.
+/// Checks that the matrix is symmetric and no correlation exceeds 1, both up to the rounding of a file.
 Check CalibrationReader::CheckCovariance() const {
   constexpr double kRounding = 1e-6;
   const Eigen::MatrixXd& matrix = calibration_.covariance;

@@ -34,9 +34,9 @@ inline std::vector<UnorderedRows> FindUnorderedRows(const Eigen::VectorXd& time)
 
 /// Keeps a longest increasing sequence of the rows (patience sorting, O(n log n)). Returns how many rows it drops.
 inline Eigen::Index DropFewest(const Eigen::VectorXd& time, UnorderedRows rows, std::vector<bool>& keep) {
-  std::vector<Eigen::Index> tails;  // Of the sequences of each length the lowest last row.
+  std::vector<Eigen::Index> tails;  // For sequences of each length, the smallest last row.
   std::vector<Eigen::Index> before(rows.end - rows.begin,
-                                   Eigen::Index{-1});  // The row before each row in its sequence.
+                                   Eigen::Index{-1});  // The previous row in each row's sequence.
   for (Eigen::Index i = rows.begin; i < rows.end; ++i) {
     keep[i] = false;
     const auto place = std::ranges::lower_bound(tails, time[i], {}, [&](Eigen::Index row) { return time[row]; });

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Counts from the row before, in parts of a count; 0 for the first one.
+/// The step from the previous row in fractions of a count; 0 for the first row.
 double StepTo(const Recording& recording, Index i, double parts = 1) {
   return i == 0 ? 0 : std::round(parts * (recording.value[i] - recording.value[i - 1]) / recording.resolution);
 }
@@ -25,7 +25,7 @@ bool HasUnevenStamps(const Recording& recording) {
   return intervals[last * 9 / 10] > kUneven * intervals[last / 10];
 }
 
-/// Runs of rows in one direction: where each begins, and the end.
+/// Runs of rows in one direction: the beginning of each, and the end.
 std::vector<Index> RunsOf(const Recording& recording) {
   std::vector<Index> begins = {0};
   double direction = 0;
@@ -38,8 +38,8 @@ std::vector<Index> RunsOf(const Recording& recording) {
   return begins;
 }
 
-/// Which rows are a slip amid a motion: one or two against it between long runs. A counter that misses edges while its
-/// logger is busy makes them; they are no edges at their stamps.
+/// Marks slips: one or two rows against the motion between long runs. They occur when a counter misses edges while its
+/// logger is busy, and they are not edges at their stamps.
 std::vector<bool> Slips(const Recording& recording) {
   constexpr Index kShort = 2, kLong = 8;
   const std::vector<Index> begins = RunsOf(recording);
@@ -52,14 +52,16 @@ std::vector<bool> Slips(const Recording& recording) {
   return slips;
 }
 
-/// The direction changes between two rows one count apart: the angle turned within the count of the first.
+/// Whether the direction changes between two rows one count apart, so that the angle turned within the count of the
+/// first.
 bool TurnsAfter(const Recording& recording, Index i) {
   if (i == 0 || i + 1 == recording.size()) return false;
   const double next = StepTo(recording, i + 1);
   return std::abs(next) == 1 && next * StepTo(recording, i) < 0;
 }
 
-/// A wait after the first row that is much longer than those at the next turning points is that of a hold.
+/// Whether the recording begins with a hold: the wait after the first row is much longer than at the next turning
+/// points.
 bool BeginsHeld(const Recording& recording) {
   constexpr double kLonger = 3;
   constexpr int kTurns = 3;
@@ -90,7 +92,7 @@ Warning NoteOf(Index silences, std::ptrdiff_t slips) {
 bool IsEventDriven(const Recording& recording) {
   constexpr double kFewestSteps = 20;
   constexpr double kWhole = 0.1;  // of a count
-  constexpr double kMost = 3;     // counts, where rows were missed
+  constexpr double kMost = 3;     // counts, if rows were missed
   constexpr double kNearlyAll = 0.99, kSingle = 0.85, kRepeated = 0.05;
   const auto steps = static_cast<double>(recording.size() - 1);
   if (recording.quantity != Quantity::kAngle || !(recording.resolution > 0) || steps < kFewestSteps) return false;

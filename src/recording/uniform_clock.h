@@ -6,18 +6,18 @@
 
 #include <Eigen/Core>
 
-/// The uniform clocks behind stamps that were rounded to whole steps.
+/// Finds uniform clocks that agree with stamps rounded to whole steps.
 namespace pendulum {
 
-/// The clocks a + b i that are within half a step of every stamp, i = 0, 1, ...; in steps.
+/// The clocks a + b i within half a step of every stamp, i = 0, 1, ...; in steps.
 struct UniformClock {
-  double start;            ///< a, the middle of what is left open for b.
-  double slope;            ///< b, the middle of what is left open, > 0.
-  double slope_tolerance;  ///< Half of what is left open for b.
+  double start;            ///< a, the middle of the possible values.
+  double slope;            ///< b, the middle of the possible values, > 0.
+  double slope_tolerance;  ///< Half the width of the possible values of b.
 };
 
-/// The largest b for which y_j - y_i + height >= b (j - i) for all i < j. Each pass finds the pair that is violated
-/// most and takes its own b (Dinkelbach): it falls to the exact one in a few passes.
+/// The largest b with y_j - y_i + height >= b (j - i) for all i < j. Each pass finds the pair with the largest
+/// violation and takes the b of this pair (Dinkelbach). A few passes reach the exact value.
 inline double LargestSlope(const Eigen::VectorXd& y, double height) {
   const Eigen::Index last = y.size() - 1;
   for (double slope = (y[last] - y[0] + height) / static_cast<double>(last);;) {
@@ -41,10 +41,10 @@ inline double LargestSlope(const Eigen::VectorXd& y, double height) {
   }
 }
 
-/// The middle of all clocks that agree with the stamps [whole steps], none when there is none that goes forward.
-/// Stamps that were cut off instead of rounded have the same slopes, and starts half a step later. Two stamps or more.
+/// The middle of all clocks that agree with the stamps [whole steps]; std::nullopt if no increasing clock agrees.
+/// Truncated instead of rounded stamps give the same slopes, and starts half a step later. Needs at least two stamps.
 inline std::optional<UniformClock> FindUniformClock(const Eigen::VectorXd& stamps) {
-  constexpr double kHeight = 1 + 1e-6;  // Of the band the stamps lie in; stamps half way may be rounded either way.
+  constexpr double kHeight = 1 + 1e-6;  // Width of the band of stamps; a stamp halfway may be rounded either way.
   const double largest = LargestSlope(stamps, kHeight);
   const double least = -LargestSlope(-stamps, kHeight);
   if (!(least > 0) || least > largest) return std::nullopt;

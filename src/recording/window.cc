@@ -51,7 +51,7 @@ Result<Recording> SelectWindow(Recording recording, double from, double to) {
 
 namespace {
 
-/// All but the samples, of which there may be many.
+/// Everything except the samples, which may be many.
 Recording WithoutSamples(const Recording& recording) {
   Recording copy;
   copy.path = recording.path;

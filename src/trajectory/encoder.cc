@@ -17,7 +17,7 @@
 namespace pendulum {
 namespace {
 
-/// Where f changes its sign in [a, b].
+/// The point in [a, b] where f changes its sign.
 template <typename Function>
 double Root(const Function& f, double a, double b) {
   const double at_a = f(a);
@@ -29,7 +29,7 @@ double Root(const Function& f, double a, double b) {
   return boost::math::tools::toms748_solve(f, a, b, at_a, at_b, near, most).second;
 }
 
-/// Counts an angle that is known at every time.
+/// Counts the edges that an angle, known at every time, crosses.
 class Counter {
  public:
   Counter(const Trajectory& trajectory, const SyntheticOptions& options)
@@ -41,7 +41,7 @@ class Counter {
   }
 
   std::vector<CountChange> Run(double end) {
-    constexpr double kSteps = 2000;  // in a small-angle period
+    constexpr double kSteps = 2000;  // per small-angle period
     const double step = 2 * kPi * std::sqrt(options_.parameters.front()) / kSteps;
     for (double from = options_.start_time; from < end;) {
       const double to = std::min(from + step, end);
@@ -57,7 +57,7 @@ class Counter {
  private:
   double Position(double time) const { return (trajectory_.Angle(time) + options_.zero) / options_.resolution; }
 
-  /// The edges of a count that was entered, each with an error.
+  /// Draws errors for both edges of the new count.
   void DrawEdges() {
     boost::random::normal_distribution<double> draw(0, options_.noise / options_.resolution);
     for (double& edge : edges_) edge = draw(generator_);
@@ -65,7 +65,7 @@ class Counter {
     edges_[1] += count_ + 0.5;
   }
 
-  /// In one direction.
+  /// Records the changes of an interval in which the direction of motion does not change.
   void Move(double from, double to) {
     if (!(from < to)) return;
     const double last = Position(to);
@@ -87,14 +87,14 @@ class Counter {
   const SyntheticOptions& options_;
   std::mt19937_64 generator_;
   double count_;
-  std::array<double, 2> edges_{};  // below and above, in counts
+  std::array<double, 2> edges_{};  // lower and upper edge, in counts
   std::vector<CountChange> changes_;
 };
 
-/// A row for each change, and a first one.
+/// One row for each change, preceded by a first row.
 void ReadEvents(const std::vector<CountChange>& changes, const SyntheticOptions& options, double first_count,
                 Recording& recording) {
-  std::mt19937_64 generator(~options.seed);  // the edges have another stream
+  std::mt19937_64 generator(~options.seed);  // a stream different from that of the edges
   boost::random::normal_distribution<double> draw(0, options.time_noise);
   const auto count = static_cast<Eigen::Index>(changes.size());
   recording.time.resize(count + 1);
@@ -109,7 +109,7 @@ void ReadEvents(const std::vector<CountChange>& changes, const SyntheticOptions&
   }
 }
 
-/// The count that is there at each instant.
+/// The current count at each instant.
 void ReadEvenly(const std::vector<CountChange>& changes, const SyntheticOptions& options, double first_count,
                 const Eigen::VectorXd& instants, Recording& recording) {
   recording.time = instants;

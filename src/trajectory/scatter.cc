@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kMostDraws = 1000;
 
-/// mt19937_64 seeded through std::seed_seq, which the standard lays down; SimulateRecording seeds it with the number.
+/// mt19937_64 seeded through std::seed_seq, whose algorithm the standard specifies. SimulateRecording seeds with the
+/// number itself, so its draws differ.
 std::mt19937_64 GeneratorOf(std::uint64_t seed) {
   constexpr std::uint64_t kLow = 0xFFFFFFFF;
   constexpr unsigned int kHigh = 32;
@@ -22,7 +23,7 @@ std::mt19937_64 GeneratorOf(std::uint64_t seed) {
   return std::mt19937_64(sequence);
 }
 
-/// What of the bounds the values break, "viscous is -0.1, below 0"; empty when they are admissible.
+/// The rule that the values break, such as "viscous is -0.1, below 0"; empty if they are admissible.
 std::string Offence(std::span<const ScatteredParameter> parameters, OrderedPair order,
                     const std::vector<double>& values) {
   const auto name_and_value = [&](std::size_t i) {

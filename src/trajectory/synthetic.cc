@@ -30,7 +30,7 @@ tl::unexpected<Status> BadOption(std::string_view name, double value, std::strin
                std::string(name) + " is " + NumberText(value) + "; it must be " + std::string(rule));
 }
 
-/// One option and what may be wrong with its value.
+/// One option and the domain of its value.
 struct NumberRule {
   std::string_view name;
   double value;
@@ -45,7 +45,7 @@ Result<void> CheckNumber(const NumberRule& rule) {
   return {};
 }
 
-/// The shape of the noise; its size is a number as others.
+/// Checks the shape of the noise. CheckNumbers checks its size.
 Result<void> CheckNoiseLaw(const SyntheticOptions& options) {
   const double correlation = options.noise_correlation;
   if (!(std::abs(correlation) < 1)) return BadOption("noise_correlation", correlation, "between -1 and 1");
@@ -115,7 +115,7 @@ Result<void> CheckLostCounts(const SyntheticOptions& options) {
   return Error(StatusCode::kInvalidArgument, "counts are lost by a sensor with levels; give a resolution");
 }
 
-/// What lost counts add to the readings from some time on.
+/// The amount by which counts lost before `time` raise the readings.
 double LostBefore(const SyntheticOptions& options, double time) {
   double counts = 0;
   for (const LostCounts& lost : options.lost_counts) counts += time >= lost.time ? lost.counts : 0;
@@ -144,7 +144,7 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
   return {};
 }
 
-/// Only an encoder of an angle has events.
+/// Only an encoder that measures an angle has events.
 Result<void> CheckEvents(const SyntheticOptions& options) {
   const bool even = options.rows == RowTiming::kEven;
   if (options.time_noise != 0 && options.rows != RowTiming::kEvents)
@@ -181,7 +181,7 @@ Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
 
 using NormalDraws = boost::random::normal_distribution<double>;
 
-/// Jittered instants in order. An instant that jitter puts before the first sample is mirrored there.
+/// Jittered instants in order. An instant that jitter moves before the first sample is mirrored at the first sample.
 Eigen::VectorXd SamplingInstants(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
   const double first = options.start_time;
   Eigen::VectorXd time(count);
@@ -196,9 +196,9 @@ Eigen::VectorXd SamplingInstants(const SyntheticOptions& options, Eigen::Index c
   return time;
 }
 
-/// mt19937_64 and Boost's distributions, which are the same everywhere. Correlated noise is e_0 = s x_0, e_i = r
-/// e_(i-1) + sqrt(1 - r²) s x_i with s = noise and independent x_i, normal or t, so that its standard deviation is that
-/// of s x_i from the first sample on.
+/// Noise from mt19937_64 and Boost's distributions, which give the same values on every platform. Correlated noise is
+/// e_0 = s x_0, e_i = r e_(i-1) + sqrt(1 - r²) s x_i with s = noise and independent x_i, normal or t. Its standard
+/// deviation therefore equals that of s x_i from the first sample on.
 Eigen::VectorXd NoiseSamples(const SyntheticOptions& options, Eigen::Index count, std::mt19937_64& generator) {
   Eigen::VectorXd noise(count);
   if (options.noise_freedom > 0) {
@@ -215,7 +215,7 @@ Eigen::VectorXd NoiseSamples(const SyntheticOptions& options, Eigen::Index count
   return noise;
 }
 
-/// The largest |θ| an undamped pendulum reaches from this start [rad]: from (1 - cos A) = (1 - cos θ) + I ω² / 2.
+/// The largest |θ| [rad] that an undamped pendulum reaches from this start, by (1 - cos A) = (1 - cos θ) + I ω² / 2.
 double UndampedAmplitude(const SyntheticOptions& options) {
   if (options.start == StartKind::kRelease) return options.release_angle;
   const double kinetic = 0.5 * options.parameters.front() * options.initial_rate * options.initial_rate;
@@ -261,7 +261,7 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
   if (resolution == 0) return range ? std::clamp(x, low, range->high) : x;
   double level = std::round((x - low) / resolution);
   if (range) {
-    constexpr double kRounding = 1e-6;  // a range of a whole number of levels has them all
+    constexpr double kRounding = 1e-6;  // tolerates rounding if the range is a whole number of levels
     level = std::clamp(level, 0.0, std::floor((range->high - low) / resolution + kRounding));
   }
   return low + resolution * level;
@@ -278,7 +278,7 @@ double TrueReading(const SyntheticOptions& options, const Trajectory& trajectory
   return (options.quantity == Quantity::kRate ? trajectory.Rate(time) : trajectory.Angle(time)) + options.zero;
 }
 
-/// Unit of the readings. Lengths are in metres unless the file says pixels.
+/// Unit of the readings. A simulated length is in metres.
 std::string UnitOf(const SyntheticOptions& options) {
   switch (options.sensor.kind) {
     case SensorKind::kDirect: return options.quantity == Quantity::kRate ? "rad/s" : "rad";
@@ -297,7 +297,7 @@ Result<void> CheckAll(const SyntheticOptions& options) {
   return {};
 }
 
-/// The angles of a point about the circle it moves on.
+/// Records the angles of a point about the circle on which it moves.
 Result<Recording> RecordAngles(const SyntheticOptions& options) {
   Result<TrackedPoint> point = SimulatePoint(options);
   if (!point) return tl::unexpected(point.error());

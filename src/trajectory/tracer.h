@@ -16,7 +16,7 @@
 
 namespace pendulum {
 
-/// The work of one TraceTrajectory.
+/// Executes one call of TraceTrajectory.
 template <FrictionModel F, TracedWith<F> T>
 class Tracer {
  public:
@@ -42,7 +42,8 @@ class Tracer {
   [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunAnywhere(start); }
 #endif
 
-  /// The series of a swing but for what visitors see: on the stack, so that the compiler knows who can change it.
+  /// The series of a swing except those that visitors see. They are on the stack, so the compiler knows that nothing
+  /// else changes them.
   struct Expander {
     RateSeries<T> rate{};
     SwingExpansion<F, T> expansion;
@@ -72,7 +73,7 @@ class Tracer {
     return DirectionOfMotion(values_, Value(state.angle), Value(state.rate));
   }
 
-  /// Moves `state` to the next reversal, or to the end; false when the trial cannot be traced.
+  /// Moves `state` to the next reversal or to the end. Returns false if the trial cannot be traced.
   bool Swing(double direction, State<T>& state, Expander& expander) {
     segment_.order = order_;
     const RateSeries<T>& rate = expander.rate;
@@ -115,7 +116,8 @@ class Tracer {
     visit_(std::as_const(segment_));
   }
 
-  /// Between gravity and what would hold the pendulum, were it to go on the other way.
+  /// Counts a reversal. The margin is the difference between gravity and the friction that could hold the pendulum
+  /// there.
   void NoteReversal(double gravity) {
     ++summary_.reversals;
     const double direction = gravity > 0 ? -1.0 : 1.0;
@@ -124,7 +126,8 @@ class Tracer {
         std::min(summary_.smallest_reversal_margin, std::abs(std::abs(gravity) - holding));
   }
 
-  /// Rest after a stop: the reading stays, whatever the instant of the stop, for the rate there is 0.
+  /// Rest after a stop. The partials of the angle need no correction for the instant of the stop, because the rate
+  /// there is 0.
   void RestFrom(const State<T>& state) {
     if (Value(state.time) < options_.end) VisitRest(Value(state.time), options_.end, state.angle);
   }
@@ -155,8 +158,8 @@ TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& sta
   return Tracer<F, T>(pendulum, options, visit).Run(start);
 }
 
-/// Takes the address of TraceTrajectory of every law with the number type TypeOf<F>, so that the file that defines a
-/// variable of it compiles them all. Each number type has a file of its own, as these take the longest to compile.
+/// Takes the address of TraceTrajectory for every law with the number type TypeOf<F>. A file that defines a variable of
+/// this type compiles all of them. Each number type has its own file because these take the longest to compile.
 template <template <typename F> typename TypeOf, typename Models = FrictionModels>
 struct TracersOfAllLaws;
 

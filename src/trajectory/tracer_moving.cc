@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectories with derivatives by inertia, friction, and the angle and rate of a start in motion.
+// Compiles trajectories with derivatives by inertia, friction, and the angle and rate of a start in motion.
 #include "trajectory/tracer.h"
 
 namespace pendulum {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectories without derivatives.
+// Compiles trajectories without derivatives.
 #include "trajectory/tracer.h"
 
 namespace pendulum {

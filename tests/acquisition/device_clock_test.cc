@@ -16,35 +16,36 @@ namespace pendulum::device_clock_test {
 namespace {
 
 using Random = std::mt19937_64;
-using Delay = std::function<double(Random&)>;  // s, never negative
+using Delay = std::function<double(Random&)>;  // s, at least 0
 
 constexpr double kTrueScale = 0.997009;  // a resonator that is 3000 ppm too fast
-constexpr double kFrames = 25;           // a second
+constexpr double kFrames = 25;           // per second
 
 double Exponential(Random& random, double mean) { return std::exponential_distribution<double>(1 / mean)(random); }
 
 double Uniform(Random& random, double most) { return std::uniform_real_distribution<double>(0, most)(random); }
 
-/// A program that waits for bytes and is woken within some hundred microseconds.
+/// A program that waits for bytes and wakes up within some hundred microseconds.
 double Wakeup(Random& random) { return 50e-6 + Exponential(random, 200e-6); }
 
-/// USB polls every millisecond, a latency timer adds up to 16 (FTDI's default).
+/// USB polls every millisecond, and a latency timer adds up to 16 ms (FTDI's default).
 double UsbBridge(Random& random) { return 1e-3 + Uniform(random, 16e-3); }
 
-/// A machine that is busy: a tenth of the frames wait for tens of milliseconds.
+/// A busy computer: a tenth of the frames wait for tens of milliseconds.
 double Busy(Random& random) { return Wakeup(random) + (Uniform(random, 1) < 0.1 ? Exponential(random, 40e-3) : 0); }
 
 std::vector<Arrival> Arrivals(double seconds, const Delay& delay, Random& random) {
   std::vector<Arrival> arrivals;
   double latest = 0;
   for (double device = 0; device < seconds; device += 1 / kFrames) {
-    latest = std::max(latest, 1000 + kTrueScale * device + delay(random));  // frames do not overtake each other
+    latest = std::max(latest, 1000 + kTrueScale * device + delay(random));  // frames stay in order
     arrivals.push_back({device, latest});
   }
   return arrivals;
 }
 
-/// Of many runs, the share whose scale is within 1.96 of its standard errors, and the rms of those multiples.
+/// Over many runs: the share whose scale is within 1.96 of its standard errors, and the rms of scale error / standard
+/// error.
 struct Coverage {
   double share = 0, rms = 0;
 };
@@ -70,16 +71,17 @@ TEST(FitDeviceClock, FindsAScaleExactlyWhereNothingIsLate) {
   const DeviceClock clock = FitDeviceClock(arrivals, 0, 1e-6);
   EXPECT_TRUE(clock.is_measured);
   EXPECT_NEAR(clock.scale, kTrueScale, 1e-10);
-  EXPECT_NEAR(clock.std_dev, 1e-6, 1e-8);  // the host's
+  EXPECT_NEAR(clock.std_dev, 1e-6, 1e-8);  // the host's standard deviation
 }
 
-/// The error it states is the error it has: of two hundred seeded runs for each kind of lateness.
+/// The stated error agrees with the true one, over two hundred seeded runs for each kind of delay.
 TEST(FitDeviceClock, ErrorIsTrue) {
   const std::vector<std::pair<std::string, Delay>> delays = {{"wakeup", Wakeup}, {"usb", UsbBridge}, {"busy", Busy}};
   for (const auto& [name, delay] : delays) {
     for (const double seconds : {20.0, 60.0, 600.0}) {
       const Coverage coverage = CoverageOf(seconds, delay);
-      // Student's t of some 20 degrees of freedom has 94 % there; binomial scatter of 200 runs is 1.7 %.
+      // Student's t with some 20 degrees of freedom has 94 % within 1.96; the binomial standard deviation of 200 runs
+      // is 1.7 %.
       EXPECT_GT(coverage.share, 0.91) << name << ' ' << seconds;
       EXPECT_LT(coverage.rms, 1.3) << name << ' ' << seconds;
       EXPECT_GT(coverage.rms, 0.6) << name << ' ' << seconds;
@@ -87,8 +89,8 @@ TEST(FitDeviceClock, ErrorIsTrue) {
   }
 }
 
-/// A USB that polls on a grid of the host's clock: a run too short for the frames to drift through it shows one clock
-/// error where there may be another.
+/// USB polls on a grid of the host's clock. A run too short for the frames to drift across the grid has a systematic
+/// error of the clock.
 TEST(FitDeviceClock, ErrorIsTrueOnAGrid) {
   constexpr int kRuns = 200;
   for (const double seconds : {10.0, 30.0, 60.0}) {
@@ -109,7 +111,7 @@ TEST(FitDeviceClock, ErrorIsTrueOnAGrid) {
   }
 }
 
-/// In the middle of a minute the host's clock, or a bridge, falls behind by some milliseconds and stays so.
+/// In the middle of the minute the host's clock, or a bridge, falls behind by some milliseconds permanently.
 TEST(FitDeviceClock, ErrorGrowsWithAStep) {
   for (const double step : {1e-3, 5e-3, 20e-3}) {
     Random random(7);
@@ -124,12 +126,12 @@ TEST(FitDeviceClock, BeatsAStraightLineThroughAllArrivals) {
   Random random(3);
   const std::vector<Arrival> arrivals = Arrivals(60, UsbBridge, random);
   const DeviceClock clock = FitDeviceClock(arrivals, 0, 0);
-  // Least squares through N delays of standard deviation 16 ms / √12: σ √12 / (T √N).
+  // Least squares through N delays of standard deviation 16 ms / √12 has the error σ √12 / (T √N).
   const double straight = 16e-3 / (60 * std::sqrt(60 * kFrames));
   EXPECT_LT(clock.std_dev, straight / 2);
 }
 
-/// For four seconds nobody read the port: all frames of a stretch and more are late.
+/// The port is not read for four seconds, so all frames of more than one part of the run are late.
 TEST(FitDeviceClock, LeavesAStallOut) {
   Random random(4);
   std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
@@ -150,7 +152,7 @@ TEST(FitDeviceClock, DoesNotMeasureWhatItCannot) {
     EXPECT_EQ(clock.scale, 1);
     EXPECT_EQ(clock.std_dev, kResonatorStdDev);
   }
-  // Half a second of jitter tells less of a resonator than the kind of it does.
+  // Half a second of jitter gives less certainty than the resonator's specification.
   const Delay jitter = [](Random& any) { return Uniform(any, 0.5); };
   EXPECT_FALSE(FitDeviceClock(Arrivals(6, jitter, random), 0, 0).is_measured);
 }
@@ -158,7 +160,7 @@ TEST(FitDeviceClock, DoesNotMeasureWhatItCannot) {
 TEST(FitDeviceClock, RefusesAClockThatNoResonatorHas) {
   Random random(6);
   std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
-  for (Arrival& each : arrivals) each.host_time /= 20;  // played back twenty times as fast
+  for (Arrival& each : arrivals) each.host_time /= 20;  // as if replayed twenty times as fast
   const DeviceClock clock = FitDeviceClock(arrivals, 0, 0);
   EXPECT_TRUE(clock.is_implausible);
   EXPECT_FALSE(clock.is_measured);
@@ -167,7 +169,7 @@ TEST(FitDeviceClock, RefusesAClockThatNoResonatorHas) {
 
 TEST(FitDeviceClock, TakesArrivalsAtOneInstant) {
   std::vector<Arrival> arrivals;
-  for (int i = 0; i < 1000; ++i) arrivals.push_back({0.04 * i, 5.0});  // all read at once, in the end
+  for (int i = 0; i < 1000; ++i) arrivals.push_back({0.04 * i, 5.0});  // all read at the same time at the end
   EXPECT_FALSE(FitDeviceClock(arrivals, 0, 0).is_measured);
 }
 

@@ -34,7 +34,7 @@ SerialPort PortTo(const ScriptedLogger& board) {
   return *std::move(port);
 }
 
-/// A scripted logger, and a Logger that talks to it.
+/// A scripted logger and a Logger connected to it.
 struct Connection {
   explicit Connection(LoggerScript script = {}) : board(std::move(script)), logger(PortTo(board), stop) {}
 
@@ -45,7 +45,7 @@ struct Connection {
 
 std::vector<std::uint8_t> Bytes(std::string_view text) { return {text.begin(), text.end()}; }
 
-/// The message of an error of kind kDataLoss.
+/// The message of an error; expects the code kDataLoss.
 template <class T>
 std::string FaultOf(const Result<T>& result) {
   EXPECT_FALSE(result);
@@ -96,7 +96,7 @@ TEST(Logger, StopsARunOfAnEarlierProgram) {
   LoggerScript script;
   script.begins_running = true;
   Connection connection(script);
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // data are on their way
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // data are already arriving
   const auto info = connection.logger.Connect(2);
   ASSERT_TRUE(info) << info.error().message;
   EXPECT_EQ(info->is_running, 0);
@@ -126,7 +126,7 @@ TEST(Logger, TellsAnotherProtocol) {
                                                            HasSubstr("version 1"), HasSubstr(connection.board.path())));
 }
 
-// Times and counts are read by the ticks and bits of protocol 1.
+// Times and counts rely on the ticks and bits of protocol 1.
 TEST(Logger, TellsAnotherClockOrConverter) {
   LoggerScript other_clock, other_converter;
   other_clock.info.tick_hz = 1000000;
@@ -191,7 +191,7 @@ TEST(Logger, RepeatsACommandWhoseAnswerIsLost) {
   EXPECT_EQ(connection.board.Heard(), "RR");
 }
 
-// Such as one to a command of an earlier program.
+// For example an answer to a command of an earlier program.
 TEST(Logger, TakesNoAnswerToAnotherCommand) {
   LoggerScript script;
   script.greeting.resize(wire::kMostEncoded + 1);
@@ -217,7 +217,7 @@ TEST(Logger, TellsRefusals) {
   EXPECT_THAT(FaultOf(connection.logger.StoreCalibration(kLine)),
               AllOf(HasSubstr("calibration"), HasSubstr("it is recording")));
   EXPECT_THAT(FaultOf(connection.logger.Start()), HasSubstr("does not know the command"));
-  EXPECT_EQ(connection.board.Heard(), "RWS");  // a refusal is an answer
+  EXPECT_EQ(connection.board.Heard(), "RWS");  // a refusal counts as an answer
 }
 
 TEST(Logger, StoresACalibrationAndReadsItBack) {
@@ -243,7 +243,7 @@ TEST(Logger, TellsAnEepromThatKeepsNothing) {
 
 // ---- A run -------------------------------------------------------------------------------------------------------
 
-/// The next message of a kind within a second; others are passed over.
+/// The next message of one kind within a second; other messages are skipped.
 template <class Message>
 std::optional<Message> Next(Logger& logger) {
   for (int i = 0; i < 200; ++i) {
@@ -283,7 +283,7 @@ TEST(Logger, TellsWhenAMessageCame) {
   EXPECT_LE((*received)->host_time, HostTime());
 }
 
-// Its samples say that it runs.
+// Arriving samples show that the logger has started.
 TEST(Logger, StartsThoughTheFirstAnswerIsLost) {
   LoggerScript script;
   script.lost_answers['S'] = 1;
@@ -291,7 +291,7 @@ TEST(Logger, StartsThoughTheFirstAnswerIsLost) {
   const auto started = connection.logger.Start();
   ASSERT_TRUE(started) << started.error().message;
   EXPECT_TRUE(Next<wire::Data>(connection.logger));
-  EXPECT_EQ(connection.board.Heard(), "S");  // the samples that come answer, too
+  EXPECT_EQ(connection.board.Heard(), "S");  // the samples also count as an answer
 }
 
 TEST(Logger, CountsDamageOfTheRunAlone) {

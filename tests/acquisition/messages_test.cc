@@ -45,7 +45,7 @@ Bytes FrameOf(const Message& message) {
   return frame;
 }
 
-/// A frame of any payload, built from the parts that are tested apart.
+/// A frame of any payload, built from parts that are tested separately.
 Bytes FrameOfPayload(Bytes payload) {
   const std::uint16_t crc = wire::Crc16(payload.data(), payload.size());
   payload.push_back(static_cast<std::uint8_t>(crc & 0xFF));
@@ -56,15 +56,15 @@ Bytes FrameOfPayload(Bytes payload) {
   return frame;
 }
 
-// Each number has a zero byte or several, so that COBS has something to do.
+// Each number contains at least one zero byte, so that COBS has to encode something.
 constexpr wire::StraightLine kLine = {-135, 0.25F, 0.5F, -0.0009765625F, 9.5367431640625e-7F};
 constexpr wire::Info kInfo = {1, 0x0100, 2, 3, 10, 2000000, 115200, 10000, 4, 1, 513, 1, kLine};
 constexpr wire::Data kData = {0x1234, 0xFFFFFF00, 5, 65535, 3, {0, 1023, 512}};
 constexpr wire::Ack kAck = {'S', wire::kRunning};
 constexpr wire::End kEnd = {1000000, 0, 256};
 
-// The frames of these by another implementation, in Python: struct.pack, a CRC bit by bit, and COBS as the pieces
-// between zeros.
+// Frames of these messages by an independent implementation in Python: struct.pack, a bitwise CRC, and COBS by
+// splitting at zeros.
 const char* const kInfoFrame =
     "03 49 01 08 01 02 03 0A 80 84 1E 01 03 C2 01 08 10 27 04 01 01 02 01 01 03 07 C3 01 03 80 3E 01 01 02 3F 01 "
     "03 80 BA 01 05 80 35 53 07 00";
@@ -76,7 +76,8 @@ Bytes AllFrames() { return Hex(kInfoFrame) + Hex(kDataFrame) + Hex(kAckFrame) + 
 
 // ---- The parts of a frame ----------------------------------------------------------------------------------------
 
-// The check value of CRC-16/IBM-3740 (also CCITT-FALSE) in Greg Cook's catalogue; of nothing it is where it begins.
+// The check value of CRC-16/IBM-3740 (also CCITT-FALSE) in Greg Cook's catalogue. Without bytes it is the initial
+// value.
 TEST(Crc16, HasTheCheckValueOfTheCatalogue) {
   const Bytes digits = Text("123456789");
   EXPECT_EQ(wire::Crc16(digits.data(), digits.size()), 0x29B1);
@@ -84,10 +85,10 @@ TEST(Crc16, HasTheCheckValueOfTheCatalogue) {
 }
 
 struct CobsExample {
-  const char *plain, *encoded;  // without the 0 at the end
+  const char *plain, *encoded;  // without the final 0
 };
 
-// Cheshire & Baker 1999, and the table of Wikipedia's article, as far as they have fewer than 254 bytes.
+// From Cheshire & Baker 1999 and the table in Wikipedia's article: all examples with fewer than 254 bytes.
 const std::vector<CobsExample> kCobsExamples = {
     {"00", "01 01"},
     {"00 00", "01 01 01"},
@@ -148,7 +149,7 @@ TEST(DataFrameSize, IsThatOfAFrame) {
 
 // ---- Messages ----------------------------------------------------------------------------------------------------
 
-// Field by field, so that a field that both ends forget is noticed.
+// Compares field by field to detect a field that both encoder and decoder forget.
 void ExpectInfo(const LoggerMessage& message) {
   const auto* info = std::get_if<wire::Info>(&message);
   ASSERT_NE(info, nullptr);
@@ -233,7 +234,7 @@ TEST(MessageDecoder, ReadsTheLargestBlock) {
 
 TEST(MessageDecoder, TellsAnotherProtocolAndNothingElseOfIt) {
   MessageDecoder decoder;
-  // An Info of protocol 2 with two more bytes that nobody knows yet, by the Python above.
+  // An Info of protocol 2 with two additional unknown bytes, from the Python implementation above.
   const auto messages = decoder.Take(Hex("07 49 02 07 08 D4 6F 00"));
   ASSERT_THAT(messages, SizeIs(1));
   ASSERT_TRUE(std::holds_alternative<OtherProtocol>(messages[0]));
@@ -245,9 +246,9 @@ TEST(MessageDecoder, TellsAnotherProtocolAndNothingElseOfIt) {
   EXPECT_EQ(std::get<OtherProtocol>(second[0]).version, 0);
 }
 
-// ---- What is no message ------------------------------------------------------------------------------------------
+// ---- Invalid data ------------------------------------------------------------------------------------------------
 
-/// Takes what is no message, then a frame that must be found all the same; gives how much was rejected.
+/// Decodes garbage followed by a valid frame, which must be found. Returns the number of rejected pieces.
 int RejectedOf(const Bytes& garbage) {
   MessageDecoder decoder;
   const auto messages = decoder.Take(garbage + Hex(kAckFrame));
@@ -261,14 +262,14 @@ TEST(MessageDecoder, FindsTheFrameBehindGarbage) {
   EXPECT_EQ(RejectedOf(Hex("00 00 00")), 0);
   EXPECT_EQ(RejectedOf(Hex("01 00 02 33 00")), 2);  // too short for a CRC
   EXPECT_EQ(RejectedOf(Hex("FF FF FF FF 00 80 80 80 80 00")), 2);
-  EXPECT_EQ(RejectedOf(Hex("01 01 01 00")), 1);  // two zeros are no CRC of nothing
+  EXPECT_EQ(RejectedOf(Hex("01 01 01 00")), 1);  // two zero bytes are not the CRC of an empty payload
 }
 
 TEST(MessageDecoder, FindsTheFrameBehindOneThatIsTooLong) {
   for (const std::size_t length : {51, 52, 53, 255, 256, 257, 308, 10000}) {
     EXPECT_EQ(RejectedOf(Bytes(length, 0x55) + Hex("00")), 1) << length;
   }
-  // A payload of 48 bytes is the longest; one of 49 would be right otherwise.
+  // The longest payload has 48 bytes. The one of 49 bytes is otherwise valid.
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(48, 'Z'))), 1);
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(49, 'Z'))), 1);
 }
@@ -282,8 +283,8 @@ TEST(MessageDecoder, RejectsWhatIsCutAtEitherEnd) {
   }
 }
 
-// A CRC of 16 bits finds every single flipped bit. Where it makes or removes a 0 the frame falls into two pieces, or
-// swallows the next one.
+// A 16-bit CRC detects every single flipped bit. A bit that creates or removes a 0 splits the frame in two or joins it
+// to the next one.
 TEST(MessageDecoder, RejectsEveryFlippedBit) {
   for (const char* hex : {kInfoFrame, kDataFrame, kAckFrame, kEndFrame}) {
     const Bytes frame = Hex(hex);
@@ -318,12 +319,12 @@ TEST(MessageDecoder, RejectsPayloadsOfTheWrongLength) {
 
 TEST(MessageDecoder, RejectsRightFramesThatNoLoggerSends) {
   EXPECT_EQ(RejectedOf(FrameOfPayload(Text("S"))), 1);      // a command
-  EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I"))), 1);      // a command again, not an Info
-  EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I\x01"))), 1);  // an Info without all but its protocol
+  EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I"))), 1);      // also a command, not an Info
+  EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I\x01"))), 1);  // an Info that ends after its protocol
   EXPECT_EQ(RejectedOf(FrameOfPayload(Text("Zebra"))), 1);
 }
 
-/// A Data payload that says `count` samples and has `sums` of them.
+/// A Data payload that announces `count` samples and contains `sums` of them.
 Bytes DataPayload(std::uint8_t count, std::size_t sums) {
   Bytes payload = Hex("44 00 00 00 00 00 00 00 00 00 00");
   payload.push_back(count);
@@ -342,7 +343,8 @@ TEST(MessageDecoder, RejectsDataWithoutTheSamplesTheySay) {
   EXPECT_EQ(RejectedOf(FrameOfPayload(DataPayload(255, 18))), 1);
 }
 
-// Of 100 000 random bytes some 390 are zeros; a piece between two is a frame by chance in 1 of 65 536.
+// 100 000 random bytes contain some 390 zeros. A piece between two zeros is a valid frame by chance in 1 of 65 536
+// cases.
 TEST(MessageDecoder, FindsNothingInNoise) {
   std::mt19937 random(7);
   Bytes noise(100000);
@@ -353,7 +355,7 @@ TEST(MessageDecoder, FindsNothingInNoise) {
   EXPECT_THAT(decoder.Take(Hex("00") + Hex(kAckFrame)), SizeIs(1));
 }
 
-// ---- For people --------------------------------------------------------------------------------------------------
+// ---- Texts for people --------------------------------------------------------------------------------------------
 
 wire::Info Of(std::uint8_t board, std::uint8_t reference) {
   wire::Info info = kInfo;
@@ -375,7 +377,7 @@ TEST(FirmwareVersion, IsMajorAndMinor) {
   EXPECT_EQ(FirmwareVersion(info), "version 12.34");
 }
 
-// Arduino.h of the AVR core: EXTERNAL 0, DEFAULT 1, INTERNAL 3; of a Mega INTERNAL1V1 2, INTERNAL2V56 3.
+// Values of Arduino.h of the AVR core: EXTERNAL 0, DEFAULT 1, INTERNAL 3; on a Mega INTERNAL1V1 2, INTERNAL2V56 3.
 TEST(ReferenceName, DependsOnTheBoard) {
   EXPECT_EQ(ReferenceName(Of(1, 0)), "external voltage (AREF)");
   EXPECT_EQ(ReferenceName(Of(2, 1)), "supply voltage (AVcc)");

@@ -66,7 +66,7 @@ TEST(NearestRate, CountsConversionsWithTheSamples) {
   EXPECT_EQ(rate->Hz(), 100);
 }
 
-// 250 to 62 500 ticks between conversions are 8000 to 32 conversions a second.
+// 250 to 62 500 ticks between conversions mean 8000 to 32 conversions per second.
 TEST(NearestRate, ReachesBothEndsAndNoFurther) {
   EXPECT_EQ(NearestRate(8000, 1)->period, 250);
   EXPECT_EQ(NearestRate(32, 1)->period, 62500);
@@ -112,7 +112,7 @@ TEST(ReceivedRun, TellsWhenFramesCame) {
   run.Take(Frame(0, 0, {1, 2, 3}), 7.25);
   run.Take(Frame(1, 30000, {4}), 7.5);
   ASSERT_EQ(run.arrivals().size(), 2);
-  EXPECT_DOUBLE_EQ(run.arrivals()[0].device_time, 0.010);  // of the last sample
+  EXPECT_DOUBLE_EQ(run.arrivals()[0].device_time, 0.010);  // the time of its last sample
   EXPECT_EQ(run.arrivals()[0].host_time, 7.25);
   EXPECT_DOUBLE_EQ(run.arrivals()[1].device_time, 0.015);
   EXPECT_EQ(run.arrivals()[1].host_time, 7.5);
@@ -130,7 +130,7 @@ TEST(ReceivedRun, GoesOnWhereTheTicksBeginAgain) {
   }
 }
 
-// Three wraps in frames 1000 s apart: what lies between is missing, and the time goes on.
+// Three wraps of the counter with frames 1000 s apart. The samples in between are missing and the time continues.
 TEST(ReceivedRun, CountsHoursOfTicks) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 77;
@@ -155,8 +155,8 @@ TEST(ReceivedRun, TellsSaturation) {
   EXPECT_TRUE(run.IsSaturated(3));
 }
 
-// Four conversions of at most 1023 counts that add up to 4091 are three of 1023 and one of 1022; of at least 0 that add
-// up to 1, three of 0.
+// If four conversions of at most 1023 counts add up to 4091, three are 1023 and one is 1022. If they add up to 1, three
+// are 0.
 TEST(ReceivedRun, TellsSaturationOfSomeConversions) {
   ReceivedRun run({2500, 4});
   run.Take(Frame(0, 0, {4 * 1023, 4 * 1023 - 1, 4 * 512, 1, 0}), 0);
@@ -176,7 +176,7 @@ TEST(ReceivedRun, LeavesAGapWhereSamplesAreLost) {
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.005, 0.025}));
   const RunLosses losses = run.Losses();
   EXPECT_EQ(losses.samples, 3);
-  EXPECT_EQ(losses.on_line, 0);  // no frame is, so the logger did not send them
+  EXPECT_EQ(losses.on_line, 0);  // no frame number is missing, so the logger did not send them
   EXPECT_EQ(losses.dropped, 0);
   EXPECT_FALSE(losses.is_end_known);
 }
@@ -184,7 +184,7 @@ TEST(ReceivedRun, LeavesAGapWhereSamplesAreLost) {
 TEST(ReceivedRun, TellsTheLossesOfTheLoggerFromThoseOfTheLine) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1, 2}), 0);
-  wire::Data late = Frame(2, 70000, {8});  // five are missing: three dropped, two in a frame that was damaged
+  wire::Data late = Frame(2, 70000, {8});  // five are missing: three dropped, two in a damaged frame
   late.dropped = 3;
   late.late = 1;
   run.Take(late, 0);
@@ -200,19 +200,19 @@ TEST(ReceivedRun, TellsTheLossesOfTheLoggerFromThoseOfTheLine) {
   EXPECT_EQ(losses.late, 1);
 }
 
-// At 200 Hz a frame has 8 samples, so that there are 25 a second.
+// At 200 Hz a frame has 8 samples, so there are 25 frames per second.
 TEST(ReceivedRun, KnowsWhatIsMissingAtEitherEnd) {
   ReceivedRun run(kRate);
   run.Take(Frame(2, 40000, {5, 6}), 0);
   EXPECT_EQ(run.Losses().samples, 16);  // frames 0 and 1
   EXPECT_EQ(run.Losses().on_line, 16);
-  run.TakeEnd({22, 0, 0});  // and four behind it
+  run.TakeEnd({22, 0, 0});  // and four after it
   EXPECT_EQ(run.Losses().samples, 20);
   EXPECT_EQ(run.Losses().on_line, 20);
 }
 
-// Each frame says how much was dropped until it was sent: two behind the samples of frame 0, for these had found room.
-// Then frame 1 with its eight samples is lost on the line.
+// Each frame reports how many samples were dropped before it was sent. Here two were dropped after the samples of frame
+// 0, which still had room. Then frame 1 with its eight samples is lost on the line.
 TEST(ReceivedRun, TellsDropsThatAFrameBeforeTheGapHasToldAlready) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), third = Frame(2, 120000, {13});
@@ -243,7 +243,7 @@ TEST(ReceivedRun, LosesNothingOfAWholeRun) {
   EXPECT_TRUE(losses.is_end_known);
 }
 
-// The counters of a frame stop at 65 535, those of the end do not.
+// The counters in a frame stop at 65 535; those in End do not.
 TEST(ReceivedRun, BelievesTheEndWhereFramesCountNoFurther) {
   ReceivedRun run(kRate);
   wire::Data full = Frame(0, 0, {1});
@@ -256,7 +256,7 @@ TEST(ReceivedRun, BelievesTheEndWhereFramesCountNoFurther) {
   EXPECT_EQ(run.Losses().samples, 1000000);
 }
 
-// The logger has dropped two when it sends the first frame, and the next one shows where.
+// The logger has already dropped two samples when it sends the first frame. The next frame shows where.
 TEST(ReceivedRun, CountsOnceWhatTheLoggerDropped) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), second = Frame(1, 40000, {5});
@@ -269,21 +269,21 @@ TEST(ReceivedRun, CountsOnceWhatTheLoggerDropped) {
   }
 }
 
-// A late conversion spoils the sample it belongs to; the next one begins at the next conversion, so the gap is no
-// whole number of samples.
+// A late conversion spoils its sample. The next sample starts at the next conversion, so the gap is not a whole number
+// of samples.
 TEST(ReceivedRun, TakesASampleThatBeginsBetweenTwoOthers) {
   ReceivedRun run({2500, 4});
   EXPECT_TRUE(run.Take(Frame(0, 0, {100}), 0));
-  EXPECT_TRUE(run.Take(Frame(1, 17500, {104}), 0));  // 7 conversions: 4 of the first sample, 3 of a spoilt one
+  EXPECT_TRUE(run.Take(Frame(1, 17500, {104}), 0));  // 7 conversions: 4 of the first sample, 3 of a spoiled one
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.00875}));
   EXPECT_EQ(run.Losses().samples, 1);
-  EXPECT_TRUE(run.Take(Frame(2, 30000, {104}), 0));  // 5 conversions: one of them was spoilt, hardly a sample
+  EXPECT_TRUE(run.Take(Frame(2, 30000, {104}), 0));  // 5 conversions: one was spoiled, which is less than a sample
   EXPECT_EQ(run.Losses().samples, 1);
 }
 
 // ---- KeepFirst ---------------------------------------------------------------------------------------------------
 
-/// 0, 1, 2, a gap of one, 4, a gap of two in the frame that is lost, 7, 8.
+/// 0, 1, 2, a gap of one, 4, a gap of two in the lost frame, 7, 8.
 ReceivedRun RunWithGaps() {
   ReceivedRun run(kRate);
   wire::Data second = Frame(1, 40000, {4}), fourth = Frame(3, 70000, {7, 8});
@@ -321,7 +321,7 @@ TEST(ReceivedRun, KeepsAGapBeforeTheLastSampleThatIsKept) {
 
 TEST(ReceivedRun, KeepsAllWhereThereAreNoMore) {
   ReceivedRun run = RunWithGaps();
-  run.TakeEnd({10, 1, 0});  // 6 came, so 4 are lost on the line
+  run.TakeEnd({10, 1, 0});  // 6 samples arrived, so 4 were lost on the line
   for (const std::size_t samples : {std::size_t{1000}, run.size()}) {
     run.KeepFirst(samples);
     EXPECT_EQ(run.size(), 6);
@@ -343,7 +343,7 @@ void ExpectContradicts(ReceivedRun& run, const wire::Data& frame) {
 TEST(ReceivedRun, LeavesOutAFrameThatIsNotLater) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 100000, {1, 2, 3}), 0);
-  ExpectContradicts(run, Frame(1, 100000, {1, 2, 3}));  // twice the same
+  ExpectContradicts(run, Frame(1, 100000, {1, 2, 3}));  // the same frame twice
   ExpectContradicts(run, Frame(1, 90000, {1}));
   ExpectContradicts(run, Frame(1, 110000, {1}));
   ExpectContradicts(run, Frame(1, 120000, {1}));
@@ -377,7 +377,7 @@ TEST(ReceivedRun, LeavesOutMoreThanTheConverterGives) {
   EXPECT_TRUE(of_means.Take(Frame(0, 0, {64 * 1023}), 0));
 }
 
-// What comes half the counter's range later may as well have gone back.
+// A frame that is half the counter's range later might equally be earlier.
 TEST(ReceivedRun, TakesNoGapOfEighteenMinutes) {
   ReceivedRun run({250, 1});
   run.Take(Frame(0, 0, {1}), 0);

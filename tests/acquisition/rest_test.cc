@@ -14,20 +14,20 @@
 namespace pendulum::rest_test {
 namespace {
 
-constexpr double kRadPerSecond = 2 * std::numbers::pi / 1.5;  // of the swings: a period of 1.5 s
+constexpr double kRadPerSecond = 2 * std::numbers::pi / 1.5;  // of swings with a period of 1.5 s
 constexpr double kMiddle = 512.3;                             // counts
 
-/// A reading over time [s], counts, before noise and rounding.
+/// A reading as a function of time [s], in counts, before noise and rounding.
 using Motion = std::function<double(double time)>;
 
-/// How a logger sees it.
+/// How a logger samples the motion.
 struct Reading {
   double rate_hz = 200;
   double noise = 0.3;  // standard deviation, counts
   std::uint32_t seed = 1;
 };
 
-/// When rest is told first within so many seconds.
+/// The first time at which rest is detected within `seconds`.
 std::optional<double> RestOf(const Motion& motion, double seconds, const Reading& reading = {}) {
   std::mt19937 random(reading.seed);
   std::normal_distribution<double> noise(0, reading.noise > 0 ? reading.noise : 1);
@@ -40,13 +40,13 @@ std::optional<double> RestOf(const Motion& motion, double seconds, const Reading
   return std::nullopt;
 }
 
-/// A swing by viscous friction: its amplitude falls by 1/e in tau.
+/// A swing with viscous friction: its amplitude falls by 1/e in tau.
 Motion Decaying(double amplitude, double tau) {
   return [=](double time) { return kMiddle + amplitude * std::exp(-time / tau) * std::cos(kRadPerSecond * time); };
 }
 
-/// A swing by dry friction: every half-swing goes about an angle that lies `band` to the side it comes from, and it
-/// rests at the first turning point within the band.
+/// A swing with dry friction. Each half swing is centred at an angle `band` towards the side where it starts. The
+/// pendulum rests at the first turning point within the band.
 Motion DryFriction(double amplitude, double band) {
   return [=](double time) {
     const double half = std::numbers::pi / kRadPerSecond;
@@ -61,17 +61,17 @@ Motion DryFriction(double amplitude, double band) {
   };
 }
 
-/// Held at one angle, and let go at that time.
+/// Held at one angle and released at the time `release`.
 Motion HeldUntil(double release, const Motion& swing) {
   return [=](double time) { return swing(std::max(0.0, time - release)); };
 }
 
-/// When the amplitude of Decaying is so many counts.
+/// The time at which the amplitude of Decaying has fallen to `counts`.
 double WhenAmplitudeIs(double counts, double amplitude, double tau) { return tau * std::log(amplitude / counts); }
 
-// ---- Rest is told ------------------------------------------------------------------------------------------------
+// ---- Rest is detected --------------------------------------------------------------------------------------------
 
-// With half a count of amplitude a swing is within rounding; the five seconds come on top.
+// An amplitude of half a count is within rounding. Detection takes five seconds more.
 TEST(RestDetector, TellsTheRestOfADecayingSwing) {
   for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
@@ -83,10 +83,11 @@ TEST(RestDetector, TellsTheRestOfADecayingSwing) {
 }
 
 TEST(RestDetector, TellsTheRestOfDryFriction) {
-  for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at other places of the band
+  for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at different places within the band
     const auto rest = RestOf(DryFriction(amplitude, 10), 60);
     ASSERT_TRUE(rest) << amplitude;
-    const double stop = 0.75 * std::ceil((amplitude - 10) / 20);  // half-swings of 0.75 s, each takes 20 counts
+    const double stop = 0.75 * std::ceil((amplitude - 10) / 20);  // half swings of 0.75 s, each of which reduces the
+                                                                  // amplitude by 20 counts
     EXPECT_GT(*rest, stop + RestDetector::kRestSeconds - 1) << amplitude;
     EXPECT_LT(*rest, stop + RestDetector::kRestSeconds + 3) << amplitude;
   }
@@ -128,7 +129,7 @@ TEST(RestDetector, TakesItBackWhenItIsPushedAgain) {
   EXPECT_FALSE(detector.IsAtRest());
 }
 
-// ---- It is not told too early ------------------------------------------------------------------------------------
+// ---- Rest is not detected too early ------------------------------------------------------------------------------
 
 TEST(RestDetector, KeepsQuietBeforeTheAmplitudeIsTwoCounts) {
   for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
@@ -139,7 +140,7 @@ TEST(RestDetector, KeepsQuietBeforeTheAmplitudeIsTwoCounts) {
   }
 }
 
-// Friction that is nearly none: a minute with 2 counts of amplitude after a larger swing.
+// Almost no friction: a minute with an amplitude of 2 counts after a larger swing.
 TEST(RestDetector, KeepsQuietWhileASmallSwingGoesOn) {
   const Motion swing = [](double time) { return kMiddle + (time < 20 ? 100 : 2) * std::cos(kRadPerSecond * time); };
   for (const double noise : {0.0, 0.5, 2.0}) {
@@ -159,7 +160,7 @@ TEST(RestDetector, KeepsQuietWhileItIsHeldBeforeTheRelease) {
   }
 }
 
-// The slowest rate of a logger without oversampling, 32 Hz, has three or four samples in a tenth of a second.
+// At the slowest rate of a logger without oversampling, 32 Hz, a tenth of a second has three or four samples.
 TEST(RestDetector, TakesNoNoiseForASwing) {
   for (const double rate : {32.0, 40.0}) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
@@ -174,7 +175,7 @@ TEST(RestDetector, KeepsQuietWhereNothingEverMoves) {
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 2, 1}));
 }
 
-// To and fro to the angle of the release, as one finds it, and held there.
+// A hand moves it to and fro while looking for the release angle, and holds it there.
 TEST(RestDetector, KeepsQuietWhileAHandMovesIt) {
   const Motion hand = [](double time) {
     const double there = std::clamp((time - 10) / 2, 0.0, 1.0), back = std::clamp((time - 20) / 3, 0.0, 1.0);
@@ -183,7 +184,7 @@ TEST(RestDetector, KeepsQuietWhileAHandMovesIt) {
   for (const double noise : {0.0, 0.5, 2.0}) EXPECT_FALSE(RestOf(hand, 60, {200, noise, 9})) << noise;
 }
 
-// The hand stops a swing on the way, beyond where it turned last: nobody has seen it come to rest.
+// A hand stops a swing on the way, beyond its last turning point: it did not come to rest by itself.
 TEST(RestDetector, KeepsQuietWhereASwingIsCaughtAndHeld) {
   const Motion caught = [](double time) { return time < 15.2 ? Decaying(100, 60)(time) : kMiddle + 200; };
   EXPECT_FALSE(RestOf(caught, 60));

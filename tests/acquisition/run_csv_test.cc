@@ -36,7 +36,7 @@ RunDescription Description() {
   return description;
 }
 
-/// So many samples of a sawtooth with steps of one count, from 500.
+/// `samples` samples of a sawtooth that starts at 500 and rises in steps of one count.
 ReceivedRun Sawtooth(const SamplingRate& rate = kRate, int samples = 20) {
   ReceivedRun run(rate);
   for (int i = 0; i < samples; ++i) {
@@ -55,7 +55,7 @@ std::string Text(const RunDescription& description, const ReceivedRun& run) {
   return text;
 }
 
-/// What ReadRecording makes of it.
+/// The text as ReadRecording reads it.
 Recording ReadBack(const RunDescription& description, const ReceivedRun& run = Sawtooth()) {
   const auto recording = ParseRecording(Text(description, run), "run.csv");
   EXPECT_TRUE(recording) << recording.error().message;
@@ -72,7 +72,7 @@ Calibration Line(double offset_deg, double deg_per_count) {
 
 // ---- The file ----------------------------------------------------------------------------------------------------
 
-// The metadata are those that read_recording.h knows; everything else is a comment.
+// The metadata are those that read_recording.h documents; everything else is a comment.
 TEST(RunHead, TellsLoggerRunAndSensor) {
   const std::string head = RunHead(Description(), kRate);
   for (const char* line : {"# sample_rate_hz: 200\n", "# resolution: 1\n", "# range: 0,1023\n", "# clock_scale: 1\n",
@@ -145,7 +145,7 @@ TEST(RunCsv, TellsThatTheClockIsUnknown) {
   EXPECT_EQ(recording.clock_scale_std_dev, 0.003);
 }
 
-// -135 deg + 0.25 deg per count: 500 counts are -10 deg, a count 0.25 deg.
+// -135 deg + 0.25 deg per count: 500 counts are -10 deg.
 TEST(RunCsv, CarriesTheCalibration) {
   RunDescription description = Description();
   description.calibration = Line(-135, 0.25);
@@ -162,8 +162,8 @@ TEST(RunCsv, CarriesTheCalibration) {
   EXPECT_EQ(recording.calibration->covariance, description.calibration->covariance);
 }
 
-// With times of their own lost samples leave a gap and move nothing; the rows alone would be wrong behind it, and
-// whoever reads them so is warned.
+// With time stamps, lost samples leave a gap and do not shift later samples. Without time stamps, all times after the
+// loss are wrong and the reader gets a warning.
 TEST(RunCsv, TellsLostSamples) {
   RunDescription description = Description();
   description.losses->samples = 4;
@@ -173,7 +173,7 @@ TEST(RunCsv, TellsLostSamples) {
   for (int i = 0; i < 20; ++i) text += std::to_string(500 + i % 7) + "\n";
   const auto recording = ParseRecording(text, "run.csv");
   ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_DOUBLE_EQ(recording->time[19], 0.095);  // by # sample_rate_hz
+  EXPECT_DOUBLE_EQ(recording->time[19], 0.095);  // from # sample_rate_hz
   ASSERT_EQ(recording->warnings.size(), 1);
   EXPECT_EQ(recording->warnings[0].code, "lost_samples");
   EXPECT_THAT(recording->warnings[0].message, HasSubstr("4"));
@@ -194,7 +194,7 @@ TEST(RunCsv, KeepsTheTimesBehindAGap) {
   EXPECT_DOUBLE_EQ(recording.time[17], 0.1);
 }
 
-// Hours later too: 1e4 s in steps of 0.5 us have no more digits than a double.
+// Also after hours: a double can represent 1e4 s in steps of 0.5 us.
 TEST(RunCsv, KeepsEveryTickOfALongRun) {
   ReceivedRun run({251, 1});
   wire::Data frame{};
@@ -233,7 +233,7 @@ TEST(StoredCalibration, IsOfCountsAndDegrees) {
   EXPECT_NEAR(calibration->Angle(540), 0, 1e-15);
 }
 
-// The nearest float of 0.2637 is 0.263700008392333984375.
+// The float nearest to 0.2637 is 0.263700008392333984375.
 TEST(StoredCalibration, HasTheDigitsThatWereMeant) {
   const auto calibration = StoredCalibration(Stored({-135.1F, 0.2637F, 0.04F, -6e-5F, 1.25e-7F}));
   ASSERT_TRUE(calibration);
@@ -265,7 +265,7 @@ TEST(StraightLineOf, KeepsDegrees) {
   EXPECT_EQ(line->slope_variance, 0);
 }
 
-// pi/4 rad are 45 deg, and a variance of 1 rad^2 is (180/pi)^2 = 3282.806 deg^2.
+// pi/4 rad is 45 deg, and a variance of 1 rad^2 is (180/pi)^2 = 3282.806 deg^2.
 TEST(StraightLineOf, TurnsRadiansIntoDegrees) {
   Calibration calibration = Line(-kPi / 4, kPi / 720);
   calibration.angle_unit = "rad";

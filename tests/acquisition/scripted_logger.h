@@ -25,20 +25,20 @@
 
 namespace pendulum {
 
-/// How a ScriptedLogger differs from one that does as firmware/README.md says.
+/// How a ScriptedLogger deviates from the behaviour in firmware/README.md.
 struct LoggerScript {
-  /// What a run does after so many frames of data.
+  /// What happens after `frames` frames of data.
   enum class Then { kSilence, kUnplugged, kReset, kEnd };
 
-  std::vector<std::uint8_t> greeting;           ///< Is sent when it is switched on.
-  std::vector<std::uint8_t> chatter;            ///< Is sent all the time.
-  double deaf_seconds = 0;                      ///< What comes before is lost, as in a boot loader.
-  bool is_mute = false;                         ///< It answers nothing.
-  bool begins_running = false;                  ///< An earlier program has left it so.
-  bool forgets_calibration = false;             ///< Its EEPROM keeps nothing.
-  std::map<char, int> lost_answers;             ///< Of a command, so many of the first answers.
-  std::map<char, std::uint8_t> refused;         ///< Commands, and with which status.
-  pendulum_logger::Info info = {.protocol = 1,  ///< What it says of itself.
+  std::vector<std::uint8_t> greeting;           ///< Sent when the board is switched on.
+  std::vector<std::uint8_t> chatter;            ///< Sent all the time.
+  double deaf_seconds = 0;                      ///< Input before this time is lost, as in a boot loader.
+  bool is_mute = false;                         ///< It never answers.
+  bool begins_running = false;                  ///< An earlier program left it running.
+  bool forgets_calibration = false;             ///< Its EEPROM stores nothing.
+  std::map<char, int> lost_answers;             ///< For each command, how many of its first answers are lost.
+  std::map<char, std::uint8_t> refused;         ///< Refused commands and the status that is answered.
+  pendulum_logger::Info info = {.protocol = 1,  ///< The answer to kAskInfo.
                                 .firmware = 0x0100,
                                 .board = 1,
                                 .reference = 1,
@@ -52,15 +52,16 @@ struct LoggerScript {
                                 .has_calibration = 0,
                                 .calibration = {}};
 
-  std::function<int(double time)> counts = [](double) { return 500; };  ///< The reading, time since the start [s].
-  double frame_seconds = 0.004;  ///< Between frames, 8 samples; in true time, so that a run of a minute lasts seconds.
-  int frames = 1000000;          ///< Then:
+  std::function<int(double time)> counts = [](double) { return 500; };  ///< The reading at a time since the start [s].
+  double frame_seconds = 0.004;  ///< Time between frames of 8 samples; shorter than real time, so that a run of a
+                                 ///< minute takes seconds.
+  int frames = 1000000;          ///< After these, `then` happens.
   Then then = Then::kSilence;
-  std::set<int> lost_frames;  ///< On the line: their numbers from 0.
+  std::set<int> lost_frames;  ///< Lost on the line; numbered from 0.
   bool sends_end = true;
 };
 
-/// A logger at the other end of a pseudo terminal, in a thread of its own.
+/// A logger connected through a pseudo terminal, in its own thread.
 class ScriptedLogger {
  public:
   explicit ScriptedLogger(LoggerScript script) : script_(std::move(script)), info_(script_.info) {
@@ -81,14 +82,14 @@ class ScriptedLogger {
 
   const std::string& path() const { return path_; }
 
-  /// The first bytes of the commands it heard, in their order. Ends its work.
+  /// Stops the logger and returns the first byte of each command received, in order.
   std::string Heard() {
     SwitchOff();
     return heard_;
   }
 
  private:
-  /// Once all is read that was written: what a reader has not fetched yet is lost with the terminal.
+  /// Waits until everything written has been read, because unread data are lost with the terminal.
   void Unplug() {
     constexpr int kMostWaits = 2000;
     for (int waits = 0, unread = 1; unread > 0 && waits < kMostWaits; ++waits) {
@@ -139,7 +140,7 @@ class ScriptedLogger {
     }
   }
 
-  /// Does it and gives its status.
+  /// Executes a command and returns its status.
   std::uint8_t Done(char command) {
     pendulum_logger::SetRate rate{};
     pendulum_logger::StoreCalibration store{};
@@ -160,7 +161,7 @@ class ScriptedLogger {
     info_.is_running = 1;
     ++info_.run;
     frame_ = 0;
-    next_frame_ = Clock::now() + std::chrono::milliseconds(20);  // behind the answer
+    next_frame_ = Clock::now() + std::chrono::milliseconds(20);  // after the answer
     return pendulum_logger::kDone;
   }
 
@@ -181,7 +182,7 @@ class ScriptedLogger {
     const std::uint32_t step = std::uint32_t{info_.period} * info_.oversample;
     pendulum_logger::Data data{};
     data.sequence = static_cast<std::uint16_t>(frame_);
-    data.tick = 0xFFFFF000U + static_cast<std::uint32_t>(frame_ * kBlock) * step;  // begins again soon
+    data.tick = 0xFFFFF000U + static_cast<std::uint32_t>(frame_ * kBlock) * step;  // wraps around soon
     for (data.count = 0; data.count < kBlock; ++data.count) {
       const double time = (frame_ * kBlock + data.count) * (step / 2e6);
       data.sums[data.count] = static_cast<std::uint16_t>(info_.oversample * script_.counts(time));
@@ -190,9 +191,9 @@ class ScriptedLogger {
     ++frame_;
   }
 
-  /// What the script has instead of the rest of the run.
+  /// Does what the script specifies instead of the rest of the run.
   void Finish() {
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // the host has read what is on its way
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // lets the host read the data sent so far
     ++frame_;
     info_.is_running = script_.then == LoggerScript::Then::kSilence ? 1 : 0;
     if (script_.then == LoggerScript::Then::kUnplugged) Unplug();

@@ -35,8 +35,8 @@ constexpr unsigned kBaud = 115200;
 
 double SecondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// A pseudo terminal: what is written to its board comes out of its port. It begins as terminals do, with all their
-/// translations.
+/// A pseudo terminal: bytes written to its board can be read from its port. Initially all translations of a terminal
+/// are enabled.
 class Cable {
  public:
   Cable() {
@@ -59,7 +59,7 @@ class Cable {
     EXPECT_EQ(::write(board_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
 
-  /// Waits for so many bytes, or the end.
+  /// Waits for `count` bytes or the end.
   Bytes Received(std::size_t count) const {
     Bytes bytes(count);
     std::size_t received = 0;
@@ -85,7 +85,7 @@ SerialPort Opened(const Cable& cable) {
   return *std::move(port);
 }
 
-/// Reads until so many bytes are there, or nothing comes for a second.
+/// Reads until `count` bytes have arrived or nothing arrives for a second.
 Bytes ReadAll(SerialPort& port, std::size_t count) {
   Bytes all;
   while (all.size() < count) {
@@ -97,7 +97,7 @@ Bytes ReadAll(SerialPort& port, std::size_t count) {
   return all;
 }
 
-/// 0 to 255: among them Ctrl-C, carriage return, XON and XOFF, Ctrl-D and DEL, of which terminals make something else.
+/// 0 to 255, including Ctrl-C, carriage return, XON and XOFF, Ctrl-D and DEL, which terminals translate.
 Bytes EveryByte() {
   Bytes bytes(256);
   std::iota(bytes.begin(), bytes.end(), std::uint8_t{0});
@@ -122,7 +122,7 @@ TEST(SerialPort, ReadsWithoutALineEnd) {
   const auto bytes = port.Read(5);
   ASSERT_TRUE(bytes) << bytes.error().message;
   EXPECT_EQ(*bytes, Bytes({0x41}));
-  EXPECT_LT(SecondsSince(begin), 2);  // and does not wait for more
+  EXPECT_LT(SecondsSince(begin), 2);  // does not wait for more
 }
 
 TEST(SerialPort, TranslatesNothingThatIsRead) {
@@ -183,7 +183,7 @@ TEST(SerialPort, WaitsNoLongerThanItIsTold) {
   EXPECT_GE(SecondsSince(begin), 0.19);
   EXPECT_LT(SecondsSince(begin), 2);
   ASSERT_TRUE(port.Read(0));
-  ASSERT_TRUE(port.Read(-1));  // the time is over already
+  ASSERT_TRUE(port.Read(-1));  // the time has already passed
 }
 
 TEST(SerialPort, CanBeMoved) {
@@ -194,7 +194,7 @@ TEST(SerialPort, CanBeMoved) {
   EXPECT_EQ(ReadAll(port, 1), Bytes({7}));
 }
 
-// ---- What goes wrong ---------------------------------------------------------------------------------------------
+// ---- Errors ------------------------------------------------------------------------------------------------------
 
 TEST(SerialPort, TellsWhenTheCableIsPulled) {
   Cable cable;
@@ -262,9 +262,9 @@ TEST(SerialPort, TellsWhatIsNoPort) {
   EXPECT_EQ(OpenError(fs::temp_directory_path()).code, StatusCode::kDataLoss);
 }
 
-// ---- Which ports there are ---------------------------------------------------------------------------------------
+// ---- Available ports ---------------------------------------------------------------------------------------------
 
-/// The top of a file system, as far as ListSerialPorts looks at it.
+/// The root of a file system with the parts that ListSerialPorts reads.
 class FileSystem {
  public:
   FileSystem() {
@@ -284,7 +284,7 @@ class FileSystem {
     std::ofstream(root_ / file) << text << "\n";
   }
 
-  /// A port whose `device` is a link to a folder below sys/devices, as the kernel makes it.
+  /// Adds a port whose `device` links to a folder below sys/devices, as the kernel does.
   void AddPort(const std::string& name, const std::string& device) const {
     const fs::path folder = root_ / "sys/devices" / device, tty = folder / "tty" / name;
     fs::create_directories(tty);
@@ -304,14 +304,14 @@ std::vector<std::string> PathsOf(const std::vector<PortName>& ports) {
   return paths;
 }
 
-// A board with its own USB: the port belongs to the interface 1-2:1.0 of the device 1-2, which has the names.
+// A board with its own USB: the port belongs to interface 1-2:1.0 of device 1-2, which has the names.
 TEST(ListSerialPorts, DescribesAnUno) {
   const FileSystem files;
   files.AddPort("ttyACM0", "pci0/usb1/1-2/1-2:1.0");
   files.Create("sys/devices/pci0/usb1/1-2/idVendor", "2341");
   files.Create("sys/devices/pci0/usb1/1-2/manufacturer", "Arduino (www.arduino.cc)");
   files.Create("sys/devices/pci0/usb1/1-2/product", "Arduino Uno");
-  files.Create("sys/devices/pci0/usb1/idVendor", "1d6b");  // of the hub
+  files.Create("sys/devices/pci0/usb1/idVendor", "1d6b");  // the hub's vendor
   const auto ports = ListSerialPorts(files.root());
   ASSERT_EQ(ports.size(), 1);
   EXPECT_EQ(ports[0].path, "/dev/ttyACM0");
@@ -319,7 +319,7 @@ TEST(ListSerialPorts, DescribesAnUno) {
   EXPECT_TRUE(ports[0].is_arduino);
 }
 
-// Behind a bridge, usb-serial has a level of its own: 1-3:1.0/ttyUSB0. A CH340 gives no maker.
+// With a bridge, usb-serial adds a level of its own: 1-3:1.0/ttyUSB0. A CH340 reports no manufacturer.
 TEST(ListSerialPorts, DescribesACloneBehindABridge) {
   const FileSystem files;
   files.AddPort("ttyUSB0", "pci0/usb1/1-3/1-3:1.0/ttyUSB0");
@@ -354,7 +354,7 @@ TEST(ListSerialPorts, GivesUsbPortsAloneInTheirOrder) {
 
 TEST(ListSerialPorts, NamesOneOfWhichNothingIsKnown) {
   const FileSystem files;
-  fs::create_directories(files.root() / "sys/class/tty/ttyACM3");  // unplugged at this moment: no device
+  fs::create_directories(files.root() / "sys/class/tty/ttyACM3");  // just unplugged: there is no device
   const auto ports = ListSerialPorts(files.root());
   ASSERT_EQ(ports.size(), 1);
   EXPECT_EQ(ports[0].path, "/dev/ttyACM3");

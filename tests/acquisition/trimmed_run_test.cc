@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run that is cut where the recording was to end, and losses of several kinds together.
+// Runs cut at the planned end of the recording, and losses of several kinds together.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@ namespace pendulum::trimmed_run_test {
 namespace {
 
 constexpr SamplingRate kRate{10000, 1};  // 200 Hz
-constexpr int kBlock = 8;                // samples in a frame: 25 frames a second
+constexpr int kBlock = 8;                // samples in a frame: 25 frames per second
 
-/// The frame of that number in a run without losses: samples 8 n to 8 n + 7, all 500.
+/// Frame `number` of a run without losses: samples 8 n to 8 n + 7, all 500.
 pendulum_logger::Data Frame(int number) {
   pendulum_logger::Data frame{};
   frame.sequence = static_cast<std::uint16_t>(number);
@@ -21,7 +21,7 @@ pendulum_logger::Data Frame(int number) {
   return frame;
 }
 
-/// Frames 0 to last, without those from first_lost to last_lost.
+/// Frames 0 to `last`, without frames first_lost to last_lost.
 ReceivedRun RunOf(int last, int first_lost, int last_lost) {
   ReceivedRun run(kRate);
   for (int i = 0; i <= last; ++i) {
@@ -39,7 +39,7 @@ TEST(KeepUntil, KeepsWhatWasSampledBefore) {
 }
 
 TEST(KeepUntil, CountsALossAcrossTheEndUpToTheEnd) {
-  ReceivedRun run = RunOf(60, 48, 51);  // samples 384 to 415, of which 400 would have been the first behind
+  ReceivedRun run = RunOf(60, 48, 51);  // samples 384 to 415 are lost; sample 400 is the first after the end
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 384U);
   EXPECT_EQ(run.Losses().samples, 16);
@@ -47,7 +47,7 @@ TEST(KeepUntil, CountsALossAcrossTheEndUpToTheEnd) {
 }
 
 TEST(KeepUntil, CountsALossJustBeforeTheEnd) {
-  ReceivedRun run = RunOf(50, 49, 49);  // the last eight before the end; what follows shows that they are missing
+  ReceivedRun run = RunOf(50, 49, 49);  // the last eight before the end; later frames show that they are missing
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 392U);
   EXPECT_EQ(run.Losses().samples, 8);
@@ -67,10 +67,10 @@ TEST(KeepUntil, LeavesAShorterRunAlone) {
   run.TakeEnd({12 * kBlock, 0, 0});
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 88U);
-  EXPECT_EQ(run.Losses().samples, 8);  // sent behind the last that came
+  EXPECT_EQ(run.Losses().samples, 8);  // sent after the last frame that arrived
 }
 
-/// Three conversions were late, so their samples are missing; then a whole frame is lost behind the last that came.
+/// Three conversions were late, so their samples are missing. Then a whole frame is lost after the last one received.
 TEST(Losses, OfSeveralKindsAddUp) {
   ReceivedRun run(kRate);
   run.Take(Frame(0), 0);
@@ -83,7 +83,7 @@ TEST(Losses, OfSeveralKindsAddUp) {
   EXPECT_EQ(run.Losses().on_line, 8);
 }
 
-/// A logger that counts no further than 65535 dropped three times as many, as its ticks show.
+/// A logger whose counter stops at 65535 dropped three times as many samples, as its ticks show.
 TEST(Losses, AreNotCountedTwiceWhereAFrameCountsNoFurther) {
   ReceivedRun run(kRate);
   run.Take(Frame(0), 0);
@@ -96,7 +96,7 @@ TEST(Losses, AreNotCountedTwiceWhereAFrameCountsNoFurther) {
   EXPECT_EQ(run.Losses().on_line, 0);
 }
 
-/// Its CRC came out right by chance: the host's clock shows that so much time has not gone by.
+/// The CRC of the frame is right by chance. The host's clock shows that so much time has not passed.
 TEST(ReceivedRun, LeavesOutAFrameFromTheFuture) {
   ReceivedRun run = RunOf(2, 99, 99);
   pendulum_logger::Data stray = Frame(3);

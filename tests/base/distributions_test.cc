@@ -10,7 +10,7 @@
 namespace pendulum::distributions_test {
 namespace {
 
-// NIST/SEMATECH e-Handbook of Statistical Methods, sections 1.3.6.7.1 to 1.3.6.7.4, as it prints them.
+// Values as printed in the NIST/SEMATECH e-Handbook of Statistical Methods, sections 1.3.6.7.1 to 1.3.6.7.4.
 TEST(Distributions, MatchPrintedTables) {
   EXPECT_NEAR(NormalQuantile(0.5 + 0.47500), 1.96, 5e-5);
   EXPECT_NEAR(NormalQuantile(0.5 - 0.47500), -1.96, 5e-5);
@@ -23,7 +23,7 @@ TEST(Distributions, MatchPrintedTables) {
   EXPECT_NEAR(FisherTail(3.326, 5, 10), 0.05, 5e-5);
 }
 
-// With one degree of freedom Student's law is Cauchy's, with two chi-square's tail is exp(-x/2).
+// Student's t with one degree of freedom is the Cauchy distribution. The chi-square tail with two degrees is exp(-x/2).
 TEST(Distributions, MatchClosedForms) {
   EXPECT_DOUBLE_EQ(StudentProbability(1, 1), 0.75);
   EXPECT_DOUBLE_EQ(StudentTail(1, 1), 0.25);

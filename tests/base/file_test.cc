@@ -53,7 +53,7 @@ TEST_F(ReadFileTest, RefusesMoreBytesThanItMay) {
 }
 
 TEST_F(ReadFileTest, SaysThatAFileCannotBeRead) {
-  // Linux opens it and fails to read at 0, for root too.
+  // Linux opens this file, but reading at offset 0 fails, even for root.
   const auto refused = ReadFile("/proc/self/mem", "CSV", 1000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);

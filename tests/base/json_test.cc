@@ -57,7 +57,7 @@ TEST(ShownJson, ShowsNumbersAndStringsAndOnlyTheKindOfTheRest) {
   EXPECT_EQ(ShownJson(nlohmann::ordered_json::object()), "an object");
 }
 
-// U+FFFD in UTF-8 is EF BF BD (Unicode 15, section 3.9).
+// The UTF-8 encoding of U+FFFD is EF BF BD (Unicode 15, section 3.9).
 TEST(JsonText, ReplacesWhatIsNoUtf8) {
   EXPECT_EQ(JsonText("a\xFF"), "\"a\xEF\xBF\xBD\"");
   EXPECT_EQ(JsonText({{"a", 1}}), R"({"a":1})");

@@ -26,7 +26,7 @@ TEST(ParallelFor, WorksOnSoManyThreads) {
   std::mutex mutex;
   std::set<std::thread::id> seen;
   ParallelFor(50, 4, [&](int) {
-    for (bool all = false; !all;) {  // none may finish before all four have begun
+    for (bool all = false; !all;) {  // No thread may finish before all four have begun.
       const std::lock_guard lock(mutex);
       seen.insert(std::this_thread::get_id());
       all = seen.size() >= 4;

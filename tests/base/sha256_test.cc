@@ -8,7 +8,7 @@
 namespace pendulum::sha256_test {
 namespace {
 
-// FIPS 180-4's own examples (NIST, "Secure Hash Standard", examples with intermediate values), and the empty message.
+// The examples of FIPS 180-4 (NIST, "Secure Hash Standard", examples with intermediate values), and the empty message.
 TEST(Sha256, GivesTheDigestsOfTheStandard) {
   EXPECT_EQ(Sha256("abc").value(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(Sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq").value(),
@@ -18,7 +18,7 @@ TEST(Sha256, GivesTheDigestsOfTheStandard) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-// However the bytes are cut: the digest is of all of them.
+// The digest does not depend on how the bytes are split.
 TEST(Sha256Digest, IsOfAllThatWasAdded) {
   Sha256Digest digest;
   for (const char* piece : {"a", "", "bc"}) ASSERT_TRUE(digest.Add(piece));

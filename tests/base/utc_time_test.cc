@@ -8,7 +8,7 @@
 namespace pendulum::utc_time_test {
 namespace {
 
-// `date --utc --date=@SECONDS +%FT%TZ` of GNU coreutils.
+// Expected values from `date --utc --date=@SECONDS +%FT%TZ` of GNU coreutils.
 TEST(UtcTimeText, IsThatOfTheCalendar) {
   EXPECT_EQ(UtcTimeText(0), "1970-01-01T00:00:00Z");
   EXPECT_EQ(UtcTimeText(951827696), "2000-02-29T12:34:56Z");

@@ -19,7 +19,7 @@ constexpr MotionModel kViscousModel = {"viscous", "viscous", Gravity::kSine};
 constexpr double kTorque = 1.803;  // N m
 
 /// The rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink) with its
-/// published results: I_O 0.079 kg m^2, b 0.003 N m s/rad, released from 0.423 rad, 0.1985 deg a count.
+/// published results: I_O 0.079 kg m^2, b 0.003 N m s/rad, released from 0.423 rad, 0.1985 deg per count.
 Decay Published() {
   Decay decay;
   decay.natural_frequency = std::sqrt(kTorque / 0.079);
@@ -44,14 +44,14 @@ TEST(ClosedForms, ReproduceThePublishedNumbersOfTheTextbookRig) {
   EXPECT_NEAR(five->damping_ratio.value, 0.004, 0.0005);
   EXPECT_NEAR(kTorque * five->inertia.value, 0.079, 0.002);
   EXPECT_NEAR(kTorque * five->viscous.value, 0.003, 0.0005);
-  // Single pairs scatter by 5 percent, five periods together by 1.
+  // Single pairs have errors of 5 percent, five periods together 1 percent.
   EXPECT_NEAR(forms.decay[0].pair->std_error / five->damping_ratio.std_error, 5, 1.5);
 }
 
 TEST(ClosedForms, QuantifyTheFiniteAmplitudeBiasOfTheInertia) {
   const ClosedForms forms = Must(EstimateClosedForms(Read(Published()), kViscousModel));
   ASSERT_TRUE(forms.linear && forms.decrement);
-  // The period is longer by A²/16 to second order, the inertia by A²/8, over amplitudes that fall from 0.42 to 0.30.
+  // To second order the period is longer by A²/16 and the inertia by A²/8, over amplitudes that fall from 0.42 to 0.30.
   const double last = forms.table.Amplitude(forms.linear->first + 2U * static_cast<unsigned>(forms.linear->periods));
   const double mean_square = (0.42 * 0.42 + 0.42 * last + last * last) / 3;
   const double excess = forms.linear->inertia.value / forms.decrement->inertia.value - 1;
@@ -77,7 +77,7 @@ TEST(ClosedForms, SayWhenTheModelsFrictionIsNotTheTurningPoints) {
 TEST(ClosedForms, CountTrueSecondsOnAClockThatIsWrong) {
   Recording recording = Read(Published());
   const ClosedForms right = Must(EstimateClosedForms(recording, kViscousModel));
-  recording.time = 100 + recording.time.array() / 1.25;  // a clock that shows 1 s when 1.25 have passed
+  recording.time = 100 + recording.time.array() / 1.25;  // a clock that advances 1 s in 1.25 s
   recording.clock_scale = 1.25;
   const ClosedForms forms = Must(EstimateClosedForms(recording, kViscousModel));
   EXPECT_NEAR(forms.linear->inertia.value / right.linear->inertia.value, 1, 1e-6);
@@ -87,7 +87,7 @@ TEST(ClosedForms, CountTrueSecondsOnAClockThatIsWrong) {
 
 TEST(ClosedForms, GoOnWithoutADecrementWhereTurningPointsAreTooFew) {
   Decay decay = Published();
-  decay.duration = 2.3;  // three turning points, the last too near the end
+  decay.duration = 2.3;  // three turning points, the last one near the end
   const MotionModel drag = {"drag", "drag", Gravity::kSine};
   const ClosedForms forms = Must(EstimateClosedForms(Read(decay), drag));
   EXPECT_EQ(forms.table.peaks.size(), 3U);

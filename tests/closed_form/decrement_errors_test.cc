@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The errors of the closed forms are true: 200 recordings of each kind of friction, simulated with the reference rig.
+// Checks that the errors of the closed forms are true: 200 simulated recordings of the reference rig for each friction.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -26,7 +26,8 @@ Decay ReferenceDecay() {
   return decay;
 }
 
-/// Standard deviation 0.8 to 1.2, at most 2 of 200 beyond 3, and a mean of 0 within 4 of its standard deviations.
+/// Checks a standard deviation of 0.8 to 1.2, at most 2 of 200 values beyond 3, and a mean of 0 within 4 of its
+/// standard deviations.
 void ExpectStandardNormal(const std::vector<double>& z, const std::string& what) {
   double sum = 0, squares = 0;
   for (const double each : z) sum += each, squares += each * each;
@@ -39,7 +40,7 @@ void ExpectStandardNormal(const std::vector<double>& z, const std::string& what)
   EXPECT_LE(std::ranges::count_if(z, [](double each) { return std::abs(each) > 3; }), 2) << what;
 }
 
-/// The decay read with noise, about a zero that moves through the levels of the sensor from seed to seed.
+/// The decay with noise. The zero moves through the levels of the sensor from seed to seed.
 Recording Read(const Recording& clean, double zero, double resolution, std::uint64_t seed) {
   constexpr double kNoise = 1e-3;  // rad
   Recording recording = WithNoise(clean, kNoise, seed);
@@ -83,7 +84,7 @@ TEST(DecrementErrors, AreTrueForDryFrictionAlone) {
 TEST(DecrementErrors, AreTrueForBothOnCounts) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
-  ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay, 0.003464);  // 0.1985 deg a count
+  ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay, 0.003464);  // 0.1985 deg per count
 }
 
 TEST(DecrementErrors, AreTrueWithDrag) {

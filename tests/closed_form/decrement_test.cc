@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 constexpr MotionModel kViscousModel = {"viscous", "viscous", Gravity::kSine};
 constexpr MotionModel kDragModel = {"drag", "drag", Gravity::kSine};
 
-/// ω0 = 5 rad/s; what a library other than this one's trajectory makes of it.
+/// ω0 = 5 rad/s. The swing is simulated by a library other than this project's trajectory.
 Decay AllThree() {
   Decay decay;
   decay.viscous = 0.002;
@@ -49,7 +49,7 @@ TEST(FitDecrement, RecoversThemFromTheRateTheSameWay) {
 }
 
 TEST(FitDecrement, KeepsTheUnitOfAnUncalibratedAngle) {
-  constexpr double kCounts = 300;  // a radian
+  constexpr double kCounts = 300;  // per radian
   const auto counts = [](double t) { return 512 + kCounts * 0.4 * std::exp(-0.02 * t) * std::cos(4.8 * t + 1); };
   Recording recording = Sample(counts, 20, 100);
   recording.unit = "counts";
@@ -76,7 +76,7 @@ TEST(FitDecrement, FollowsTheTurningPointsAsItsGradientSays) {
   const double change = 0.3 * std::sqrt(table.peaks[4].covariance(1, 1));
   table.peaks[4].value += change;
   const Decrement after = Must(FitDecrement(table, kDragModel, all));
-  const Eigen::VectorXd slope = before.gradient.col(9);  // of the value of turning point 4
+  const Eigen::VectorXd slope = before.gradient.col(9);  // by the value of turning point 4
   EXPECT_NEAR((after.zero.value - before.zero.value) / change, slope[0], 0.02 * std::abs(slope[0]));
   EXPECT_NEAR((after.friction[1].value - before.friction[1].value) / change, slope[3], 0.02 * std::abs(slope[3]));
 }

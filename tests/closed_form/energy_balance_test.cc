@@ -22,7 +22,7 @@ std::vector<double> FrictionOf(const Recording& recording, std::string_view mode
   return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, NaturalFrequency(table)).front());
 }
 
-/// Amplitudes of a swing that loses energy to dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
+/// Amplitudes of a swing with dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
 HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
   HalfSwingTable table;
   for (int i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
 }
 
 TEST(FrictionFrom, OfSmallViscousSwingsIsTheLogDecrement) {
-  // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2
+  // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2.
   const double viscous = 0.002, zeta = 0.5 * viscous * 5, ratio = std::exp(-kPi * zeta / std::sqrt(1 - zeta * zeta));
   HalfSwingTable table;
   for (int i = 0; i < 10; ++i) {
@@ -68,7 +68,7 @@ TEST(FrictionFrom, RecoversEachLawAloneFromItsDecay) {
     EXPECT_NEAR(FrictionOf(SimulateDecay(viscous), "viscous")[0] / 0.004, 1, 0.03);
     const std::vector<double> dry = FrictionOf(SimulateDecay(coulomb), "coulomb");
     EXPECT_NEAR(dry[1] / 0.002, 1, 0.03);
-    EXPECT_NEAR(dry[0], 0, 5e-5);  // where 0.002 of dry friction would be a viscous 0.002 or so
+    EXPECT_NEAR(dry[0], 0, 5e-5);  // dry friction of 0.002 would look like viscous friction of about 0.002
     const std::vector<double> air = FrictionOf(SimulateDecay(drag), "drag");
     EXPECT_NEAR(air[2] / 0.001, 1, 0.05);
     EXPECT_NEAR(air[1], 0, 5e-5);

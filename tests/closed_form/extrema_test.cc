@@ -22,7 +22,7 @@ constexpr double kOmega = 5.0;   // rad/s
 
 double DampedSine(double t) { return std::exp(-kDecay * t) * std::sin(kOmega * t); }
 
-/// Its turning points before `end`: tan(ω t) = ω / γ, once in every half period.
+/// Its turning points before `end`: tan(ω t) = ω / γ, once per half period.
 std::vector<Extremum> TurningPointsOfDampedSine(double end) {
   std::vector<Extremum> points;
   for (double t = std::atan(kOmega / kDecay) / kOmega; t < end; t += kPi / kOmega) {
@@ -31,7 +31,7 @@ std::vector<Extremum> TurningPointsOfDampedSine(double end) {
   return points;
 }
 
-/// Largest distance of times and of values between two lists of the same length.
+/// The largest differences of times and of values between two lists of the same length.
 Extremum LargestError(const std::vector<Extremum>& found, const std::vector<Extremum>& expected) {
   Extremum error;
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -59,14 +59,14 @@ TEST(FindExtrema, LocatesTheTurningPointsOfADampedSineFarBelowOneSample) {
   const std::vector<Extremum> found = Must(FindExtrema(Sample(DampedSine, 20, kRate)));
   ASSERT_THAT(found, SizeIs(expected.size()));
   EXPECT_LT(LargestError(found, expected).time, 0.02 / kRate);
-  EXPECT_LT(LargestError(found, expected).value, 2e-3);  // the parabola through 0.15 of a half period
+  EXPECT_LT(LargestError(found, expected).value, 2e-3);  // the error of the parabola over 0.15 of a half period
   ExpectMaximaAndMinimaInTurn(found);
 }
 
 TEST(FindExtrema, NeedsNoUniformSampling) {
   Recording recording = Sample(DampedSine, 20, 50);
   for (Eigen::Index i = 0; i < recording.size(); ++i) {
-    recording.time[i] += 0.008 * std::sin(12.9898 * static_cast<double>(i));  // within 0.4 of a sample
+    recording.time[i] += 0.008 * std::sin(12.9898 * static_cast<double>(i));  // shifted by at most 0.4 of a sample
     recording.value[i] = DampedSine(recording.time[i]);
   }
   const std::vector<Extremum> expected = TurningPointsOfDampedSine(19.9);
@@ -81,14 +81,14 @@ TEST(FindExtrema, NoiseInventsNoTurningPointAndMovesNoneFar) {
     SCOPED_TRACE(seed);
     const std::vector<Extremum> found = Must(FindExtrema(WithNoise(Sample(DampedSine, 20.2, 100), 0.02, seed)));
     ASSERT_THAT(found, SizeIs(expected.size()));
-    // 19 samples in a parabola: its vertex scatters by 0.01 s at the end, where the amplitude has fallen to 0.37.
+    // 19 samples per parabola: its vertex has an error of 0.01 s at the end, where the amplitude has fallen to 0.37.
     EXPECT_LT(LargestError(found, expected).time, 0.06);
     EXPECT_LT(LargestError(found, expected).value, 0.04);
   }
 }
 
 TEST(FindExtrema, NoiseAtRestInventsNoTurningPoint) {
-  // Turns every 0.63 s; below a standard deviation of the noise from 7.7 s on, and 50 s more.
+  // Turning points every 0.63 s. The amplitude is below a standard deviation of the noise from 7.7 s on; 50 s follow.
   const auto to_rest = [](double t) { return std::exp(-0.6 * t) * std::sin(kOmega * t); };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<Extremum> found = Must(FindExtrema(WithNoise(Sample(to_rest, 60, 100), 0.01, seed)));
@@ -137,7 +137,7 @@ TEST(FindExtrema, RefusesAConstantReading) {
 }
 
 TEST(FindExtrema, RefusesFewerThanThreeTurningPointsAndSaysHowManyThereWere) {
-  // Minima and maxima of cos(5 t + 0.8) lie at 0.468, 1.097 and 1.725 s.
+  // Minima and maxima of cos(5 t + 0.8) are at 0.468, 1.097 and 1.725 s.
   const auto wave = [](double t) { return std::cos(kOmega * t + 0.8); };
   const auto two = FindExtrema(Sample(wave, 1.5, 100));
   ASSERT_FALSE(two);

@@ -36,19 +36,19 @@ constexpr char kUnsteady[] = "after the release: the hold before it is not stead
 constexpr char kToTheEnd[] = "the end of the recording";
 constexpr char kBeforeAMove[] = "the last turning point before the pendulum is moved otherwise";
 
-// ---- What people do with a pendulum, piece by piece ---------------------------------------------------------------
+// ---- What people do with a pendulum, in pieces --------------------------------------------------------------------
 
 Recording Still(double angle, double duration) {
   return Sample([=](double) { return angle; }, duration, kRate);
 }
 
-/// A hand takes the pendulum from one angle to another and stops smoothly at both.
+/// A hand moves the pendulum from one angle to another, smoothly at both ends.
 Recording Guided(double from, double to, double duration) {
   const auto share = [=](double t) { return t / duration * t / duration * (3 - 2 * t / duration); };
   return Sample([=](double t) { return from + (to - from) * share(t); }, duration, kRate);
 }
 
-/// Let go at `amplitude`: 0.05 rad/s of it are lost in each second, and a share by viscous friction.
+/// Released at `amplitude`. It loses 0.05 rad per second, and a share by viscous friction.
 Recording Swing(double amplitude, double duration, Quantity quantity = Quantity::kAngle) {
   Decay decay{kOmega, 0.004, 0.002, 0, std::abs(amplitude), duration, quantity};
   Recording recording = SimulateDecay(decay);
@@ -56,7 +56,7 @@ Recording Swing(double amplitude, double duration, Quantity quantity = Quantity:
   return recording;
 }
 
-/// The part with from <= t < to, its clock begun anew.
+/// The part with from <= t < to; its clock starts at 0.
 Recording Part(const Recording& recording, double from, double to = 1e9) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < recording.size(); ++i) {
@@ -68,7 +68,7 @@ Recording Part(const Recording& recording, double from, double to = 1e9) {
   return part;
 }
 
-/// The pieces one after another on one clock, with noise.
+/// The pieces in sequence on one clock, with noise.
 Recording Joined(const std::vector<Recording>& pieces, double noise = kNoise, std::uint64_t seed = 1) {
   std::vector<double> values;
   for (const Recording& piece : pieces) values.insert(values.end(), piece.value.begin(), piece.value.end());
@@ -79,7 +79,7 @@ Recording Joined(const std::vector<Recording>& pieces, double noise = kNoise, st
   return WithNoise(Must(MakeRecording(std::move(joined))), noise, seed);
 }
 
-/// Time of the k-th passage through zero (from 0).
+/// Time of the k-th passage through zero (k from 0).
 double Crossing(const Recording& recording, int k) {
   for (Eigen::Index i = 1; i < recording.size(); ++i) {
     if (recording.value[i] * recording.value[i - 1] <= 0 && k-- == 0) return recording.time[i];
@@ -123,7 +123,7 @@ TEST(FindFreeSwings, GivesTurningPointsHalfPeriodAndAmplitude) {
 }
 
 TEST(FindFreeSwings, TakesAStartInMotionFromTheFirstSample) {
-  for (const double from : {0.1, 0.25, 0.4, 0.55}) {  // of 0.64 s from the first turning point to the second
+  for (const double from : {0.1, 0.25, 0.4, 0.55}) {  // of 0.64 s between the first two turning points
     SCOPED_TRACE(from);
     const Recording recording = Joined({Part(Swing(0.5, 15), from)});
     const FreeSwing swing = OnlySwing(recording);
@@ -133,14 +133,15 @@ TEST(FindFreeSwings, TakesAStartInMotionFromTheFirstSample) {
 }
 
 TEST(FindFreeSwings, BeginsAfterAPushFromRestAtTheFirstTurningPoint) {
-  const Recording pushed = Part(Swing(0.5, 16), Crossing(Swing(0.5, 16), 0));  // it passes its rest, at full speed
+  const Recording pushed = Part(Swing(0.5, 16), Crossing(Swing(0.5, 16), 0));  // at full speed through its rest
+                                                                               // position
   const FreeSwing swing = OnlySwing(Joined({Still(0, 3), pushed}));
   EXPECT_EQ(swing.begins, kAfterAMove);
   EXPECT_THAT(swing.from, DoubleNear(3 + kHalfPeriod / 2, 0.05));
 }
 
 TEST(FindFreeSwings, LeavesOutWhatIsBeforeAndAfter) {
-  // Taken from rest to 0.5 rad in 0.8 s, held for 2 s, and after 12 s caught and laid down.
+  // Moved from rest to 0.5 rad in 0.8 s, held for 2 s, and caught after 12 s and put down.
   const Recording swing = Swing(0.5, 12);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
@@ -172,14 +173,14 @@ TEST(FindFreeSwings, BeginsNearTheUprightWithTheNextTurningPoint) {
   const FreeSwing swing = OnlySwing(Joined({Still(upright, 2), Swing(upright, 20)}));
   EXPECT_EQ(swing.begins,
             "after the fall from 170 deg, where the smallest push decides when it falls and the release tells nothing");
-  EXPECT_THAT(swing.from, AllOf(Ge(2 + kHalfPeriod), Le(2 + 4 * kHalfPeriod)));  // half a period of 165 deg: 1.7 s
+  EXPECT_THAT(swing.from, AllOf(Ge(2 + kHalfPeriod), Le(2 + 4 * kHalfPeriod)));  // half a period from 165 deg: 1.7 s
   const double lower = 160 * kRadFromDeg;
   EXPECT_EQ(OnlySwing(Joined({Still(lower, 2), Swing(lower, 20)})).begins, kHeld);
 }
 
 TEST(FindFreeSwings, FindsTheHoldOfARateSensor) {
   const Recording recording =
-      Joined({Still(0, 2), Swing(0.5, 15, Quantity::kRate)}, 0.01);  // begins with Still's quantity
+      Joined({Still(0, 2), Swing(0.5, 15, Quantity::kRate)}, 0.01);  // the quantity is that of Still
   Recording rate = recording;
   rate.quantity = Quantity::kRate;
   const FreeSwing swing = OnlySwing(rate);
@@ -187,9 +188,9 @@ TEST(FindFreeSwings, FindsTheHoldOfARateSensor) {
   EXPECT_EQ(swing.begins, kHeld);
 }
 
-// ---- Where it ends ------------------------------------------------------------------------------------------------
+// ---- Where a swing ends -------------------------------------------------------------------------------------------
 
-/// Dry friction stops a swing of 0.29 rad after seven half swings, of which each loses 2 τ_c = 0.04 rad.
+/// Dry friction stops a swing of 0.29 rad after seven half swings; each reduces the amplitude by 2 τ_c = 0.04 rad.
 constexpr double kStop = 1 + 7 * kHalfPeriod;
 Recording SwingToRest(double rest) {
   const Recording swing = SimulateDecay({kOmega, 0, 0.02, 0, 0.29, 7 * kHalfPeriod});
@@ -209,8 +210,9 @@ TEST(FindFreeSwings, KeepsAShortRest) {
 }
 
 TEST(FindFreeSwings, KeepsWhatSwingsOnUnderTheNoise) {
-  // 0.7 of the noise at the end, where one period of 126 samples tells it with five and a half standard errors. Turning
-  // points can be told up to 14 s; by chance a late one is found where it does not belong and ends the swing.
+  // The amplitude at the end is 0.7 of the noise; one period of 126 samples shows it with five and a half standard
+  // errors. Turning points can be detected up to 14 s. By chance a later one is found in the wrong place and ends the
+  // swing.
   const auto decaying = [](double t) { return 0.5 * std::exp(-0.12 * t) * std::cos(kOmega * t); };
   int whole = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -232,7 +234,7 @@ TEST(FindFreeSwings, NoiseBreaksNoSwing) {
 }
 
 TEST(FindFreeSwings, EndsWhereAHandBrakes) {
-  // It passes the bottom for the twelfth time and is slowed to what a swing of 0.2 rad has there.
+  // At its thirteenth passage through the bottom it is slowed to the speed of a swing of 0.2 rad.
   const Recording swing = Swing(0.5, 20);
   const double brake = Crossing(swing, 12);
   const Recording after = Part(Swing(0.2, 12), Crossing(Swing(0.2, 12), 0));
@@ -251,7 +253,7 @@ TEST(FindFreeSwings, EndsWhereAHandStops) {
   EXPECT_THAT(found.to, AllOf(Gt(stop - kHalfPeriod), Lt(stop)));
 }
 
-// ---- Several, and what breaks none --------------------------------------------------------------------------------
+// ---- Several swings, and what does not break one ------------------------------------------------------------------
 
 TEST(FindFreeSwings, FindsEveryRelease) {
   const Recording recording = Joined({Still(0.5, 2), Swing(0.5, 12), Guided(Swing(0.5, 12).value.tail(1)[0], -0.8, 1),
@@ -278,8 +280,7 @@ TEST(FindFreeSwings, GapsBreakNoSwingThoughTurningPointsAreMissing) {
 }
 
 TEST(FindFreeSwings, ASlipOfTimeEndsASwing) {
-  // Two samples lost on the way from one turning point to the next that the clock does not know of: a thirtieth of a
-  // half swing.
+  // Between two turning points, two samples are lost without a gap in the time stamps: a thirtieth of a half swing.
   const Recording swing = Joined({Still(0.5, 2), Swing(0.5, 25)}, 0.0005);
   Recording slipped = WithoutSamples(swing, 14.2, 14.225);
   ASSERT_EQ(slipped.size(), swing.size() - 2);
@@ -305,7 +306,7 @@ TEST(FindFreeSwings, ALoneOutlierAtATurningPointBreaksNone) {
 }
 
 TEST(FindFreeSwings, MarksASwingThatBeats) {
-  // Two modes of nearly one frequency: the amplitude goes up and down every 6.3 s and decays.
+  // Two modes with nearly the same frequency: the amplitude rises and falls every 6.3 s and decays.
   const auto two = [](double t) {
     return std::exp(-0.03 * t) * (0.3 * std::cos(kOmega * t) + 0.2 * std::cos(1.2 * kOmega * t));
   };
@@ -316,7 +317,7 @@ TEST(FindFreeSwings, MarksASwingThatBeats) {
   EXPECT_THAT(swing.to, Ge(39.0));
 }
 
-// ---- What is none -------------------------------------------------------------------------------------------------
+// ---- What is not a free swing -------------------------------------------------------------------------------------
 
 std::string Refusal(const Recording& recording) {
   const auto swings = FindFreeSwings(recording);
@@ -350,7 +351,7 @@ TEST(FindFreeSwings, RefusesASwingThatIsDriven) {
 }
 
 TEST(FindFreeSwings, AStartInMotionIsNoClimb) {
-  // It loses a two-hundredth of its amplitude in a half swing, and begins where it passes its rest.
+  // It loses a two-hundredth of its amplitude per half swing, and starts where it passes its rest position.
   const Recording swing = SimulateDecay({kOmega, 0, 0.001, 0, 0.5, 9});
   const Recording recording = Joined({Part(swing, Crossing(swing, 0))}, 0.01);
   ExpectWhole(recording, OnlySwing(recording));

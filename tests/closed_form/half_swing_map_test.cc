@@ -25,7 +25,7 @@ std::optional<HalfSwingEnd> Swing(const MotionModel& model, const Friction& fric
   return SwingThrough(model, friction, amplitude, natural_frequency, 1, true);
 }
 
-/// Rate and angle of the drag law by classical Runge-Kutta steps in the angle-rate plane, an independent way through.
+/// Rate and angle for the drag law by classical Runge-Kutta steps in time, as an independent method.
 HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
   const double square = kFrequency * kFrequency;
   const auto acceleration = [&](double angle, double rate) {
@@ -46,7 +46,7 @@ HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
     rate = next;
     time += kStep;
   }
-  const double a = acceleration(angle, rate);  // the rest of the way is a parabola
+  const double a = acceleration(angle, rate);  // the rest is a parabola
   end.amplitude = angle - 0.5 * rate * rate / a;
   end.duration = time - rate / a;
   return end;
@@ -69,7 +69,7 @@ TEST(HalfSwingMap, LinearPendulumLosesTwiceTheStickingAngleToDryFriction) {
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->amplitude, 0.28, 1e-14);
   EXPECT_NEAR(end->duration, kPi / kFrequency, 1e-13);
-  EXPECT_NEAR(end->peak_rate, 0.29 * kFrequency, 1e-13);  // half the way, about the point where friction holds
+  EXPECT_NEAR(end->peak_rate, 0.29 * kFrequency, 1e-13);  // half the distance, about the point where friction holds
 }
 
 TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
@@ -79,7 +79,7 @@ TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->amplitude, 0.3 * std::exp(-kPi * damping_ratio / root), 1e-14);
   EXPECT_NEAR(end->duration, kPi / (kFrequency * root), 1e-12);
-  // From θ' = A ω0 / root exp(-ζ ω0 t) sin(ω_d t): largest at ω_d t = atan(root / ζ) = acos ζ.
+  // θ' = A ω0 / root exp(-ζ ω0 t) sin(ω_d t) is largest at ω_d t = atan(root / ζ) = acos ζ.
   const double delay = std::acos(damping_ratio) / (kFrequency * root);
   EXPECT_NEAR(end->peak_delay, delay, 1e-12);
   EXPECT_NEAR(end->peak_rate, 0.3 * kFrequency * std::exp(-damping_ratio * kFrequency * delay), 1e-13);

@@ -19,8 +19,8 @@ using testing::SizeIs;
 constexpr double kOmega = 5.0;  // rad/s
 constexpr double kHalfPeriod = kPi / kOmega;
 
-/// Small oscillation with dry friction, turning at amplitude 1 at t = 0: in half period i a cosine about (-1)^i x_k, so
-/// that the turning points are (-1)^i (1 - 2 i x_k). The reading's zero is 0.1 off.
+/// Small oscillation with dry friction and a turning point at amplitude 1 at t = 0. In half period i it is a cosine
+/// about (-1)^i x_k, so the turning points are (-1)^i (1 - 2 i x_k). The zero of the reading is 0.1.
 double DryFriction(double t) {
   constexpr double kDryness = 0.02;  // x_k
   constexpr double kZero = 0.1;
@@ -34,8 +34,8 @@ double Cosine(double t) { return 0.1 + std::cos(kOmega * t - 0.9); }
 
 TEST(TabulateHalfSwings, DryFrictionLeavesTheZeroWhereItIs) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(DryFriction, 8, 200)));
-  ASSERT_THAT(table.half_swings, SizeIs(11));      // 12 turning points after the start, each half a period
-  EXPECT_THAT(table.zero, DoubleNear(0.1, 1e-4));  // the mean of the reading is off by more
+  ASSERT_THAT(table.half_swings, SizeIs(11));      // 12 turning points after the start, half a period apart
+  EXPECT_THAT(table.zero, DoubleNear(0.1, 1e-4));  // the mean of the reading has a larger error
   for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
     SCOPED_TRACE(i);
     const double before = 1 - 0.04 * static_cast<double>(i + 1);
@@ -52,7 +52,7 @@ TEST(TabulateHalfSwings, AnExponentialDecayShiftsTheZeroLessThanAThousandthOfThe
 TEST(TabulateHalfSwings, DatesThePassagesThroughZero) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 100, 1000)));
   ASSERT_THAT(table.half_swings, SizeIs(11));
-  // cos(5 t - 0.9) with t on a clock that shows 1000 s at the first sample; it turns where 5 t - 0.9 = n π.
+  // cos(5 t - 0.9) on a clock that starts at 1000 s. Turning points are at 5 t - 0.9 = n π.
   const double first_turn_number = std::ceil((kOmega * 1000 - 0.9) / kPi);
   for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
     const double crossing = ((first_turn_number + 0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
@@ -72,13 +72,13 @@ TEST(TabulateHalfSwings, ALineThroughManySamplesDatesAPassageBetterThanTwoOfThem
       squares += error * error;
     }
   }
-  // Two samples would scatter by about noise / slope = 0.01 s. The line through 28 of them: 0.01 s / sqrt(28) = 0.002 s
-  // and a common 0.002 s for the noise of zero.
+  // Two samples give an error of about noise / slope = 0.01 s. The line through 28 samples gives 0.01 s / sqrt(28) =
+  // 0.002 s plus a common 0.002 s from the noise of zero.
   EXPECT_LT(std::sqrt(squares / count), 0.0045);
 }
 
 TEST(TabulateHalfSwings, DatesPassagesFromTwoSamplesWhereThereAreNoMore) {
-  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 8)));  // five samples a half period
+  const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 8)));  // five samples per half period
   for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
     const double crossing = ((0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
     EXPECT_THAT(table.half_swings[i].crossing, DoubleNear(crossing, 0.02)) << i;
@@ -91,7 +91,7 @@ TEST(TabulateHalfSwings, EachContinuesTheOneBeforeIt) {
 }
 
 TEST(TabulateHalfSwings, AGapBreaksTheRun) {
-  // Turns at 0.18 + 0.628 i: the gap swallows the half swing from 2.69 s to 3.32 s, and no other.
+  // Turning points at 0.18 + 0.628 i: only the half swing from 2.69 s to 3.32 s is lost in the gap.
   const HalfSwingTable table = Must(TabulateHalfSwings(WithoutSamples(Sample(Cosine, 8, 100), 2.75, 3.25)));
   ASSERT_THAT(table.half_swings, SizeIs(11));
   for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(table.half_swings[i].continues, i != 0 && i != 4) << i;

@@ -18,7 +18,7 @@ constexpr double kDampingRatio = 0.01;
 constexpr double kNatural = 4.8;  // rad/s
 const double kDamped = kNatural * std::sqrt(1 - kDampingRatio * kDampingRatio);
 
-/// The linear pendulum with viscous friction, let go at 0.5 s.
+/// A linear pendulum with viscous friction, released at 0.5 s.
 double Linear(double t) {
   const double since = t - 0.5;
   const double phase = kDamped * since;
@@ -38,7 +38,7 @@ TEST(LogDecrement, GivesBackTheLinearPendulum) {
     EXPECT_NEAR(found->natural_frequency.value / kNatural, 1, 1e-6) << periods;
     EXPECT_NEAR(found->inertia.value * kNatural * kNatural, 1, 2e-6) << periods;
     EXPECT_NEAR(found->viscous.value, 2 * kDampingRatio / kNatural, 1e-6) << periods;
-    EXPECT_DOUBLE_EQ(found->corrected_inertia.value, found->inertia.value);  // linear gravity: nothing to correct
+    EXPECT_DOUBLE_EQ(found->corrected_inertia.value, found->inertia.value);  // linear gravity needs no correction
   }
 }
 
@@ -88,7 +88,7 @@ TEST(LogDecrement, FollowsTheTurningPointsAsItsGradientSays) {
   const auto before = ApplyLogDecrement(table, Gravity::kSine, 0, 4);
   constexpr double kChange = 1e-5;
   table.peaks[8].value += kChange;
-  table.zero.value = 0;  // made again from the values
+  table.zero.value = 0;  // computed again from the values
   const Eigen::VectorXd weights = table.ZeroWeights();
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     table.zero.value += weights[i] * table.peaks[static_cast<std::size_t>(i)].value;

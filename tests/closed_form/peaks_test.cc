@@ -20,11 +20,11 @@ using ::testing::HasSubstr;
 constexpr double kFrequency = 4.8;          // rad/s
 constexpr double kTurn = kPi / kFrequency;  // s
 
-/// A small swing that turns at 0.3 s + k kTurn, at 0.02 ± 0.4.
+/// A small swing with turning points at 0.3 s + k kTurn, at 0.02 ± 0.4.
 double Cosine(double t) { return 0.02 + 0.4 * std::cos(kFrequency * (t - 0.3)); }
 
-/// The linear pendulum with dry friction alone, released at 0: half swings of kTurn, each 2 x_k smaller than the one
-/// before, about the point where friction holds.
+/// A linear pendulum with dry friction alone, released at 0. Each half swing lasts kTurn, is centred at the point where
+/// friction holds, and reduces the amplitude by 2 x_k.
 double DryDecay(double t) {
   constexpr double kAmplitude = 0.4, kSticking = 0.01;
   const double k = std::floor(t / kTurn);
@@ -86,7 +86,7 @@ TEST(LocatePeaks, TakeTheKinkOfDryFrictionIntoAccount) {
     return largest;
   };
   EXPECT_LT(largest_delay({0.01, kFrequency}), 2e-5);
-  EXPECT_GT(largest_delay({}), 1e-3);  // what the kink would do otherwise
+  EXPECT_GT(largest_delay({}), 1e-3);  // the error without the kink
   EXPECT_GT(largest_delay({-0.01, kFrequency}), 2e-3);
 }
 
@@ -100,7 +100,7 @@ TEST(LocatePeaks, FollowTheReadingsAsTheirInfluenceSays) {
   const Peak after = Must(LocatePeaks(recording)).peaks[2];
   EXPECT_NEAR((after.time - peak.time) / kChange, peak.influence(0, sample), 1e-3 * peak.influence.row(0).maxCoeff());
   EXPECT_NEAR((after.value - peak.value) / kChange, peak.influence(1, sample), 1e-3);
-  // A constant added to all readings moves the value as much and the time not at all.
+  // A constant added to all readings changes the value by the same amount and the time not at all.
   EXPECT_NEAR(peak.influence.row(0).sum(), 0, 1e-9);
   EXPECT_NEAR(peak.influence.row(1).sum(), 1, 1e-9);
 }
@@ -120,7 +120,7 @@ TEST(LocatePeaks, LeavesSaturatedTurningPointsOut) {
   Recording recording = Sample(Cosine, 8, 100);
   recording.range = SensorRange{-1, 0.4};
   recording.value = recording.value.cwiseMin(0.4);
-  EXPECT_FALSE(LocatePeaks(recording));  // those below do not follow each other
+  EXPECT_FALSE(LocatePeaks(recording));  // the minima alone do not follow each other
   recording.range = SensorRange{-1, 0.5};
   recording.value = recording.value.cwiseMin(0.5);
   EXPECT_TRUE(LocatePeaks(recording));

@@ -17,7 +17,7 @@ using testing::DoubleNear;
 // ---- Amplitude and period ----------------------------------------------------------------------------------------
 
 TEST(PeriodRatio, IsThatOfThePublishedTable) {
-  // T/T0 at amplitude [deg]: computed by the arithmetic-geometric mean elsewhere.
+  // T/T0 at amplitude [deg], computed independently by the arithmetic-geometric mean.
   constexpr std::pair<double, double> kTable[] = {{10, 1.001907188143}, {30, 1.017408797596},  {60, 1.073182007149},
                                                   {90, 1.180340599016}, {120, 1.372880500618}, {150, 1.762203729504},
                                                   {170, 2.439362719674}};
@@ -44,7 +44,7 @@ TEST(AngleAmplitude, OfAnAngleIsItself) {
 }
 
 TEST(AngleAmplitude, OfAPeakRateFollowsFromEnergy) {
-  // ω_peak² / 2 = ω0² (1 - cos A)
+  // ω_peak² / 2 = ω0² (1 - cos A).
   for (const double amplitude : {0.1, 1.0, 2.0, 3.0}) {
     const double peak = 5 * std::sqrt(2 * (1 - std::cos(amplitude)));
     EXPECT_THAT(AngleAmplitude(Quantity::kRate, peak, 5), DoubleNear(amplitude, 1e-12));
@@ -54,8 +54,8 @@ TEST(AngleAmplitude, OfAPeakRateFollowsFromEnergy) {
 
 // ---- Natural frequency from a recording ---------------------------------------------------------------------------
 
-// Near the top a swing turns less and less like a parabola, and a rate peaks less and less like one: the amplitudes are
-// read too small, and the period's correction with them.
+// Near the top, the angle and the rate around their peaks differ more and more from a parabola. The amplitudes come out
+// too small, and so does the correction of the period.
 
 TEST(NaturalFrequency, OfAnUndampedAngleIsRightAtEveryAmplitude) {
   for (double degrees = 10; degrees <= 170; degrees += 10) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Swings the closed forms are tested on, none of them made by this project's trajectory: Jacobi's elliptic functions
-// without friction, Runge-Kutta steps with it.
+// Swings for tests of the closed forms. None of them uses this project's trajectory: Jacobi's elliptic functions
+// without friction, Runge-Kutta steps with friction.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@
 
 namespace pendulum {
 
-/// The value, or an end of the test that says why there is none.
+/// Returns the value. Without a value it ends the test with the error message.
 template <typename T>
 T Must(Result<T> result) {
   if (!result) throw std::runtime_error(result.error().message);
@@ -56,14 +56,14 @@ inline Recording WithoutSamples(const Recording& recording, double from, double 
   return Must(MakeRecording(std::move(rest)));
 }
 
-/// Rate of the undamped pendulum that turns at `amplitude` at t = 0, the time derivative of sin(θ/2) = k cd(ω0 t, k), k
-/// = sin(amplitude / 2).
+/// Rate of the undamped pendulum with a turning point at `amplitude` at t = 0: the time derivative of
+/// sin(θ/2) = k cd(ω0 t, k), k = sin(amplitude / 2).
 inline double UndampedRate(double amplitude, double natural_frequency, double t) {
   const double k = std::sin(0.5 * amplitude);
   return -2 * natural_frequency * k * std::cos(0.5 * amplitude) * boost::math::jacobi_sd(k, natural_frequency * t);
 }
 
-/// A decay to be simulated: θ'' = -ω0² (sin θ + b ω + sign(ω) (τ + c ω²)), from rest at `amplitude`.
+/// A decay to simulate: θ'' = -ω0² (sin θ + b ω + sign(ω) (τ + c ω²)), from rest at `amplitude`.
 struct Decay {
   double natural_frequency = 5;  // rad/s
   double viscous = 0;            // s
@@ -74,8 +74,8 @@ struct Decay {
   Quantity quantity = Quantity::kAngle;
 };
 
-/// Classical Runge-Kutta steps of 1 ms, of which each tenth is recorded. A step across a reversal errs by the Coulomb
-/// torque over part of a millisecond: 1e-5 of the amplitude and less.
+/// Classical Runge-Kutta steps of 1 ms; every tenth is recorded. In a step across a reversal the Coulomb torque is
+/// wrong for part of a millisecond, which causes an error of at most 1e-5 of the amplitude.
 inline Recording SimulateDecay(const Decay& decay) {
   constexpr double kStep = 1e-3;
   constexpr int kEvery = 10;

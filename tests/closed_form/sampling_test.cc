@@ -22,7 +22,7 @@ using testing::Not;
 
 constexpr double kQ = 0.01;  // rad
 
-/// A cosine of 1 rad that decays to 1/e in `decay` s, rounded to hundredths.
+/// A cosine of 1 rad that decays to 1/e in `decay` s, rounded to hundredths of a rad.
 Recording Cosine(double frequency_hz, double rate_hz, Eigen::Index count, double decay = 1e9) {
   Recording recording;
   recording.time = Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(count - 1)) / rate_hz;
@@ -46,8 +46,8 @@ std::string MessageOf(const Sampling& sampling, const std::string& code) {
 }
 
 TEST(ApparentFrequency, FoldsAtHalfTheRate) {
-  // The textbook's examples: a cosine of 0.76 Hz has the samples of one of 0.24 Hz at 1 Hz, stands still sampled once a
-  // cycle, and at 5/3 of its frequency seems to swing at 2/3 of it.
+  // Examples of the textbook: a cosine of 0.76 Hz sampled at 1 Hz has the samples of 0.24 Hz. Sampled once per cycle it
+  // stands still. Sampled at 5/3 of its frequency it appears to swing at 2/3 of it.
   EXPECT_NEAR(ApparentFrequency(0.76, 1), 0.24, 1e-12);
   EXPECT_NEAR(ApparentFrequency(0.76, 0.76), 0, 1e-12);
   EXPECT_NEAR(ApparentFrequency(0.76, 0.76 * 5 / 3), 0.76 * 2 / 3, 1e-12);
@@ -65,11 +65,11 @@ TEST(ApparentFrequency, IsThatOfTheSameSamples) {
 }
 
 TEST(HoldsMirror, WhereTwoFrequenciesOfTheRangeHaveTheSameSamples) {
-  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 1));      // folds at 0.5 and 1 lie outside
-  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 0.76));    // once a cycle
-  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 1.52));    // twice a cycle
+  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 1));      // the mirror frequencies 0.5 and 1 lie outside
+  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 0.76));    // once per cycle
+  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 1.52));    // twice per cycle
   EXPECT_FALSE(HoldsMirror(0.66, 0.89, 1.267));  // 5/3 of 0.76
-  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 100));    // 0 is no fold between two positive frequencies
+  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 100));    // 0 is no mirror between two positive frequencies
 }
 
 TEST(DescribeSampling, MeasuresAnEvenRecording) {
@@ -87,15 +87,15 @@ TEST(DescribeSampling, MeasuresAnEvenRecording) {
 
 TEST(DescribeSampling, CountsLevelsAtTheEnd) {
   const Sampling sampling = DescribeSampling(Cosine(0.5, 20, 400, 5), 1.0, std::nullopt);
-  // Peak to peak of the last period, from 18 s on: below 2 exp(-18/5) = 5.5 levels.
+  // Peak to peak of the last period, from 18 s on: less than 2 exp(-18/5), 5.5 levels.
   EXPECT_EQ(sampling.start_counts, 100 + std::round(100 * std::exp(-1.0 / 5)));
   EXPECT_THAT(sampling.end_counts, DoubleNear(5, 1));
-  EXPECT_THAT(Codes(sampling), IsEmpty());  // coming to rest is no fault
+  EXPECT_THAT(Codes(sampling), IsEmpty());  // coming to rest causes no warning
 }
 
 TEST(DescribeSampling, WarnsOfFewLevelsAtTheStart) {
   Recording recording = Cosine(0.5, 20, 400);
-  recording.resolution = 2.0 / 6;  // of 2 peak to peak
+  recording.resolution = 2.0 / 6;  // peak to peak is 2
   EXPECT_THAT(MessageOf(DescribeSampling(recording, 1.0, std::nullopt), "few_counts"), HasSubstr("spans 6 levels"));
 }
 
@@ -108,7 +108,7 @@ TEST(DescribeSampling, HasNoCountsWithoutAResolution) {
 
 TEST(DescribeSampling, CountsSaturatedReadings) {
   Recording recording = Cosine(0.5, 20, 41);
-  recording.range = SensorRange{-2, 0.99};  // one period and its end: cos > 0.985 at 0, 1 and 39, 40
+  recording.range = SensorRange{-2, 0.99};  // one period and its end: cos > 0.985 at samples 0, 1, 39 and 40
   recording.value = recording.value.cwiseMin(0.99);
   EXPECT_EQ(DescribeSampling(recording, 1.0, std::nullopt).saturated, 4);
 }
@@ -119,7 +119,7 @@ TEST(DescribeSampling, FindsGapsAndJitter) {
   for (Eigen::Index i = 0; i < 400; i += 3) recording.time[i] += 0.01;  // intervals of 40, 50 and 60 ms
   const Sampling sampling = DescribeSampling(recording, 1.0, std::nullopt);
   EXPECT_EQ(sampling.gaps, 1);
-  EXPECT_NEAR(sampling.longest_gap, 1.49, 1e-9);  // the one before sample 100, which is not late and 99 is
+  EXPECT_NEAR(sampling.longest_gap, 1.49, 1e-9);  // before sample 100: 99 is late, 100 is not
   EXPECT_NEAR(sampling.jitter, 1.4826 * 0.01, 1e-9);
   EXPECT_THAT(Codes(sampling), ElementsAre("gaps", "jitter"));
 }

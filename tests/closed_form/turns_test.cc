@@ -29,7 +29,7 @@ Recording Sampled(const std::function<double(double)>& reading, double duration 
   return recording;
 }
 
-/// The half swing that lies at a time.
+/// The half swing that contains a time.
 std::size_t HalfSwingAt(const TurnTable& table, double time) {
   std::size_t i = 0;
   while (table.turns[i + 1].time < time) ++i;
@@ -46,7 +46,7 @@ TEST(TabulateTurns, FindsTimesZeroAndAmplitudeOfADecayingCosine) {
     EXPECT_NEAR(table.zero[i], 0.1, 1e-3);
     EXPECT_NEAR(table.amplitude[i], 0.2 * std::exp(-0.05 * expected), 1e-3);
   }
-  // The half period is that of a small swing: what 0.2 rad take is longer.
+  // half_period refers to small swings; a swing of 0.2 rad takes longer.
   EXPECT_NEAR(table.half_period * PeriodRatio(0.17), kHalfPeriod, 2e-3);
 }
 
@@ -100,8 +100,8 @@ TEST(JudgeHalfSwings, SeesTimeSlipByAFortiethOfAPeriodAndMore) {
   EXPECT_EQ(verdicts[HalfSwingAt(table, 5.25)], Verdict::kFree);
 }
 
-/// The last turning point comes 60 ms early. Where it stands out, time has slipped; where it hardly does, as before a
-/// rest, its time is a guess.
+/// The last turning point comes 60 ms early. If it stands out, time has slipped. If it hardly stands out, as before a
+/// rest, its time is uncertain.
 TEST(JudgeHalfSwings, BelievesTheTimeOfALastTurningPointThatStandsOut) {
   for (const bool stands_out : {true, false}) {
     const Recording recording = Sampled(Decaying);

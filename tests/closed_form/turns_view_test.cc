@@ -22,7 +22,7 @@ constexpr double kRadius = 0.3;
 constexpr Eigen::Index kSamples = 2000;
 
 /// θ, θ' and θ'' at 100 Hz of a swing from 0.6 rad with viscous friction [1/s] and a little dry friction, by
-/// Runge-Kutta of order 4.
+/// fourth-order Runge-Kutta.
 Eigen::MatrixX3d Motion(double viscous = 0.05, Eigen::Index samples = kSamples) {
   const auto acceleration = [=](double angle, double rate, double side) {
     return -kSquare * std::sin(angle) - viscous * rate - 0.05 * side;
@@ -56,7 +56,7 @@ Recording AngleOf(const Eigen::MatrixX3d& motion) {
   return recording;
 }
 
-/// What an accelerometer shows of a motion along an axis, with noise of that standard deviation (MODEL.md eq. (71)).
+/// The readings of an accelerometer along an axis, with noise of the given standard deviation (MODEL.md eq. (71)).
 Recording Seen(const Eigen::MatrixX3d& motion, double axis, double noise, double gravity) {
   Recording recording = AngleOf(motion);
   recording.quantity = Quantity::kAcceleration;
@@ -80,7 +80,7 @@ TEST(IsRadial, TellsAlongFromAcross) {
   EXPECT_TRUE(IsRadial(Acceleration(-kPi / 2, 0.05)));
 }
 
-/// From two swings to a hundred times as long as the motion lasts, which dry friction ends, and with strong friction.
+/// From two swings to a hundred times the duration of the motion, which dry friction ends; also with strong friction.
 TEST(IsRadial, TellsAlongFromAcrossWithoutGravityHoweverLongTheRecordingIs) {
   for (const double viscous : {0.0, 0.05, 1.0}) {
     for (const Eigen::Index samples : {300, 2000, 10000, 100000}) {
@@ -105,8 +105,8 @@ TEST(IsRadial, IsNotMisledByOutliers) {
   EXPECT_FALSE(IsRadial(across));
 }
 
-/// The view is in proportion to sin(θ/2) between passages through the bottom, with its sign (MODEL.md eq. (74)), but
-/// for what friction takes within half a swing.
+/// Between passages through the bottom the view is proportional to sin(θ/2) with its sign (MODEL.md eq. (74)), except
+/// for the loss by friction within a half swing.
 TEST(TurnsView, UnfoldsAnAccelerationAlongTheRod) {
   const Eigen::MatrixX3d motion = Motion();
   for (const double axis : {kPi / 2, -kPi / 2}) {
@@ -114,7 +114,7 @@ TEST(TurnsView, UnfoldsAnAccelerationAlongTheRod) {
     EXPECT_EQ(view.quantity, Quantity::kAngle);
     EXPECT_FALSE(view.is_calibrated());
     const double scale = std::sqrt(2 * (kStandardGravity + 2 * kRadius * kSquare));
-    // The first swing begins before any bottom has told its reading.
+    // The first swing begins before the first bottom, whose reading is needed.
     for (Eigen::Index i = 40; i < kSamples / 2; ++i) {
       ASSERT_THAT(view.value[i] / scale, DoubleNear(std::sin(0.5 * motion(i, 0)), 0.05)) << i;
     }

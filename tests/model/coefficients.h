@@ -9,7 +9,7 @@
 
 namespace pendulum {
 
-/// The coefficients given, and NaN beyond: what must not be read.
+/// The given coefficients, followed by NaN to detect reads beyond them.
 inline Series<double> Coefficients(std::initializer_list<double> given) {
   Series<double> series;
   series.fill(std::numeric_limits<double>::quiet_NaN());

@@ -14,7 +14,7 @@ namespace {
 
 using testing::DoubleNear;
 
-/// The same random number with derivatives, here and in Ceres' arithmetic.
+/// The same random number with the same derivatives as a Dual and as a ceres::Jet.
 template <int P>
 std::pair<Dual<P>, ceres::Jet<double, P>> RandomPair(std::mt19937_64& generator) {
   std::uniform_real_distribution<double> uniform(0.3, 1.7);
@@ -37,7 +37,7 @@ void ExpectSame(const Dual<P>& actual, const ceres::Jet<double, P>& expected, co
   }
 }
 
-/// Any number of derivatives: below, at and above a quad.
+/// Called with numbers of derivatives below, at and above the size of a quad.
 template <int P>
 void ExpectTheArithmeticOfJets() {
   std::mt19937_64 generator(20261123);

@@ -17,7 +17,7 @@ using testing::DoubleNear;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// A rod and a bob with a standard deviation each, in kg, m and m/s².
+// A rod and a bob, each value with a standard deviation, in kg, m and m/s².
 constexpr double kBob = 0.38, kRod = 0.095, kLength = 0.43, kGravity = 9.81;
 constexpr double kBobError = 0.002, kRodError = 0.003, kLengthError = 0.0007, kGravityError = 0.004;
 constexpr double kFitted = 0.079;  // kg m²
@@ -27,8 +27,8 @@ const char* const kRodAndBob = R"({"bob_mass": {"value": 0.38, "std_dev": 0.002}
                                    "rod_length": {"value": 0.43, "std_dev": 0.0007},
                                    "gravity": {"value": 9.81, "std_dev": 0.004}})";
 
-// Steps of one standard deviation are good to half the relative error of a value, 1.6 % for the rod, which enters
-// straight, and 0.1 % for the length, which enters squared.
+// A step of one standard deviation has a linearization error of half the relative error of the value. The rod's mass
+// enters linearly (1.6 %), its length squared (0.1 %).
 constexpr double kFirstOrder = 2e-3;
 
 Rig ParsedRig(const std::string& text) { return ParseRig(text, "rig").value(); }
@@ -45,7 +45,7 @@ void ExpectRelativelyNear(double found, double expected, double relative) {
   EXPECT_THAT(found / expected, DoubleNear(1, relative)) << found << " is not " << expected;
 }
 
-// m l²/3 + M l² of the published rig is 0.0761 kg m², (M + m) l² is 0.0878.
+// For the published rig, m l²/3 + M l² is 0.0761 kg m² and (M + m) l² is 0.0878 kg m².
 TEST(GeometricInertias, AreThoseOfTheRodAndBobAndOfThePointMass) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   ASSERT_THAT(inertias, SizeIs(2));
@@ -57,7 +57,7 @@ TEST(GeometricInertias, AreThoseOfTheRodAndBobAndOfThePointMass) {
   EXPECT_THAT(inertias[1].value, DoubleNear((kRod + kBob) * kLength * kLength, 1e-15));
 }
 
-// dI = l² dM + l²/3 dm + 2 l (M + m/3) dl; the point mass has l² dm and M + m.
+// dI = l² dM + l²/3 dm + 2 l (M + m/3) dl; for the point mass l² dm and M + m instead.
 TEST(GeometricInertias, HaveErrorsToFirstOrder) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   const double square = kLength * kLength;
@@ -68,8 +68,8 @@ TEST(GeometricInertias, HaveErrorsToFirstOrder) {
   ExpectRelativelyNear(inertias[1].std_error.value(), point, kFirstOrder);
 }
 
-// The fitted inertia is I/G, which the recording gives, times G = (M + m/2) g l:
-// d ln G = dM / (M + m/2) + dm / (2 M + m) + dl / l + dg / g, each with the same errors as the geometry's.
+// The fitted inertia is I/G, which the recording determines, times G = (M + m/2) g l: d ln G = dM / (M + m/2) + dm / (2
+// M + m) + dl / l + dg / g. These errors are the same as those of the geometry.
 TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   const double square = kLength * kLength;
@@ -82,10 +82,10 @@ TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
             (2 * kLength * (kBob + kRod) - kFitted / kLength) * kLengthError, kFitted / kGravity * kGravityError});
   ExpectRelativelyNear(inertias[0].difference_std_error, own, 3 * kFirstOrder);
   ExpectRelativelyNear(inertias[1].difference_std_error, point, 3 * kFirstOrder);
-  EXPECT_LT(inertias[0].difference_std_error, 0.7 * inertias[0].std_error.value());  // most of it cancels
+  EXPECT_LT(inertias[0].difference_std_error, 0.7 * inertias[0].std_error.value());  // most of the error cancels
 }
 
-// A mass common to inertia and torque tells nothing of a rig whose rod weighs nothing.
+// With a massless rod, inertia and torque are both proportional to the bob's mass, so an error of that mass cancels.
 TEST(GeometricInertias, DifferFromTheFitsByNothingWhereOneErrorMovesBothAlike) {
   const std::vector<GeometricInertia> inertias = GeometricInertias(
       ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0, "rod_length": 0.5, "gravity": 9.81})"),
@@ -108,7 +108,7 @@ TEST(GeometricInertias, HaveNoErrorsWhereTheRigGivesNone) {
   }
 }
 
-// Gravity's error moves the fitted inertia and not the geometry's.
+// The error of gravity changes the fitted inertia but not the geometric one.
 TEST(GeometricInertias, DifferFromTheFitsByTheErrorOfGravityAlone) {
   const std::vector<GeometricInertia> inertias = Inertias(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": {"value": 9.81, "std_dev": 0.02}})");
@@ -129,7 +129,7 @@ TEST(GeometricInertias, TakeAnInertiaThatTheFileNames) {
   ExpectRelativelyNear(inertias[0].difference_std_error, Norm({0.0003, kFitted * 0.009 / 1.8}), 1e-9);
 }
 
-// CAD knows the bob is no point; the point mass is still the rod's and the bob's.
+// An inertia from CAD replaces the one computed from rod and bob. The point mass still uses rod and bob.
 TEST(GeometricInertias, TakeAnInertiaThatTheFileNamesBesideARodAndABob) {
   const std::vector<GeometricInertia> inertias = Inertias(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81,
@@ -158,7 +158,7 @@ TEST(GeometricInertias, AreThoseOfARigThatNoFileDescribes) {
   EXPECT_EQ(inertias[0].difference_std_error, 0.0003);
 }
 
-// The torque's error moves the fitted inertia of a rig that no file describes as it does that of one from a file.
+// For a rig without a file, the error of the torque changes the fitted inertia as it does for a rig from a file.
 TEST(GeometricInertias, ShareTheErrorOfTheTorqueOfARigThatNoFileDescribes) {
   Rig rig;
   rig.gravity_torque = {1.8, 0.009};

@@ -16,7 +16,7 @@ std::optional<Nesting> Between(std::string_view simpler, std::string_view richer
   return FindNesting(*FindMotionModel(simpler), *FindMotionModel(richer));
 }
 
-// The laws' formulas (MODEL.md eq. (7) to (9), (47), (48)) tell which is which.
+// Expected counts follow from the formulas of the laws (MODEL.md eq. (7) to (9), (47), (48)).
 TEST(FindNesting, CountsTermsAtTheirBound) {
   const auto one = Between("viscous", "coulomb");
   ASSERT_TRUE(one);
@@ -56,7 +56,7 @@ TEST(FindNesting, NestsNothingInItselfInASimplerLawOrBesideIt) {
   EXPECT_FALSE(Between("stribeck", "drag"));
 }
 
-// The small-angle model is nested in nothing.
+// The small-angle model is not nested in any other model.
 TEST(FindNesting, NestsNoOtherGravity) {
   EXPECT_FALSE(Between("linear", "coulomb"));
   EXPECT_FALSE(Between("linear", "viscous"));

@@ -37,11 +37,11 @@ std::string FaultOf(const std::string& text) {
 
 TEST(ParseRig, ReproducesTheTextbookRig) {
   const Rig rig = RigOf(kTextbookRig);
-  // Published: center of mass 0.387 m, so G = 0.475 kg 0.387 m 9.81 m/s^2; inertia 0.076 kg m^2.
+  // Published: center of mass 0.387 m, therefore G = 0.475 kg 0.387 m 9.81 m/s^2; inertia 0.076 kg m^2.
   EXPECT_NEAR(rig.gravity_torque.value / (0.475 * 9.81), 0.387, 0.0005);
   ASSERT_TRUE(rig.inertia.has_value());
   EXPECT_NEAR(rig.inertia->value, 0.076, 0.0005);
-  // By hand: 0.4275 kg 4.2183 m^2/s^2, and 0.095 0.1849 / 3 + 0.380 0.1849.
+  // Computed by hand: 0.4275 kg 4.2183 m^2/s^2, and 0.095 0.1849 / 3 + 0.380 0.1849.
   EXPECT_NEAR(rig.gravity_torque.value, 1.80332325, 1e-12);
   EXPECT_NEAR(rig.inertia->value, 0.076117166666666667, 1e-15);
   EXPECT_EQ(rig.gravity_torque.std_dev, 0);
@@ -83,7 +83,7 @@ TEST(ParseRig, KeepsTheFileForTheReport) {
 }
 
 TEST(ParseRig, PropagatesOneErrorByItsDerivative) {
-  // By hand: G is proportional to l, I to l^2.
+  // Computed by hand: G is proportional to l, and I to l^2.
   const Rig rig = RigOf(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
   EXPECT_NEAR(rig.gravity_torque.std_dev, 1.80332325 * 0.001 / 0.43, 1e-12);
@@ -94,14 +94,14 @@ TEST(ParseRig, PropagatesIndependentErrorsAsMonteCarloDoes) {
   const Rig rig = RigOf(
       R"({"bob_mass": {"value": 0.38, "std_dev": 0.002}, "rod_mass": {"value": 0.095, "std_dev": 0.005},
           "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0.05}})");
-  constexpr int kDraws = 200000;  // Gives a standard deviation to 0.16 %.
+  constexpr int kDraws = 200000;  // Determines a standard deviation to 0.16 %.
   std::mt19937_64 generator(20240611);
   std::normal_distribution<double> normal;
   double torque_sum = 0, torque_squares = 0, inertia_sum = 0, inertia_squares = 0;
   for (int i = 0; i < kDraws; ++i) {
     const double bob = 0.38 + 0.002 * normal(generator), rod = 0.095 + 0.005 * normal(generator);
     const double length = 0.43 + 0.001 * normal(generator), gravity = 9.81 + 0.05 * normal(generator);
-    // Through the center of mass and the parallel-axis theorem, unlike the code under test.
+    // Computed via the center of mass and the parallel-axis theorem, unlike the code under test.
     const double center_of_mass = (bob * length + rod * length / 2) / (bob + rod);
     const double torque = (bob + rod) * gravity * center_of_mass - 1.80332325;
     const double inertia = rod * length * length / 12 + rod * std::pow(length / 2, 2) + bob * length * length - 0.0761;
@@ -194,7 +194,7 @@ TEST(ParseRig, RefusesJsonThatIsNotAnObject) {
 TEST(ParseRig, RefusesNumbersBeyondTheRangeOfADouble) {
   EXPECT_EQ(FaultOf(R"({"bob_mass": 1, "rod_mass": 1e999, "rod_length": 1, "gravity": 1})"),
             R"(rig.json: "rod_mass" is beyond what a number can be (about 1e308); correct it)");
-  // Each a double, their product none.
+  // Each value fits in a double, but the product does not.
   EXPECT_THAT(FaultOf(R"({"mass": 1e200, "center_of_mass": 1e200, "gravity": 1})"), HasSubstr("beyond 1e-30 to 1e30"));
   EXPECT_THAT(FaultOf(R"({"mass": 1e-200, "center_of_mass": 1e-200, "gravity": 1})"),
               HasSubstr("beyond 1e-30 to 1e30"));

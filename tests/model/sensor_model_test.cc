@@ -39,7 +39,7 @@ std::vector<Case> Cases() {
           {arc, {0.02, 3.1, -2.2, 40}}};
 }
 
-/// At several states, against central differences of the reading itself.
+/// Compares with central differences of the reading at several states.
 TEST(SensorModel, HasTheDerivativesOfItsReading) {
   constexpr double kStep = 1e-6;
   for (const Case& each : Cases()) {
@@ -63,8 +63,8 @@ TEST(SensorModel, HasTheDerivativesOfItsReading) {
   }
 }
 
-/// Textbook: at rest an accelerometer shows g along the rod and nothing across it; a point mass on a string shows, at
-/// the bob and across the string, nothing of a frictionless swing, for r α = -g sin θ.
+/// Textbook: at rest an accelerometer shows g along the rod and 0 across it. On a point mass that swings on a string
+/// without friction it shows 0 across the string, because r α = -g sin θ.
 TEST(SensorModel, ShowsWhatAnAccelerometerDoes) {
   SensorModel sensor = Kind(SensorKind::kAcceleration);
   sensor.gravity = 9.81;
@@ -73,11 +73,11 @@ TEST(SensorModel, ShowsWhatAnAccelerometerDoes) {
   EXPECT_THAT(sensor.At({0, 0, 0}, across.data()).reading, DoubleNear(0, 1e-12));
   EXPECT_THAT(sensor.At({0, 0, 0}, along.data()).reading, DoubleNear(9.81, 1e-12));
   EXPECT_THAT(sensor.At({0.4, 1, -9.81 / 0.5 * std::sin(0.4)}, across.data()).reading, DoubleNear(0, 1e-12));
-  // On a circle of radius r at the rate ω: r ω² towards the centre.
+  // On a circle of radius r at the rate ω the acceleration is r ω² towards the centre.
   EXPECT_THAT(sensor.At({0, 3, 0}, along.data()).reading, DoubleNear(9.81 + 0.5 * 9, 1e-12));
 }
 
-/// Seen from the pivot itself, a point on a circle is at its angle, also beyond a turn.
+/// A point on a circle, seen from the pivot, appears at its angle, also beyond a full turn.
 TEST(SensorModel, SeesTheAngleFromThePivot) {
   for (const double down : {1.0, -1.0}) {
     SensorModel arc = Kind(SensorKind::kArc);

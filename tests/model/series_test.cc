@@ -18,7 +18,7 @@ namespace {
 
 using testing::DoubleNear;
 
-/// Coefficients that shrink like those of a function with a singularity at 1/decay.
+/// Coefficients that decrease like those of a function with a singularity at 1/decay.
 Series<double> RandomSeries(std::mt19937_64& generator, double decay) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Series<double> series;
@@ -63,7 +63,7 @@ TEST(CauchyProduct, ReadsNoCoefficientBeyondTheOneAskedFor) {
 
 using Exact = boost::multiprecision::cpp_bin_float_50;
 
-/// Taylor coefficients of sin(Σ c_n τⁿ) by Boost's automatic differentiation, in 50 digits.
+/// Taylor coefficients of sin(Σ c_n τⁿ) by Boost's automatic differentiation with 50 digits.
 Series<double> SineByAutodiff(const Series<double>& angle) {
   const auto tau = boost::math::differentiation::make_fvar<Exact, kMaxOrder>(Exact(0));
   auto sum = tau * Exact(0) + Exact(angle[kMaxOrder]);
@@ -78,7 +78,7 @@ Series<double> SineByAutodiff(const Series<double>& angle) {
   return coefficients;
 }
 
-/// What SineSeries makes of the angle, given at each order only what its contract says it reads.
+/// Coefficients by SineSeries. At each order only the coefficients that its contract allows it to read are given.
 Series<double> SineInOrder(const Series<double>& angle) {
   SineSeries sine;
   Series<double> known_rate = Coefficients({});
@@ -92,7 +92,7 @@ Series<double> SineInOrder(const Series<double>& angle) {
   return coefficients;
 }
 
-/// Compares in units of the largest coefficient from n on, for higher ones can cancel.
+/// Compares relative to the largest coefficient from n on, because terms of higher coefficients can cancel.
 void ExpectSine(const Series<double>& angle) {
   const Series<double> expected = SineByAutodiff(angle);
   const Series<double> actual = SineInOrder(angle);

@@ -11,9 +11,9 @@ namespace pendulum {
 /// Simple Pendulum" (Control Tutorials for MATLAB and Simulink).
 inline constexpr double kReferenceInertia = 0.079 / 1.803;
 
-/// θ [rad] at t s after an undamped pendulum was let go at `amplitude`: sin(θ/2) = k cd(t / √I, k), k = sin(A/2)
-/// (Abramowitz & Stegun, Handbook of Mathematical Functions, chapter 16). In long double, for 1 - k² cancels near 180
-/// deg.
+/// θ [rad] at t s after an undamped pendulum was released at `amplitude`: sin(θ/2) = k cd(t / √I, k), k = sin(A/2)
+/// (Abramowitz & Stegun, Handbook of Mathematical Functions, chapter 16). Computed in long double, because 1 - k²
+/// cancels near 180 deg.
 inline double UndampedAngle(double amplitude, double inertia, double time) {
   const long double modulus = std::sin(0.5L * amplitude);
   const long double phase = time / std::sqrt(static_cast<long double>(inertia));

@@ -15,7 +15,8 @@ namespace {
 using testing::DoubleNear;
 using testing::HasSubstr;
 
-/// Points at angles from -half to half about (640, 120), 400 away, y downwards, with noise of that standard deviation.
+/// Points at angles from -half to half about (640, 120) at distance 400, y downwards, with noise of the given standard
+/// deviation.
 struct Points {
   Points(double half, double noise, unsigned seed) : x(kCount), y(kCount) {
     std::mt19937_64 generator(seed);
@@ -50,8 +51,8 @@ TEST(FitArc, SeesWhichWayYGrows) {
   EXPECT_THAT(arc->Angle(640 + 400 * std::sin(0.2), -120 - 400 * std::cos(0.2)), DoubleNear(0.2, 1e-8));
 }
 
-/// Over 300 seeds the squared distances to the truth, in the covariance given, are χ² of 3 degrees of freedom: their
-/// mean 3 ± 0.14.
+/// Over 300 seeds the squared distance to the truth, weighted with the covariance, is χ² with 3 degrees of freedom. Its
+/// mean is 3 ± 0.14.
 TEST(FitArc, HasTheErrorsItSays) {
   double sum = 0;
   constexpr int kSeeds = 300;
@@ -65,8 +66,8 @@ TEST(FitArc, HasTheErrorsItSays) {
   EXPECT_THAT(sum / kSeeds, DoubleNear(3, 0.5));
 }
 
-/// The middle of a sine of amplitude A is J0(A) radii below the pivot (DLMF 10.9.1): 0.28 for 1.9, 0.00 for 2.4, and
-/// 0.26 above it for 3.
+/// The middle of a sine of amplitude A is J0(A) radii below the pivot (DLMF 10.9.1): 0.28 for 1.9, 0.00 for 2.4. For 3
+/// it is 0.26 radii above the pivot.
 TEST(FitArc, RefusesPointsThatDoNotTellWhichWayIsDown) {
   EXPECT_TRUE(FitArc(Points(1.9, 0, 1).x, Points(1.9, 0, 1).y));
   for (const double half : {2.4, 3.0, 30.0}) {

@@ -18,7 +18,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Rows with these stamps from line 2 on; each value is its row unless values are given.
+/// Rows with these stamps, starting on line 2. Each value is its row number unless values are given.
 RawSamples Rows(const std::vector<double>& time, const std::string& unit = "s", std::vector<double> value = {}) {
   RawSamples samples;
   samples.name = "run.csv";
@@ -37,7 +37,7 @@ std::vector<double> Stamps(int count, const std::function<double(int)>& stamp) {
   return time;
 }
 
-/// i-th of `count` stamps at 100 Hz, to the digits a file would have.
+/// i-th stamp at 100 Hz, with the digits a file would have.
 double Hundredth(int i) { return i / 100.0; }
 
 RawSamples Repaired(const RawSamples& samples) {
@@ -76,7 +76,7 @@ TEST(LineNumbers, KnowsTheLineOfEachRow) {
   for (const auto& [row, line] : {std::pair{0, 2}, {2, 4}, {3, 7}, {4, 8}, {5, 20}}) EXPECT_EQ(lines.LineOf(row), line);
 }
 
-// ---- What is ordinary --------------------------------------------------------------------------------------------
+// ---- Nothing to repair -------------------------------------------------------------------------------------------
 
 TEST(RepairClock, LeavesUniformStampsAsTheyAre) {
   ExpectUntouched(Rows(Stamps(2000, Hundredth)));
@@ -91,7 +91,7 @@ TEST(RepairClock, LeavesEventDrivenSamplingAsItIs) {
   std::mt19937 random(7);
   double time = 4;
   ExpectUntouched(Rows(Stamps(3000, [&](int) {
-    // From 0.1 ms to 1.3 s, to a microsecond, as likely in each factor of e.
+    // From 0.1 ms to 1.3 s, to a microsecond, logarithmically uniform.
     time += 1e-4 * std::exp(std::log(13000.0) * static_cast<double>(random()) / 4294967296.0);
     return std::round(time * 1e6) / 1e6;
   })));
@@ -120,7 +120,7 @@ TEST(RepairClock, CountsOnAsOftenAsTheCounterBegins) {
 }
 
 TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
-  // The logger was started again: 2^32 us would lie between two steps of 10 ms.
+  // The logger was restarted: a wrap would mean 2^32 us between two steps of 10 ms.
   EXPECT_EQ(
       FaultOf(Rows(Stamps(200, [](int i) { return i < 100 ? 3e9 + 1e4 * i : 1e4 * i; }), "us")),
       "run.csv:102: time 1000000 us follows 3000990000 us, so the clock was set back: these are two recordings in "
@@ -130,9 +130,9 @@ TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
 TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
   struct Case {
     const char* unit;
-    double first;  // Of the counter's 65536 values.
+    double first;  // First of the counter's 65536 values.
     double step;
-    int wraps;  // Of 20000 steps: floor(20000 step / 65536), as the count starts at `first`.
+    int wraps;  // In 20000 steps: floor(20000 step / 65536), as the count starts at `first`.
   };
   for (const Case& each : {Case{"ms", 0, 10, 3}, Case{"us", 0, 10000, 3051}, Case{"ms", -32768, 10, 3}}) {
     const auto stamp = [&](int i) { return each.first + std::fmod(each.step * i, 65536.0); };
@@ -145,12 +145,12 @@ TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
 }
 
 TEST(RepairClock, DoesNotCountOnACounterOf16BitsWhereStepsAreUnalike) {
-  // Set back after 61 s, 4.5 s before the counter's end; and the same after a value that no 16 bits hold.
+  // Set back after 61 s, 4.5 s before the counter's end; then set back after a value above 16 bits.
   EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6100); }), "ms")),
               testing::HasSubstr("so the clock was set back"));
   EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6554) + 6; }), "ms")),
               testing::HasSubstr("65536 ms, so the clock was set back"));
-  // Six rows of 10 ms lost: 70 ms are seen as 4.464 ms.
+  // Six rows of 10 ms are lost, so 70 ms appear as 4.464 ms.
   EXPECT_THAT(FaultOf(Rows(Stamps(200, [](int i) { return std::fmod(1e4 * (i < 50 ? i : i + 6), 65536.0); }), "us")),
               testing::HasSubstr("so the clock was set back"));
 }
@@ -161,10 +161,10 @@ struct Rounding {
   double grid;
   double rate_hz;
   double start;
-  double freedom = 0.1;  // Of the grid: what the stamps leave open, over the whole of them.
+  double freedom = 0.1;  // In grid steps: largest error that the stamps permit.
 };
 
-/// The truth is the clock the stamps were rounded from; a common shift, which rounding hides, apart.
+/// Compares with the true clock, from which the stamps were rounded, except for a common shift that rounding hides.
 void ExpectTheClockBack(const Rounding& rounding, const std::function<double(double)>& round) {
   const auto truth = [&](int i) { return rounding.start + i / rounding.rate_hz; };
   const auto stamp = [&](int i) { return std::round(round(truth(i) / rounding.grid) * rounding.grid * 1e9) / 1e9; };
@@ -179,7 +179,7 @@ void ExpectTheClockBack(const Rounding& rounding, const std::function<double(dou
 }
 
 TEST(RepairClock, FindsTheUniformClockBehindCoarseStamps) {
-  // At 29.97 Hz three rows in a row share a stamp of 0.1 s, but for one slip in 1000 rows.
+  // At 29.97 Hz three successive rows share a stamp of 0.1 s, except for one slip in 1000 rows.
   for (const Rounding& rounding : {Rounding{0.1, 30, 0.013}, Rounding{1, 30, 0.4}, Rounding{0.1, 29.97, 100, 0.34},
                                    Rounding{0.01, 30, 3.3}, Rounding{0.1, 12, 0}, Rounding{0.01, 83.1, 0}}) {
     ExpectTheClockBack(rounding, [](double x) { return std::round(x); });
@@ -189,7 +189,7 @@ TEST(RepairClock, FindsTheUniformClockBehindCoarseStamps) {
 
 /// 100 Hz, rounded by `round`.
 RawSamples Coarse(int seconds, double grid, double start, const std::function<double(double)>& round) {
-  // A stamp half way, 0.5 s = 50 counts of 0.01 s, stays half way: whole hundredths are divided.
+  // Whole hundredths are divided, so a stamp halfway between two steps stays halfway: 0.5 s = 50 counts of 0.01 s.
   const double counts = std::round(100 * grid);
   return Rows(Stamps(100 * seconds + 1, [&](int i) { return round((100 * start + i) / counts) * grid; }));
 }
@@ -207,9 +207,9 @@ TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
           ASSERT_EQ(repaired.warnings.at(0).code, "time_rounded") << name;
           EXPECT_LE((repaired.time - samples.time).cwiseAbs().maxCoeff(), (0.5 + 1e-6) * grid) << name;
           const double step = (repaired.time[100 * seconds] - repaired.time[0]) / (100 * seconds);
-          const double half_width = std::sqrt(3.0) * repaired.clock_std_dev;  // Of an equal distribution.
+          const double half_width = std::sqrt(3.0) * repaired.clock_std_dev;  // For a uniform distribution.
           EXPECT_LE(std::abs(0.01 / step - 1), half_width) << name;
-          // The first and the last step of the grid alone, which rows of them fix to a row each, leave as much open.
+          // The bound uses only the first and the last grid step, whose positions are each known to within one row.
           EXPECT_LE(half_width, 0.01 / (seconds - 2 * grid)) << name;
         }
       }
@@ -217,7 +217,8 @@ TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
   }
 }
 
-/// At both ends the band that the stamps lie in is as wide as a step: it is convex in the slope, so beyond it is wider.
+/// At both limits the band that contains the stamps is one step wide. Its width is convex in the slope, so it is larger
+/// outside.
 TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
   std::mt19937 random(19);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -229,7 +230,7 @@ TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
     if (repaired.clock_std_dev == 0) continue;
     const double middle = (repaired.time[size - 1] - repaired.time[0]) / (size - 1);
     const double half_width = std::sqrt(3.0) * repaired.clock_std_dev * middle;
-    const auto width = [&](double each) {  // Of the band along a slope.
+    const auto width = [&](double each) {  // Width of the band for a slope.
       double low = stamps[0], high = stamps[0];
       for (int i = 0; i < size; ++i) {
         low = std::min(low, stamps[i] - each * i);
@@ -243,8 +244,8 @@ TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
 }
 
 TEST(RepairClock, SaysWhatItMadeOfCoarseStamps) {
-  // Rows 2 and 898 and rows 1 and 899 are a third of a step off, towards and away: 0.3 s is 1 / 896 too long or
-  // 1 / 898 too short at the most.
+  // Rows 2 and 898, and rows 1 and 899, are a third of a step off, towards and away from each other. So 0.3 s is at
+  // most 1 / 896 too long or 1 / 898 too short.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
             "time_rounded: run.csv:2: the times are rounded to 0.1 s, coarse against the sampling interval; they were "
             "replaced by a uniform clock of 30 Hz, the middle of those that agree with each of them, which end at "
@@ -332,7 +333,7 @@ TEST(RepairClock, LeavesOutTheFewestRowsWhereAStampGoesBack) {
 TEST(RepairClock, SeesThatStampsAreOutOfOrderAcrossOthers) {
   std::vector<double> time = Stamps(100, [](int i) { return i; });
   for (const auto& [row, stamp] : {std::pair{11, 13.0}, {12, 12.0}, {13, 14.0}, {14, 12.5}}) time[row] = stamp;
-  // 10 13 12 14 12.5 15: 10 12 12.5 15 leaves out two rows, 10 13 14 15 too, nothing fewer.
+  // 10 13 12 14 12.5 15: both 10 12 12.5 15 and 10 13 14 15 leave out two rows; leaving out one is not enough.
   EXPECT_EQ(Repaired(Rows(time)).time.size(), 98);
 }
 

@@ -19,7 +19,7 @@ namespace pendulum {
 
 using MatVariables = std::vector<matvar_t*>;
 
-/// A matrix of doubles, in MATLAB's order of columns.
+/// A matrix of doubles in MATLAB's column-major order.
 inline matvar_t* Matrix(const char* name, std::size_t rows, const std::vector<double>& values, int options = 0) {
   std::size_t sizes[] = {rows, rows == 0 ? 0 : values.size() / rows};
   return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, const_cast<double*>(values.data()), options);
@@ -45,7 +45,7 @@ inline matvar_t* Structure(const char* name, const std::vector<std::pair<const c
   return structure;
 }
 
-/// The bytes of a file of these variables, which are freed.
+/// The bytes of a file with these variables, which are freed.
 inline std::string MatOf(const MatVariables& variables, mat_ft version = MAT_FT_MAT5, bool is_packed = true) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("mat_files_" + std::to_string(::getpid()))).string();

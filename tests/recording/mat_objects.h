@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
-/// Objects for tests as MATLAB keeps them in files, written down from what is known of its files rather than from the
-/// reader: here what is alike in all versions.
+/// Objects for tests in MATLAB's file format, written from what is known of its files, independently of the reader.
+/// This file contains the parts common to all versions.
 namespace pendulum::objects {
 
-/// An array of MATLAB's: "double", "uint32", "char", "cell", "struct", or "object", whose class is the text.
+/// A MATLAB array: "double", "uint32", "char", "cell", "struct", or "object" with the class in `text`.
 struct Array {
   std::string kind = "double";
   std::vector<std::size_t> sizes;
   std::vector<double> numbers;
   std::string text;
   std::vector<std::string> names;  // Of a structure's fields.
-  std::vector<Array> parts;        // Its fields, or the cells.
+  std::vector<Array> parts;        // Its fields, or its cells.
 };
 
 using Fields = std::vector<std::pair<std::string, Array>>;
@@ -42,7 +42,7 @@ inline Array Struct(const Fields& fields) {
   return array;
 }
 
-/// A number of bytes in either order.
+/// A number in `size` bytes of either order.
 inline std::string Bytes(std::uint64_t number, std::size_t size, bool is_big) {
   std::string bytes;
   for (std::size_t i = 0; i < size; ++i) bytes += static_cast<char>(number >> 8 * i);
@@ -50,10 +50,10 @@ inline std::string Bytes(std::uint64_t number, std::size_t size, bool is_big) {
   return bytes;
 }
 
-/// Variables and the objects that they refer to.
+/// Variables and the objects to which they refer.
 class File {
  public:
-  /// `version` of the table: 2, 3 or 4, after whose values of properties as many cells less one are something else.
+  /// `version` of the table: 2, 3 or 4. After the values of properties, version - 2 additional cells follow.
   explicit File(int version = 4) : version_(version) {}
 
   std::size_t AddClass(const std::string& package, const std::string& name, const Fields& defaults = {}) {
@@ -82,7 +82,7 @@ class File {
     return objects_.size();
   }
 
-  /// What stands for objects in the place of a value: as a property's, or as a variable's.
+  /// The value that refers to objects, for a property or a variable.
   Array Reference(const std::vector<std::size_t>& objects, bool is_variable = false) const {
     const std::uint32_t class_id = objects_[objects.front() - 1].class_id;
     std::vector<double> numbers = {3707764736.0, 2, 1, static_cast<double>(objects.size())};  // 0xDD000000
@@ -97,7 +97,7 @@ class File {
   void AddVariable(const std::string& name, const Array& array) { variables_.emplace_back(name, array); }
   const Fields& variables() const { return variables_; }
 
-  /// The cells of the subsystem: the table, an empty one, values of properties, what each version adds, defaults.
+  /// The cells of the subsystem: the table, an empty cell, values of properties, additions of each version, defaults.
   std::vector<Array> AllCells(bool is_big) const {
     const std::string table = Table(is_big);
     std::vector<Array> cells = {Numbers({table.size(), 1}, {}, "uint8"), Nothing()};

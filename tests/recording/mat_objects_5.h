@@ -15,7 +15,7 @@
 /// Files of version 5 with objects.
 namespace pendulum::objects {
 
-/// How a file of version 5 is written.
+/// Byte order and compression of a file of version 5.
 struct Form {
   bool is_big = false, is_packed = false;
 };
@@ -41,7 +41,7 @@ class Writer5 {
   std::string Word(std::uint64_t number) const { return Bytes(number, 4, form_.is_big); }
 
   std::string Element(std::uint32_t type, const std::string& bytes) const {
-    if (!bytes.empty() && bytes.size() <= 4 && type != kMatrix) {  // size and type are one word
+    if (!bytes.empty() && bytes.size() <= 4 && type != kMatrix) {  // size and type share a word
       return Word(bytes.size() << 16 | type) + bytes + std::string(4 - bytes.size(), '\0');
     }
     return Word(type) + Word(bytes.size()) + bytes + std::string((8 - bytes.size() % 8) % 8, '\0');

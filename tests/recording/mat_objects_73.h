@@ -65,7 +65,7 @@ class Writer73 {
     H5Sclose(space);
   }
 
-  /// MATLAB's first size is HDF5's last.
+  /// HDF5 stores sizes in the reverse of MATLAB's order.
   static hid_t Dataset(hid_t group, const std::string& name, const std::vector<std::size_t>& sizes, hid_t type,
                        hid_t memory, const void* data, bool is_packed = false) {
     const std::vector<hsize_t> lengths(sizes.rbegin(), sizes.rend());
@@ -134,7 +134,7 @@ class Writer73 {
       dataset = Dataset(group, name, array.sizes, H5T_STD_U16LE, H5T_NATIVE_UINT16, letters.data());
     } else {
       dataset = Dataset(group, name, array.sizes, TypeOf(array.kind), H5T_NATIVE_DOUBLE, array.numbers.data(),
-                        is_packed_ && array.numbers.size() > 6);  // as MATLAB does it where it is worth it
+                        is_packed_ && array.numbers.size() > 6);  // MATLAB compresses larger arrays
     }
     if (array.kind == "object") Say(dataset, "MATLAB_object_decode", 3);
     SayClass(dataset, array.kind == "object" ? array.text : array.kind);

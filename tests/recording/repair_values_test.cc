@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Le;
 
-/// 100 Hz of amplitude * cos(5 t) around a middle; no noise.
+/// amplitude * cos(5 t) about a middle at 100 Hz, without noise.
 Recording Wave(double amplitude, double middle = 0, Eigen::Index count = 1000) {
   Recording recording;
   recording.time = Eigen::ArrayXd::LinSpaced(count, 0, 0.01 * static_cast<double>(count - 1));
@@ -28,7 +28,7 @@ Recording Wave(double amplitude, double middle = 0, Eigen::Index count = 1000) {
   return recording;
 }
 
-/// Noise in (-1, 1) with the standard deviation of a normal one: the sum of twelve uniform draws.
+/// Adds nearly normal noise of standard deviation `sigma`: the sum of twelve uniform draws.
 Recording Noisy(Recording recording, double sigma, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   for (double& value : recording.value) {
@@ -52,7 +52,7 @@ void ExpectUntouched(const Recording& recording) {
   EXPECT_EQ(repaired.value, recording.value);
 }
 
-/// Largest distance of a repaired recording's readings to a curve at their times.
+/// Largest distance of a repaired recording's readings from a curve.
 template <typename Curve>
 double FarthestFrom(const Recording& recording, const Curve& curve) {
   double farthest = 0;
@@ -64,7 +64,7 @@ double FarthestFrom(const Recording& recording, const Curve& curve) {
 
 // ---- Whole turns ----------------------------------------------------------------------------------------------------
 
-/// What a sensor shows that begins again at `low` after a turn.
+/// The readings of a sensor that wraps around at `low`.
 Recording Wrapped(Recording recording, double low) {
   for (double& value : recording.value) value -= 2 * kPi * std::floor((value - low) / (2 * kPi));
   return recording;
@@ -82,7 +82,7 @@ TEST(RepairValues, ContinuesAnAngleAcrossTheZeroOfASensorThatBeginsAgain) {
 }
 
 TEST(RepairValues, ContinuesALargeSwingBeyondHalfATurn) {
-  // Its sensor is mounted 60 deg off and shows (-180, 180] deg.
+  // The sensor is mounted at 60 deg and shows (-180, 180] deg.
   const Recording repaired = RepairValues(Wrapped(Wave(-2.5, kPi / 3), -kPi));
   ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
   EXPECT_LT(FarthestFrom(repaired, [](double t) { return kPi / 3 - 2.5 * std::cos(5 * t); }), 1e-12);
@@ -90,7 +90,7 @@ TEST(RepairValues, ContinuesALargeSwingBeyondHalfATurn) {
 
 TEST(RepairValues, LeavesAnAngleOfMoreThanATurnAsItIs) {
   Recording recording = Wave(2.0);
-  recording.value.tail(500).array() += 2 * kPi;  // whatever this is
+  recording.value.tail(500).array() += 2 * kPi;  // cause unknown
   const Recording repaired = RepairValues(recording);
   EXPECT_EQ(repaired.value, recording.value);
 }
@@ -104,7 +104,7 @@ TEST(RepairValues, UnwrapsNoRateAndNoCounts) {
   }
 }
 
-// ---- Readings that only repeat --------------------------------------------------------------------------------------
+// ---- Repeated readings ----------------------------------------------------------------------------------------------
 
 TEST(RepairValues, LeavesOutWhatATrackerRepeats) {
   for (const int times : {2, 3}) {
@@ -124,7 +124,7 @@ TEST(RepairValues, LeavesOutWhatATrackerRepeats) {
 
 TEST(RepairValues, LeavesOutARunThatIsFrozenInMotion) {
   Recording recording = Wave(0.5);
-  recording.value.segment(151, 5).setConstant(recording.value[150]);  // half way down
+  recording.value.segment(151, 5).setConstant(recording.value[150]);  // halfway down
   const Recording repaired = RepairValues(recording);
   ASSERT_THAT(Codes(repaired), ElementsAre("stale_values"));
   EXPECT_EQ(repaired.size(), 995);
@@ -132,11 +132,11 @@ TEST(RepairValues, LeavesOutARunThatIsFrozenInMotion) {
 }
 
 TEST(RepairValues, KeepsWhatRepeatsAtRestAndWhereQuantizedReadingsTurn) {
-  Recording rest = Wave(0.5);  // held for 2 s, and stopped after six periods
+  Recording rest = Wave(0.5);  // held for 2 s, and at rest after six periods
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
     rest.value[i] = 0.5 * std::cos(std::clamp(5 * (rest.time[i] - 2), 0.0, 12 * kPi));
   }
-  Recording fast = rest;  // by the hold's last readings the next are already far
+  Recording fast = rest;  // the reading after the hold is already far away
   fast.value = (fast.value / 1e-4).array().round() * 1e-4;
   fast.resolution = 1e-4;
   for (Eigen::Index i = 0; i < 190; ++i) fast.value[i] += 1e-4 * static_cast<double>(i % 2);
@@ -154,13 +154,13 @@ TEST(RepairValues, LeavesOutSpikesAndNothingBesides) {
   const Recording clean = Noisy(Wave(0.5), 0.002, 1);
   for (const double height : {0.1, -0.3, 3.0}) {
     Recording recording = clean;
-    std::vector<Eigen::Index> spiked = {100, 333, 334, 700};  // two of them side by side
+    std::vector<Eigen::Index> spiked = {100, 333, 334, 700};  // two of them adjacent
     for (const Eigen::Index i : spiked) recording.value[i] += height;
     const Recording repaired = RepairValues(recording);
     ASSERT_THAT(Codes(repaired), ElementsAre("spikes")) << height;
     EXPECT_EQ(repaired.warnings[0].message, "4 readings far from their neighbours on both sides are left out");
     EXPECT_EQ(repaired.size(), 996);
-    EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 0.013);  // the noise
+    EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 0.013);  // limited by the noise
   }
 }
 
@@ -173,7 +173,7 @@ TEST(RepairValues, LeavesOutReadingsThatDropToAFixedValue) {
 }
 
 TEST(RepairValues, KeepsAKickAndARelease) {
-  Recording kicked = Wave(0.5);  // at 4.7 s its rate is another at once, 0.3 s after a turn
+  Recording kicked = Wave(0.5);  // its rate changes suddenly at 4.7 s, 0.3 s after a turning point
   for (Eigen::Index i = 470; i < kicked.size(); ++i) {
     kicked.value[i] += 0.3 * std::sin(5 * (kicked.time[i] - kicked.time[470]));
   }
@@ -207,7 +207,7 @@ TEST(RepairValues, LeavesNothingOutWhereThereAreTooManySpikes) {
   EXPECT_THAT(std::stoi(repaired.warnings[0].message), testing::Ge(101));
 }
 
-// ---- A row at each change -------------------------------------------------------------------------------------------
+// ---- Rows only at changes -------------------------------------------------------------------------------------------
 
 /// An encoder of 0.01 rad per count.
 Recording Counted(Eigen::Index count, double step) {

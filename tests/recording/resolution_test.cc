@@ -14,16 +14,16 @@ namespace {
 
 using Eigen::Index;
 
-/// A seeded swing that decays, at 100 Hz, with noise.
+/// Simulates a seeded, decaying swing at 100 Hz with noise.
 class Lab {
  public:
   explicit Lab(std::uint64_t seed) : generator_(seed) {}
 
-  /// In [0, 1), the same everywhere.
+  /// In [0, 1), the same on every platform.
   double Uniform() { return std::ldexp(static_cast<double>(generator_() >> 11), -53); }
   double Between(double low, double high) { return low + (high - low) * Uniform(); }
 
-  /// Normal, nearly: the sum of twelve uniform draws.
+  /// Nearly normal: the sum of twelve uniform draws.
   double Noise() {
     double sum = -6;
     for (int k = 0; k < 12; ++k) sum += Uniform();
@@ -46,7 +46,7 @@ class Lab {
   std::mt19937_64 generator_;
 };
 
-/// What a sensor with levels offset + q k shows.
+/// The readings of a sensor with levels offset + q k.
 Eigen::VectorXd Quantized(const Eigen::VectorXd& value, double q, double offset = 0) {
   return (offset + q * ((value.array() - offset) / q).round()).matrix();
 }
@@ -62,7 +62,7 @@ Eigen::VectorXd EachRepeated(const Eigen::VectorXd& value, Index times) {
   return repeated;
 }
 
-/// Of 200 recordings, those for which the resolution is not within a quarter of a step over their span.
+/// The number of 200 recordings whose resolution is wrong by at least a quarter of a step over their span.
 template <typename Record>
 int WrongOf200(double q, const Record& record) {
   int wrong = 0;
@@ -75,7 +75,7 @@ int WrongOf200(double q, const Record& record) {
   return wrong;
 }
 
-/// Of 200 recordings without resolution, those in which one is found.
+/// The number of 200 continuous recordings for which a resolution is found.
 template <typename Record>
 int InventedOf200(const Record& record) {
   int invented = 0;

@@ -9,12 +9,12 @@
 
 #include "pendulum/recording/readers/read_recording.h"
 
-/// Small files for tests of the reader, and what it makes of them.
+/// Small files for tests of the reader, and the expected results.
 namespace pendulum {
 
 inline constexpr double kDegree = 0.017453292519943295;  // rad, NIST SP 811, table 6
 
-/// Eight rows; `{t}` stands for 0, 10, ..., 70 and `{v}` for 100, 101, ..., 107.
+/// Eight rows; `{t}` is replaced by 0, 10, ..., 70 and `{v}` by 100, 101, ..., 107.
 inline std::string Rows(const std::string& pattern, int count = 8) {
   std::string rows;
   for (int i = 0; i < count; ++i) {
@@ -33,7 +33,7 @@ inline Recording RecordingOf(const std::string& text, const ReadOptions& options
   return recording.value_or(Recording());
 }
 
-/// The times 0, 0.01, ..., 0.07 s and the values 100, 101, ..., 107 times `unit`.
+/// Expects the times 0, 0.01, ..., 0.07 s and the values 100, 101, ..., 107 times `unit`.
 inline void ExpectTheRows(const Recording& recording, double unit = 1) {
   ASSERT_EQ(recording.size(), 8);
   for (int i = 0; i < 8; ++i) {

@@ -68,7 +68,7 @@ TEST(ParseCalibration, NeedsOnlyInputUnitAndCoefficients) {
 /// The published table of the reference rig: straight line 0.1985 x - 49.6077 deg.
 TEST(Calibration, TurnsReadingsIntoRadians) {
   const Calibration line = CalibrationOf(With("coefficients", "[-49.6077, 0.1985]"));
-  EXPECT_NEAR(line.Angle(261) / kDegree, 2.2008, 1e-12);  // 51.8085 - 49.6077, by hand
+  EXPECT_NEAR(line.Angle(261) / kDegree, 2.2008, 1e-12);  // 51.8085 - 49.6077, computed by hand
   EXPECT_DOUBLE_EQ(line.Slope(261), 0.1985 * kDegree);
 }
 
@@ -81,7 +81,7 @@ TEST(Calibration, OfHigherOrderHasTheSlopeOfItsCurve) {
 TEST(Calibration, FindsTheReadingThatShowsAnAngle) {
   const Calibration line = CalibrationOf(With("coefficients", "[-49.6077, 0.1985]"));
   EXPECT_NEAR(line.Reading(2.2008 * kDegree, 0), 261, 1e-9);
-  // x³ + 2 x rises everywhere: 12 at 2, -33 at -3.
+  // x³ + 2 x increases everywhere: 12 at 2, -33 at -3.
   const Calibration cubic = CalibrationOf(R"({"input": "volts", "angle_unit": "rad", "coefficients": [0, 2, 0, 1]})");
   EXPECT_NEAR(cubic.Reading(12, 0), 2, 1e-12);
   EXPECT_NEAR(cubic.Reading(-33, 5), -3, 1e-12);
@@ -95,7 +95,7 @@ TEST(Calibration, FindsTheReadingNextToWhereItIsSought) {
   const Calibration parabola = CalibrationOf(With("coefficients", "[-1, 0, 1]"));
   EXPECT_NEAR(parabola.Reading(3 * kDegree, 1.5), 2, 1e-12);
   EXPECT_NEAR(parabola.Reading(3 * kDegree, -1.5), -2, 1e-12);
-  EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // flat there: no side is nearer
+  EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // flat there: neither side is nearer
 }
 
 TEST(Calibration, KnowsItsUnit) {

@@ -26,7 +26,7 @@ Recording Of(const std::vector<double>& time, const std::vector<double>& counts)
   return recording;
 }
 
-/// A cos ωt on counts, every `step` s; rows that repeat a count are left out if only changes are wanted.
+/// A cos ωt in counts, every `step` s. With `changes`, rows that repeat a count are left out.
 Recording Wave(double amplitude, double step, bool changes) {
   constexpr double kRate = 5;  // rad/s
   std::vector<double> time, counts;
@@ -64,7 +64,8 @@ TEST(IsEventDriven, NeedsAnAngleOnLevels) {
 }
 
 TEST(TakeEdges, PutsARowOnTheEdgeThatItsDirectionCrossed) {
-  // Up to count 3, back down past 0: by hand, edges at half counts, a silence in count 3 and the first row in count 0.
+  // Up to count 3 and back down past 0. By hand: edges at half counts, silences in count 3 and for the first row in
+  // count 0.
   const Recording edges = TakeEdges(Of({0, 1, 2, 3, 5, 6, 7, 8}, {0, 1, 2, 3, 2, 1, 0, -1}));
   const std::vector<double> time = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   const std::vector<double> counts = {0, 0.5, 1.5, 2.5, 3, 2.5, 1.5, 0.5, -0.5};
@@ -83,7 +84,7 @@ TEST(TakeEdges, PutsARowOnTheEdgeThatItsDirectionCrossed) {
 TEST(TakeEdges, TakesTheEdgeOfTheCountJustEnteredWhereRowsWereMissed) {
   const Recording edges = TakeEdges(Of({0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 3, 4, 5, 4, 2, 1}));
   EXPECT_THAT(edges.value[2], DoubleNear(2.5 * kResolution, 1e-15));
-  EXPECT_THAT(edges.value[7], DoubleNear(2.5 * kResolution, 1e-15));  // behind the silence at the turn
+  EXPECT_THAT(edges.value[7], DoubleNear(2.5 * kResolution, 1e-15));  // after the silence at the turning point
 }
 
 TEST(TakeEdges, TakesARepeatedCountForASilence) {
@@ -91,12 +92,12 @@ TEST(TakeEdges, TakesARepeatedCountForASilence) {
   EXPECT_THAT(edges.value[3], DoubleNear(2 * kResolution, 1e-15));
 }
 
-/// Rows against a fast motion between its long runs: a logger was busy, and the counter missed edges.
+/// Rows against a fast motion between long runs: a logger was busy, and the counter missed edges.
 TEST(TakeEdges, LeavesOutRowsOfACounterThatSlipped) {
   std::vector<double> time, counts;
   for (int i = 0; i < 24; ++i) {
     time.push_back(i);
-    counts.push_back(i < 12 ? i : i - 4);  // 11, 8 and on: three edges missed, one counted backwards
+    counts.push_back(i < 12 ? i : i - 4);  // 11, 8, ...: three edges missed, one counted backwards
   }
   const Recording edges = TakeEdges(Of(time, counts));
   ASSERT_EQ(edges.size(), 23);

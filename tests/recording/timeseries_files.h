@@ -7,22 +7,22 @@
 
 #include "tests/recording/mat_objects.h"
 
-/// Objects of class timeseries for tests. Its properties and those of tsdata.timemetadata and tsdata.datametadata are
-/// the ones that MATLAB saves from R2010b on.
+/// Objects of class timeseries for tests. They have the properties that MATLAB saves from R2010b on, including those of
+/// tsdata.timemetadata and tsdata.datametadata.
 namespace pendulum::objects {
 
-/// Eight samples; the times 0, 0.01, ..., 0.07 s are uniform unless they are listed.
+/// Eight samples. The times 0, 0.01, ..., 0.07 s are uniform unless `times` lists them.
 struct Series {
   std::vector<std::size_t> sizes = {8, 1};
   std::vector<double> data = {100, 101, 102, 103, 104, 105, 106, 107};
   std::vector<double> times;
   double start = 0, increment = 0.01, length = 8;
-  std::string time_unit, data_unit, name;  // Empty: at its default.
-  bool is_unit_emptied = false;            // That of the time.
+  std::string time_unit, data_unit, name;  // Empty: default.
+  bool is_unit_emptied = false;            // For the time.
   Array storage = Nothing();
 };
 
-/// The classes of a timeseries in a file.
+/// The classes that a timeseries needs in a file.
 struct Classes {
   explicit Classes(File& file)
       : time(file.AddClass("tsdata", "timemetadata",
@@ -34,7 +34,7 @@ struct Classes {
   std::size_t time, data, series;
 };
 
-/// The object's number.
+/// Returns the number of the object.
 inline std::size_t AddSeries(File& file, const Classes& classes, const Series& series) {
   const bool is_listed = !series.times.empty();
   Fields time = {{"Length", Number(series.length)}, {"Format", Letters("")}};
@@ -55,7 +55,7 @@ inline std::size_t AddSeries(File& file, const Classes& classes, const Series& s
   return file.AddObject(classes.series, all, false, {{"TreatNaNasMissing", 1}, {"BeingBuilt", 0}});
 }
 
-/// One timeseries in a variable.
+/// A file with one timeseries in a variable.
 inline File FileOf(const Series& series, const std::string& variable = "ts", int version = 4) {
   File file(version);
   const Classes classes(file);

@@ -123,7 +123,7 @@ TEST(Thinned, KeepsWhatIsKnownOfTheRecording) {
 // ---- Excerpt --------------------------------------------------------------------------------------------------------
 
 TEST(Excerpt, IsAsDenseAsAskedAndAsLongAsThatAllows) {
-  // 21 samples, one each half second from 10 s on.
+  // 21 samples, one every half second from 10 s on.
   const Recording first = Excerpt(Ramp(), 9, 2, false);
   EXPECT_EQ(first.time[0], 10);
   EXPECT_LE(first.time[first.size() - 1], 14.5);

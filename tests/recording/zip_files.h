@@ -11,7 +11,7 @@
 /// Zip files for tests, made by libzip.
 namespace pendulum {
 
-/// The bytes of a zip file with these members: path and content. With a password it is encrypted.
+/// The bytes of a zip file with these members (path and content), encrypted if there is a password.
 inline std::string ZipOf(const std::vector<std::pair<std::string, std::string>>& members,
                          const char* password = nullptr) {
   zip_error_t error;

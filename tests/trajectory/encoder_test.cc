@@ -15,7 +15,7 @@ namespace {
 using testing::DoubleNear;
 using testing::HasSubstr;
 
-/// 0.3 cos 5t rad without friction, on counts of 10 mrad.
+/// 0.3 cos 5t rad without friction, with counts of 10 mrad.
 SyntheticOptions Undamped() {
   SyntheticOptions options;
   options.model = {"linear", "viscous", Gravity::kLinear};
@@ -36,7 +36,7 @@ Recording Simulated(const SyntheticOptions& options) {
 
 TEST(SimulateRecording, HasEventsWhereTheCosineCrossesEdges) {
   const Recording recording = Simulated(Undamped());
-  // From count 30 to -30 or back in each of six half periods of π/5 s, then down to 0.3 cos 19.95 rad, 13.6 counts.
+  // Count 30 to -30 or back in each of six half periods of π/5 s, then down to 0.3 cos 19.95 rad = 13.6 counts.
   EXPECT_EQ(recording.size(), 1 + 6 * 60 + 16);
   for (Eigen::Index i = 1; i < recording.size(); ++i) {
     const double step = recording.value[i] - recording.value[i - 1];
@@ -58,7 +58,7 @@ TEST(SimulateRecording, ScattersEdgesAndStampsAsAsked) {
   };
   for (Eigen::Index i = 1; i < recording.size(); ++i) edges += std::pow(deviation(i), 2);
   const auto count = static_cast<double>(recording.size() - 1);
-  // The standard error of a standard deviation of n draws is 1/sqrt(2 n) of it; five of these.
+  // The relative standard error of a standard deviation from n draws is 1/sqrt(2 n); the limit is five of these.
   EXPECT_THAT(std::sqrt(edges / count) / 5e-4, DoubleNear(1, 5 / std::sqrt(2 * count)));
 
   options.noise = 0;

@@ -23,11 +23,11 @@ using testing::StartsWith;
 
 constexpr int kSeeds = 4000;
 const double kDraws = std::sqrt(kSeeds);
-constexpr double kTolerance = 4;  // standard errors: a right generator fails once in 16,000 checks
+constexpr double kTolerance = 4;  // standard errors: a correct generator fails one check in 16,000
 
 constexpr ParameterInfo kBounded{"viscous", "b", "", "", 0.0, kUnbounded, ""};
 
-/// Row s has the values of seed s + 1.
+/// Row s contains the values for seed s + 1.
 Eigen::MatrixXd Draws(const std::vector<ScatteredParameter>& parameters, OrderedPair order = {}) {
   Eigen::MatrixXd draws(kSeeds, static_cast<Eigen::Index>(parameters.size()));
   for (int s = 0; s < kSeeds; ++s) {
@@ -46,7 +46,7 @@ double Correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   return ((x.array() - x.mean()) * (y.array() - y.mean())).mean() / (StdDev(x) * StdDev(y));
 }
 
-/// How many of x lie within `width` of `center`.
+/// The share of x within `width` of `center`.
 double ShareWithin(double width, double center, const Eigen::VectorXd& x) {
   return ((x.array() - center).abs() < width).cast<double>().mean();
 }
@@ -104,7 +104,7 @@ TEST(ScatterParameters, KeepsTheOrderOfTwoParameters) {
   const Eigen::MatrixXd draws = Draws({{kBounded, 10, 0.5}, {kBounded, 10, 0.5}}, {.larger = 1, .smaller = 0});
   const Eigen::VectorXd difference = draws.col(1) - draws.col(0);
   EXPECT_GE(difference.minCoeff(), 0);
-  // Of two independent normal variables the difference is normal, cut off at 0 half-normal: mean 2 σ / √π.
+  // The difference of two independent normal variables is normal. Truncated at 0 it is half-normal with mean 2 σ / √π.
   EXPECT_THAT(Mean(difference), DoubleNear(2 * 0.5 / std::sqrt(std::numbers::pi), kTolerance * 0.5 / kDraws));
 }
 
@@ -112,7 +112,7 @@ TEST(ScatterParameters, IsTheMeanWithoutAStandardDeviationAndTheSameForASeed) {
   const std::vector<ScatteredParameter> parameters = {{kInertia, 0.079, 0}, {kReleaseAngle, 0.4, 0.1}};
   const auto once = ScatterParameters(parameters, {}, 7);
   const auto again = ScatterParameters(parameters, {}, 7);
-  const auto other = ScatterParameters(parameters, {}, 7 + (1ULL << 32));  // all bits of a seed count
+  const auto other = ScatterParameters(parameters, {}, 7 + (1ULL << 32));  // all bits of a seed matter
   ASSERT_TRUE(once && again && other);
   EXPECT_EQ(*once, *again);
   EXPECT_EQ((*once)[0], 0.079);

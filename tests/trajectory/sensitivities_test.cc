@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of the motion carried by dual numbers, against differences, closed forms and the theory of reversals.
+// Compares derivatives carried by dual numbers with differences, closed forms and the theory of reversals.
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ using testing::Ge;
 using testing::Le;
 using testing::SizeIs;
 
-/// A traced motion: its stretches, and the instants at which it turned or stopped.
+/// A traced motion: its segments and the instants of its reversals and its stop.
 template <typename T>
 struct Curve {
   std::vector<Segment<T>> segments;
@@ -82,8 +82,8 @@ Curve<T> Trace(const Pendulum<F, T>& pendulum, const Start<T>& start, double end
   return curve;
 }
 
-/// A motion of any law with typical parameters. Parameters in the order of a fit: inertia, friction, then release angle
-/// and time or initial angle and rate.
+/// A motion of any law with typical parameters. The parameters are in the order of a fit: inertia, friction, then
+/// release angle and time or initial angle and rate.
 template <FrictionModel F>
 struct Experiment {
   static constexpr int kFriction = kFrictionParameters<F>;
@@ -128,7 +128,8 @@ struct Experiment {
   }
 };
 
-/// Whether a time lies where a reversal, the release or the stop passes while a parameter is shifted.
+/// Whether `time` lies in an interval through which a reversal, the release or the stop moves when a parameter is
+/// shifted.
 bool IsPassed(double time, const std::array<std::vector<double>, 3>& instants) {
   constexpr double kRounding = 1e-9;  // s
   for (std::size_t i = 0; i < instants[0].size(); ++i) {
@@ -139,8 +140,8 @@ bool IsPassed(double time, const std::array<std::vector<double>, 3>& instants) {
 }
 
 struct ColumnError {
-  double error = 0;  ///< Largest |derivative - difference|
-  double scale = 0;  ///< Largest |derivative|
+  double error = 0;  ///< Largest |derivative - difference|.
+  double scale = 0;  ///< Largest |derivative|.
 
   void Add(double derivative, double difference) {
     error = std::max(error, std::abs(derivative - difference));
@@ -148,14 +149,14 @@ struct ColumnError {
   }
 };
 
-/// One column of angle's and rate's derivatives against central differences.
+/// Compares one column of derivatives of angle and rate with central differences.
 template <FrictionModel F>
 void ExpectColumn(const Experiment<F>& experiment, const Curve<typename Experiment<F>::Dual>& dual, int parameter) {
   const bool is_release_time = experiment.kind == StartKind::kRelease && parameter + 1 == experiment.kParameters;
   const bool is_share =
       parameter > 0 && parameter <= kFrictionParameters<F> && std::isfinite(F::kParameters[parameter - 1].upper);
-  const double step =
-      (is_share ? 1e-4 : 1e-6) * std::abs(experiment.p[parameter]);  // readings hardly move with a share
+  const double step = (is_share ? 1e-4 : 1e-6) * std::abs(experiment.p[parameter]);  // a dimensionless share hardly
+                                                                                     // changes the readings
   const Curve<double> plus = experiment.TraceShifted(parameter, step);
   const Curve<double> minus = experiment.TraceShifted(parameter, -step);
   std::array<std::vector<double>, 3> instants = {dual.reversals, plus.reversals, minus.reversals};
@@ -204,11 +205,12 @@ TEST(Derivatives, AreTheCentralDifferencesForEveryModelThroughReversalsAndTheSto
 }
 
 // Linear gravity and dry friction alone, in half swing n = 0, 1, ...:
-// θ = (-1)^n τ_c + (A - (2 n + 1) τ_c) cos(ω0 t), at rest after N: θ = (-1)^N (A - 2 N τ_c).
+// θ = (-1)^n τ_c + (A - (2 n + 1) τ_c) cos(ω0 t); at rest after N half swings θ = (-1)^N (A - 2 N τ_c).
 TEST(Derivatives, AreThoseOfTheStaircaseThroughTheStop) {
-  using Dual = pendulum::Dual<4>;  // of a release; the derivative by the viscous term is not asked for
+  using Dual = pendulum::Dual<4>;  // of a release; the derivative by viscous friction is not tested here
   constexpr double kOmega = 5, kInertia = 0.04, kDry = 0.007, kAngle = 0.5;
-  constexpr int kHalfSwings = 36;  // 0.5 - 72 · 0.007 = -0.004: reached from above 0.007, and held
+  constexpr int kHalfSwings = 36;  // 0.5 - 72 · 0.007 = -0.004: a turning point within the 0.007 at which friction
+                                   // holds
   const Pendulum<CoulombFriction, Dual> pendulum{Gravity::kLinear, Dual(kInertia, 0), {Dual(0), Dual(kDry, 1)}};
   const auto curve = Trace(pendulum, Start<Dual>{StartKind::kRelease, 0, Dual(kAngle, 2), Dual(0)}, 30, 1e-17);
   ASSERT_THAT(curve.reversals, SizeIs(kHalfSwings));
@@ -226,7 +228,7 @@ TEST(Derivatives, AreThoseOfTheStaircaseThroughTheStop) {
 }
 
 // Galán, Feehery & Barton, Applied Numerical Mathematics 31:17 (1999): where the rate passes 0 and the acceleration
-// jumps from α- to α+, the rate's sensitivity is multiplied by α+ / α-, and becomes 0 where the motion stops.
+// jumps from α- to α+, the sensitivity of the rate is multiplied by α+ / α-. Where the motion stops it becomes 0.
 template <FrictionModel F>
 void ExpectJumpsAtReversals() {
   const Experiment<F> experiment(Gravity::kSine, StartKind::kMoving);

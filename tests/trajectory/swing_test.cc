@@ -99,7 +99,7 @@ struct Expanded {
   RateSeries<T> rate;
 };
 
-/// A swing expanded to the highest order there is.
+/// A swing expanded to the highest possible order.
 template <FrictionModel F, typename T>
 Expanded<T> ExpandedFrom(const Pendulum<F, T>& pendulum, double direction, const State<T>& state) {
   Expanded<T> swing;
@@ -117,7 +117,7 @@ Series<double> Expand(const Pendulum<F, double>& pendulum, double direction, dou
   return swing.angle.angle;
 }
 
-// θ = s (A cos ω0 τ + ...): with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
+// θ = s (A cos ω0 τ + ...); with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
 TEST(SwingExpansion, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.25, {0, 0.125}};
   for (const double direction : {1.0, -1.0}) {
@@ -132,7 +132,7 @@ TEST(SwingExpansion, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
   }
 }
 
-// θ = π/2 + u, u'' = -cos u: u = -τ²/2 + τ⁶/240 - τ¹⁰/19200 + ..., by inserting the series into itself.
+// θ = π/2 + u, u'' = -cos u gives u = -τ²/2 + τ⁶/240 - τ¹⁰/19200 + ... by inserting the series into itself.
 TEST(SwingExpansion, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 1, {0}};
   const Series<double> angle = Expand(pendulum, -1, std::acos(0.0), 0);
@@ -143,7 +143,7 @@ TEST(SwingExpansion, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
 // ---- Step length -------------------------------------------------------------------------------------------------
 
 TEST(StepLength, IsTheLeastOverTheLastFourCoefficients) {
-  // (1e-12 / c)^(1/k) of each alone: 1/4 for c = 1e-12 · 4^k.
+  // (1e-12 / c)^(1/k) is 1/4 for c = 1e-12 · 4^k.
   for (int k = 7; k <= 10; ++k) {
     Series<double> angle{};
     angle[k] = -1e-12 * std::pow(4.0, k);
@@ -168,7 +168,7 @@ double Reversal(const Series<double>& rate, int order, double direction, double 
   return FirstReversal(rate, order, direction, step, EvaluateSeries(rate, order, step));
 }
 
-// (0.5 - τ)(1 + τ²): one root.
+// (0.5 - τ)(1 + τ²) has one root.
 TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
   const Series<double> rate = Coefficients({0.5, -1, 0.5, -1});
   EXPECT_THAT(Reversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
@@ -179,14 +179,14 @@ TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
   EXPECT_THAT(Reversal(mirrored, 3, -1.0, 0.4999), Lt(0));
 }
 
-// τ (0.25 - τ): the root at 0 is where it starts.
+// τ (0.25 - τ): the motion starts at the root 0.
 TEST(FirstReversal, FromRestIsTheNextRoot) {
   const Series<double> rate = Coefficients({0, 0.25, -1});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
   EXPECT_THAT(Reversal(rate, 2, 1.0, 0.2), Lt(0));
 }
 
-// 1 - 1e6 τ²: Halley's method alone would leave the step from its end.
+// 1 - 1e6 τ²: Halley's method alone would leave the interval if it started at its end.
 TEST(FirstReversal, IsFoundNearTheBeginningOfALongStep) {
   const Series<double> rate = Coefficients({1, 0, -1e6});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
@@ -203,7 +203,8 @@ State<T> StateAfter(const Expanded<T>& swing, const State<T>& start, double tau)
   return state;
 }
 
-// Linear, θ = v √I sin(τ / √I): the turn is at τ = π √I / 2, θ = v √I, for v = I = 1; I, v carry derivatives.
+// Linear, θ = v √I sin(τ / √I): for v = I = 1 the turning point is at τ = π √I / 2, θ = v √I. I and v carry
+// derivatives.
 TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
   using Dual = pendulum::Dual<2>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
@@ -242,13 +243,13 @@ Segment<Dual<1>> MovingParabola() {
   return segment;
 }
 
-// θ_p - 2 (3 + 10 τ)
+// θ_p - 2 (3 + 10 τ).
 TEST(PartialsAtFixedTime, AreLessByTheRateTimesTheShiftOfTheStart) {
   const std::array<double, 3> expected = {4, 0, 30};
   for (int n = 0; n < 3; ++n) EXPECT_EQ(PartialsAtFixedTime(MovingParabola(), n)[0], expected[n]) << n;
 }
 
-// 3 + 10 τ, 20 + 60 τ - 2 · 10
+// 3 + 10 τ, and 20 + 60 τ - 2 · 10.
 TEST(RateOf, IsTheDerivativeByTime) {
   const Segment<Dual<1>> rate = RateOf(MovingParabola());
   EXPECT_EQ(rate.order, 1);
@@ -263,7 +264,7 @@ TEST(RateOf, IsTheDerivativeByTime) {
 TEST(RateOf, RestIsNone) {
   Segment<Dual<1>> rest = MovingParabola();
   rest.order = 0;
-  rest.angle[1] = std::numeric_limits<double>::quiet_NaN();  // beyond the order anything may stand
+  rest.angle[1] = std::numeric_limits<double>::quiet_NaN();  // coefficients beyond the order may have any value
   const Segment<Dual<1>> rate = RateOf(rest);
   EXPECT_EQ(rate.order, 0);
   EXPECT_EQ(rate.angle[0], 0);

@@ -33,7 +33,7 @@ TEST(SimulateRecording, AddsWhiteNoiseOfTheStandardDeviationAskedFor) {
   EXPECT_THAT(lag1, DoubleNear(0, limit));
 }
 
-/// The noise of a recording of 20000 samples: its readings less those without noise.
+/// The noise of a recording of 20000 samples: its readings minus the readings without noise.
 std::vector<double> NoiseOf(SyntheticOptions options) {
   options.duration = 200;
   const Result<Recording> noisy = SimulateRecording(options);
@@ -43,7 +43,7 @@ std::vector<double> NoiseOf(SyntheticOptions options) {
   return noisy && clean ? Deviations(noisy->value, clean->value) : std::vector<double>{};
 }
 
-// e_i = r e_(i-1) + sqrt(1 - r²) σ x_i with white x_i: taking r e_(i-1) away leaves white noise of σ sqrt(1 - r²).
+// e_i = r e_(i-1) + sqrt(1 - r²) σ x_i with white x_i. Subtracting r e_(i-1) leaves white noise of σ sqrt(1 - r²).
 TEST(SimulateRecording, CorrelatesEachSamplesNoiseWithTheOneBefore) {
   for (const double correlation : {0.9, 0.5, -0.7}) {
     SyntheticOptions options = TextbookRig();
@@ -55,7 +55,7 @@ TEST(SimulateRecording, CorrelatesEachSamplesNoiseWithTheOneBefore) {
     ExpectStandardDeviation(innovations, 0.0035 * std::sqrt(1 - correlation * correlation));
     const double lag1 = std::inner_product(innovations.begin() + 1, innovations.end(), innovations.begin(), 0.0) /
                         std::inner_product(innovations.begin(), innovations.end(), innovations.begin(), 0.0);
-    EXPECT_THAT(lag1, DoubleNear(0, 5 / std::sqrt(20000.0))) << correlation;  // five of its standard errors
+    EXPECT_THAT(lag1, DoubleNear(0, 5 / std::sqrt(20000.0))) << correlation;  // five standard errors
   }
 }
 
@@ -69,14 +69,14 @@ TEST(SimulateRecording, HasCorrelatedNoiseOfItsFullSizeFromTheFirstSampleOn) {
   for (options.seed = 1; options.seed <= 2000; ++options.seed) {
     const Result<Recording> recording = SimulateRecording(options);
     ASSERT_TRUE(recording) << recording.error().message;
-    first.push_back(recording->value[0] - 0.423);  // held
+    first.push_back(recording->value[0] - 0.423);  // still held
     third.push_back(recording->value[2] - 0.423);
   }
   ExpectStandardDeviation(first, 1);
   ExpectStandardDeviation(third, 1);
 }
 
-// The empirical distribution of n samples is within 2.7 / sqrt(n) of the true one but for one seed in a million
+// The empirical distribution of n samples stays within 2.7 / sqrt(n) of the true one, except for one seed in a million
 // (Kolmogorov: 2 exp(-2 d² n)).
 TEST(SimulateRecording, DrawsStudentsNoiseOfTheScaleAskedFor) {
   SyntheticOptions options = TextbookRig();
@@ -94,7 +94,7 @@ TEST(SimulateRecording, DrawsStudentsNoiseOfTheScaleAskedFor) {
   EXPECT_LT(farthest, 2.7 / std::sqrt(20000.0));
 }
 
-// A finely quantized sensor adds q²/12 to the variance (Widrow & Kollar, Quantization Noise, 2008).
+// Fine quantization adds q²/12 to the variance (Widrow & Kollar, Quantization Noise, 2008).
 TEST(SimulateRecording, QuantizesAfterTheNoise) {
   SyntheticOptions options = TextbookRig();
   options.duration = 200;
@@ -106,8 +106,8 @@ TEST(SimulateRecording, QuantizesAfterTheNoise) {
   ExpectStandardDeviation(Deviations(quantized->value, clean->value), 0.0035 * std::sqrt(1 + 1.0 / 12));
 }
 
-// The first numbers of boost::random::normal_distribution on mt19937_64 seeded with 1, as Boost 1.74 gives them with
-// g++ 12 and clang 19. datasets/ changes when they do.
+// The first numbers of boost::random::normal_distribution on mt19937_64 seeded with 1, from Boost 1.74 with g++ 12 and
+// clang 19. If they change, datasets/ changes too.
 TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
   SyntheticOptions options = TextbookRig();
   options.release_angle = 0.25;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of synthetic recordings share.
+// Shared by the tests of synthetic recordings.
 #pragma once
 
 #include <numeric>
@@ -13,8 +13,8 @@
 
 namespace pendulum {
 
-// Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink): G = (M + m/2) g
-// l with M 0.380 kg, m 0.095 kg, l 0.43 m, g 9.81 m/s².
+// Rig of the activity "Modeling of a Simple Pendulum" (Control Tutorials for MATLAB and Simulink): G = (M + m/2) g l
+// with M 0.380 kg, m 0.095 kg, l 0.43 m, g 9.81 m/s².
 inline constexpr double kTextbookGravityTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
 
 /// The published fit of that rig: I_O 0.079 kg m², b 0.003 N m s/rad, released at 1.9 s from 24.23 deg.
@@ -32,7 +32,7 @@ inline std::vector<double> Deviations(const Eigen::VectorXd& x, const Eigen::Vec
   return {difference.begin(), difference.end()};
 }
 
-/// Σ x² / σ² lies within the chi-square interval that excludes one seed in a million.
+/// Checks that Σ x² / σ² lies in the chi-square interval that excludes one seed in a million.
 inline void ExpectStandardDeviation(const std::vector<double>& x, double sigma) {
   const boost::math::chi_squared distribution(static_cast<double>(x.size()));
   const double statistic = std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / (sigma * sigma);

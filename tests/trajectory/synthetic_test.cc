@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::Le;
 using testing::Not;
 
-/// Small-angle pendulum with viscous friction, moving at once.
+/// Small-angle pendulum with viscous friction, in motion from the first sample.
 SyntheticOptions LinearPendulum() {
   SyntheticOptions options;
   options.model = {"linear", "viscous", Gravity::kLinear};
@@ -37,7 +37,7 @@ SyntheticOptions LinearPendulum() {
   return options;
 }
 
-/// θ and θ' of LinearPendulum at t s after its first sample: the damped oscillation of any textbook.
+/// θ and θ' of LinearPendulum at t s after its first sample: the damped oscillation of the textbooks.
 std::pair<double, double> LinearSolution(double t) {
   const double natural = 5.0, zeta = 0.005;
   const double damped = natural * std::sqrt(1 - zeta * zeta), decay = zeta * natural;
@@ -46,7 +46,7 @@ std::pair<double, double> LinearSolution(double t) {
   return {envelope * (p * c + q * s), envelope * ((q * damped - decay * p) * c - (p * damped + decay * q) * s)};
 }
 
-/// Time and height of each maximum above `least`, by the parabola through its three highest samples.
+/// Time and height of each maximum above `least`, from the parabola through its three highest samples.
 std::vector<std::pair<double, double>> Peaks(const Recording& recording, double least) {
   std::vector<std::pair<double, double>> peaks;
   const Eigen::VectorXd& y = recording.value;
@@ -130,8 +130,8 @@ TEST(SimulateRecording, FollowsTheEllipticFunctionsOfTheUndampedPendulum) {
   }
 }
 
-// Dry friction alone takes 2 τ_c/G from the linear pendulum's amplitude at each half swing: 0.43, -0.37, ..., 0.07,
-// -0.01, where |θ| < τ_c/G = 0.03 holds it.
+// Dry friction alone reduces the amplitude of the linear pendulum by 2 τ_c/G per half swing: 0.43, -0.37, ..., 0.07,
+// -0.01. There |θ| < τ_c/G = 0.03 and friction holds it.
 TEST(SimulateRecording, DryFrictionAloneStopsWhereTheStaircaseOfAmplitudesEnds) {
   SyntheticOptions options;
   options.model = {"coulomb", "coulomb", Gravity::kLinear};
@@ -170,7 +170,7 @@ TEST(SensorReading, SaturatesAtTheOutermostLevelsOfTheRange) {
   EXPECT_EQ(SensorReading(7, 0, range), 0.6);
 }
 
-// 1023 steps of 0.1985 deg from -49.6077 deg end at 153.4578 deg, though not in binary.
+// 1023 steps of 0.1985 deg from -49.6077 deg end at 153.4578 deg, but not exactly in binary arithmetic.
 TEST(SensorReading, ReachesTheTopOfARangeOfWholeLevelsDespiteRounding) {
   for (const double unit : {1.0, kRadFromDeg}) {
     const SensorRange range = {-49.6077 * unit, 153.4578 * unit};
@@ -196,8 +196,8 @@ TEST(SimulateRecording, ShowsOnlyLevelsOfTheSensorWithinItsRange) {
     at_the_bottom += std::round(level) == 0 ? 1 : 0;
     at_the_top += std::round(level) == 180 ? 1 : 0;
   }
-  EXPECT_THAT(at_the_bottom, Ge(100));  // the swing to about -24 deg is cut at -15 deg
-  EXPECT_THAT(at_the_top, Ge(100));     // the hold at 24.2 deg is cut at 20.7 deg
+  EXPECT_THAT(at_the_bottom, Ge(100));  // the swing reaches about -24 deg and is clipped at -15 deg
+  EXPECT_THAT(at_the_top, Ge(100));     // the hold at 24.2 deg is clipped at 20.7 deg
 }
 
 // ---- Sampling ----------------------------------------------------------------------------------------------------
@@ -247,15 +247,15 @@ TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
   options.jitter = 0.001;
   const Result<Recording> jittered = SimulateRecording(options);
   ASSERT_TRUE(steady && jittered);
-  EXPECT_EQ(steady->value.head(180), jittered->value.head(180));  // held
+  EXPECT_EQ(steady->value.head(180), jittered->value.head(180));  // still held
 }
 
-// ---- What is refused ---------------------------------------------------------------------------------------------
+// ---- Invalid options ---------------------------------------------------------------------------------------------
 
-// An encoder that misses edges shows the same angle so many levels away from then on.
+// An encoder that misses edges shows readings shifted by whole levels from then on.
 TEST(SimulateRecording, LosesCountsFromATimeOn) {
   SyntheticOptions options = TextbookRig();
-  options.resolution = 0.0078125;  // 2^-7: sums of levels are exact
+  options.resolution = 0.0078125;  // 2^-7, so sums of levels are exact
   const Recording whole = *SimulateRecording(options);
   options.lost_counts = {{whole.time[700], -3}, {whole.time[1200] - 1e-9, 1}};
   const Recording lost = *SimulateRecording(options);

@@ -18,7 +18,7 @@ namespace {
 using testing::Ge;
 using testing::Le;
 
-/// The documented global error in local tolerances after 46 undamped small-angle periods.
+/// The documented global error after 46 undamped small-angle periods, in local tolerances.
 double Amplification(double amplitude) { return 400 + 10000 * std::pow(std::tan(amplitude / 2), 2); }
 
 /// Largest error [rad] over 46 small-angle periods.
@@ -37,8 +37,8 @@ double GlobalError(double amplitude, double tolerance) {
   return largest;
 }
 
-// Against the elliptic functions. Rounding is amplified like a tolerance of 2e-17 (measured): beyond 177 deg to more
-// than 1e-10 rad.
+// Compares with the elliptic functions. Rounding is amplified like a tolerance of 2e-17 (measured). Beyond 177 deg it
+// causes more than 1e-10 rad.
 TEST(TraceTolerance, KeepsTheGlobalErrorAskedForUpToRounding) {
   for (const double degrees : {1.0, 10.0, 24.0, 60.0, 90.0, 120.0, 150.0, 170.0, 175.0, 178.0, 179.0}) {
     const double amplitude = degrees * kRadFromDeg;
@@ -75,7 +75,7 @@ TEST(TraceTolerance, IsNeverBelowTheFloorOfRounding) {
   EXPECT_EQ(TraceTolerance(0, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-20, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-12, kPi), 1e-17);
-  EXPECT_EQ(TraceTolerance(1e-12, 20), 1e-17);  // going over the top has no amplitude
+  EXPECT_EQ(TraceTolerance(1e-12, 20), 1e-17);  // an escape over the top has no amplitude
 }
 
 }  // namespace

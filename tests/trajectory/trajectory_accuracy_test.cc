@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What theory says of the motion, against what is traced.
+// Compares traced motions with theory.
 
 #include <algorithm>
 #include <array>
@@ -51,7 +51,7 @@ struct Motion {
   double angle, rate, acceleration;
 };
 
-/// θ, θ' and θ'' of a segment's polynomial, each power by itself.
+/// θ, θ' and θ'' from a segment's polynomial, with each power computed separately.
 Motion At(const Segment<double>& segment, double time) {
   Motion motion{segment.angle[0], 0, 0};
   const double tau = time - segment.start;
@@ -77,7 +77,7 @@ TEST(UndampedPendulum, FollowsTheEllipticFunctionsFromOneTo179Degrees) {
   }
 }
 
-/// Largest error [rad] over the last 3 s of 20 s at the default tolerance for 1e-8 rad.
+/// Largest error [rad] over the last 3 s of 20 s, at the default tolerance for 1e-8 rad.
 double ErrorAtTheDefaultTolerance(double amplitude) {
   const Trajectory trajectory =
       Released(kViscousModel, {kReferenceInertia, 0}, amplitude, 20, TraceTolerance(1e-8, amplitude));
@@ -88,7 +88,7 @@ double ErrorAtTheDefaultTolerance(double amplitude) {
   return largest;
 }
 
-// From rest every other coefficient vanishes, at 90 deg three of four.
+// After a start from rest every other coefficient vanishes, at 90 deg three of four.
 TEST(UndampedPendulum, KeepsTheDefaultErrorAtAmplitudesWhereCoefficientsVanish) {
   for (const double degrees : {90.0, 120.0, 150.0}) {
     EXPECT_THAT(ErrorAtTheDefaultTolerance(degrees * kRadFromDeg), Le(1e-8)) << degrees << " deg";
@@ -103,7 +103,7 @@ TEST(UndampedPendulum, KeepsTheDefaultErrorEveryFiftiethOfADegree) {
   }
 }
 
-// T(A) / T(0) = (2/π) K(sin(A/2)), K by the arithmetic-geometric mean in 12 digits.
+// T(A) / T(0) = (2/π) K(sin(A/2)), with K computed by the arithmetic-geometric mean to 12 digits.
 TEST(UndampedPendulum, HasThePeriodOfTheEllipticIntegral) {
   constexpr std::array<std::pair<double, double>, 7> kPeriodRatios = {{{10, 1.001907188143},
                                                                        {30, 1.017408797596},
@@ -119,7 +119,7 @@ TEST(UndampedPendulum, HasThePeriodOfTheEllipticIntegral) {
     const std::vector<Segment<double>> segments = Segments(pendulum, degrees * kRadFromDeg, 5.25 * period);
     int half_swings = 0;
     for (std::size_t i = 1; i < segments.size(); ++i) {
-      if (At(segments[i], segments[i].start).rate != 0) continue;  // rate is exactly 0 at a reversal, and only there
+      if (At(segments[i], segments[i].start).rate != 0) continue;  // the rate is exactly 0 only at a reversal
       ++half_swings;
       EXPECT_THAT(2 * segments[i].start / half_swings / period, DoubleNear(1, 1e-11)) << degrees << " deg";
     }
@@ -127,7 +127,7 @@ TEST(UndampedPendulum, HasThePeriodOfTheEllipticIntegral) {
   }
 }
 
-// heyoka's benchmark problem: x'' = -sin x from x = 1.3 at rest.
+// Benchmark problem of heyoka: x'' = -sin x from x = 1.3 at rest.
 TEST(UndampedPendulum, KeepsPeriodAndEnergyOfTheHeyokaBenchmarkForTenThousandSeconds) {
   constexpr double kPeriod = 7.019250311844546;
   const Trajectory trajectory = Released(kViscousModel, {1, 0}, 1.3, 1e4);
@@ -145,8 +145,8 @@ TEST(UndampedPendulum, KeepsPeriodAndEnergyOfTheHeyokaBenchmarkForTenThousandSec
 
 // ---- Linear: closed forms ----------------------------------------------------------------------------------------
 
-/// A linear pendulum let go at `angle`: in each half swing a damped oscillation about where gravity balances dry
-/// friction, until |θ| <= τ_c at a reversal.
+/// A linear pendulum released at `angle`. Each half swing is a damped oscillation about the angle where gravity
+/// balances dry friction, until |θ| <= τ_c at a reversal.
 class LinearPendulum {
  public:
   LinearPendulum(double inertia, double viscous, double coulomb, double angle)
@@ -220,8 +220,8 @@ TEST(LinearGravity, OverdampedCreepsBackWithoutAReversal) {
 
 // ---- Every law ---------------------------------------------------------------------------------------------------
 
-// With b = 0 the square of the rate obeys a linear equation in θ: in a half swing from A downwards y = ω² is
-// d y/dθ = k y + 2 (τ_c - sin θ) / I, k = 2 c / I, y(A) = 0; upwards the mirror image.
+// With b = 0 the square of the rate, y = ω², obeys a linear equation in θ. In a downward half swing from A it is dy/dθ
+// = k y + 2 (τ_c - sin θ) / I, k = 2 c / I, y(A) = 0; upwards it is the mirror image.
 TEST(Drag, FollowsTheFirstIntegralOfQuadraticFrictionInEachHalfSwing) {
   constexpr double kInertia = kReferenceInertia, kCoulombTorque = 0.004, kDragCoefficient = 0.002;
   const double k = 2 * kDragCoefficient / kInertia, constant = -kCoulombTorque / kDragCoefficient;
@@ -242,7 +242,7 @@ TEST(Drag, FollowsTheFirstIntegralOfQuadraticFrictionInEachHalfSwing) {
   }
 }
 
-/// The polynomials obey I θ'' = -sin θ - T(θ') in every step, and nothing jumps between steps.
+/// Checks that the polynomials obey I θ'' = -sin θ - T(θ') in every step and that nothing jumps between steps.
 template <FrictionModel F>
 void ExpectEquationOfMotion(const Pendulum<F, double>& pendulum, double angle) {
   const std::vector<Segment<double>> segments = Segments(pendulum, angle, 20);

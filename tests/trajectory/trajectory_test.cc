@@ -46,8 +46,8 @@ Trace TraceOf(const Pendulum<F, double>& pendulum, const Start<double>& start, c
   return trace;
 }
 
-/// Linear gravity, ω0 = 5 rad/s, dry friction alone: let go at 0.43 it turns at -0.37, 0.31, ..., 0.07, -0.01 (each
-/// half swing takes 2 τ_c), where |θ| < τ_c = 0.03 holds it.
+/// Linear gravity, ω0 = 5 rad/s, dry friction alone. Released at 0.43 it turns at -0.37, 0.31, ..., 0.07, -0.01. Each
+/// half swing reduces the amplitude by 2 τ_c. At the end |θ| < τ_c = 0.03 and friction holds it.
 const std::vector<double> kStaircase = {0.04, 0, 0.03};
 constexpr double kHalfSwing = kPi / 5;  // s
 
@@ -95,7 +95,8 @@ TEST(Trajectory, ComesToRestWhereTheStaircaseEnds) {
   EXPECT_EQ(summary.outcome, Outcome::kComplete);
   EXPECT_EQ(summary.reversals, 7);
   EXPECT_THAT(summary.stop_time, DoubleNear(7 * kHalfSwing, 1e-12));
-  EXPECT_THAT(summary.smallest_reversal_margin, DoubleNear(0.02, 1e-12));  // | |-0.01| - 0.03 |; the others leave more
+  EXPECT_THAT(summary.smallest_reversal_margin,
+              DoubleNear(0.02, 1e-12));  // ||-0.01| - 0.03|; other reversals have larger margins
   for (const double time : {7 * kHalfSwing + 1e-9, 5.0, 9.9, 10.0}) {
     EXPECT_THAT(trajectory.Angle(time), DoubleNear(-0.01, 1e-12)) << time;
     EXPECT_EQ(trajectory.Rate(time), 0) << time;
@@ -111,13 +112,13 @@ TEST(Trajectory, WithoutDryFrictionNeverStops) {
 }
 
 TEST(Trajectory, MarginIsTheSmallestOverAllReversals) {
-  // Turns at 0.31 (margin 0.28), then the trace ends on the way to -0.37 + 0.06.
+  // It turns at 0.31 (margin 0.28). The trace ends on the way to -0.37 + 0.06.
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, -0.37, 0}, Until(1.5 * kHalfSwing));
   EXPECT_EQ(trajectory.summary().reversals, 1);
   EXPECT_THAT(trajectory.summary().smallest_reversal_margin, DoubleNear(0.28, 1e-12));
 }
 
-// The last half swings of a staircase from 1e-6 rad at a tolerance of 1e-8 rad: accuracy would allow any step.
+// The last half swings of a staircase from 1e-6 rad at a tolerance of 1e-8 rad, where accuracy would permit any step.
 TEST(Trajectory, TakesNoStepBeyondAQuarterPeriodAndSoMissesNoReversal) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.04, {0, 3e-8}};
   const Trace trace = TraceOf(pendulum, {StartKind::kRelease, 0, 1e-6, 0}, Until(20, 1e-8));
@@ -148,7 +149,7 @@ TEST(Rest, HoldsAtAnAngleWhereGravityDoesNotExceedDryFriction) {
   }
 }
 
-// Turning points 0.09, -0.03: at |θ| = τ_c exactly, up to rounding, it stays.
+// Turning points 0.09, -0.03: at |θ| = τ_c, equal up to rounding, it stays.
 TEST(Rest, HoldsAtEqualityDespiteRounding) {
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, 0.09, 0}, Until(5, 1e-17));
   EXPECT_EQ(trajectory.summary().reversals, 1);
@@ -168,7 +169,7 @@ TEST(MovingStart, AtRateZeroInsideTheRestBandNeverMoves) {
   EXPECT_EQ(TraceOf(pendulum, {StartKind::kMoving, 0, 0.02, 0}, Until(1)).summary.outcome, Outcome::kNeverMoved);
 }
 
-// θ - x and θ' on the ellipse of the half swing: x = -0.03 going up, so the turn is at -0.03 + sqrt(0.23² + 0.3²).
+// θ - x and θ' move on the ellipse of the half swing. Upwards x = -0.03, so it turns at -0.03 + sqrt(0.23² + 0.3²).
 TEST(MovingStart, GoesOnInTheDirectionOfItsRate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.2, 1.5}, Until(10));
   const double turn = std::atan2(0.3, 0.23) / 5;
@@ -180,7 +181,8 @@ TEST(MovingStart, GoesOnInTheDirectionOfItsRate) {
 
 TEST(MovingStart, InsideTheRestBandMovesWhileItHasARate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.0, 0.05}, Until(3));
-  // τ_c / ω0 = 0.15 rad/s above: it stops at hypot(0.03, 0.01) - 0.03 within the band.
+  // It moves on an ellipse about x = -0.03 with 0.05 / ω0 = 0.01, so it stops at hypot(0.03, 0.01) - 0.03, within the
+  // band.
   EXPECT_EQ(trajectory.summary().reversals, 1);
   EXPECT_THAT(trajectory.Angle(3), DoubleNear(std::hypot(0.03, 0.01) - 0.03, 1e-12));
 }
@@ -235,7 +237,7 @@ TEST(Trajectory, RateIsTheDerivativeOfTheAngle) {
   }
 }
 
-// A pendulum does not know what time it is.
+// The motion does not depend on the origin of time.
 TEST(Trajectory, DoesNotDependOnTheClock) {
   const Trajectory early = Staircase({StartKind::kRelease, 0, 0.43, 0}, Until(3));
   TraceOptions options = Until(1027);
@@ -246,7 +248,7 @@ TEST(Trajectory, DoesNotDependOnTheClock) {
   }
 }
 
-// ---- What is refused ---------------------------------------------------------------------------------------------
+// ---- Invalid input -----------------------------------------------------------------------------------------------
 
 TEST(MakeTrajectory, RefusesAWrongNumberOfParameters) {
   const Result<Trajectory> trajectory =

@@ -5,38 +5,41 @@
 
 namespace pendulum {
 
-/// An instant on two clocks: when a frame's last sample was taken, by the logger's clock, and when the host had it.
+/// One instant on two clocks: when the last sample of a frame was taken, by the logger's clock, and when the host
+/// received the frame.
 struct Arrival {
   double device_time, host_time;  ///< s
 };
 
-/// Of a ceramic resonator, which is what an Uno or Mega counts with: within 0.5 % of its nominal frequency.
+/// Of a ceramic resonator, the clock of an Uno or Mega: within 0.5 % of its nominal frequency.
 inline constexpr double kResonatorStdDev = 0.003;
 
-/// How long a second of a device is.
+/// The rate of a device's clock.
 struct DeviceClock {
-  double scale = 1;                   ///< True seconds in one of the device's.
-  double std_dev = kResonatorStdDev;  ///< Of the scale.
-  bool is_measured = false;           ///< Else it is what is known of any resonator.
-  /// What was measured is beyond any resonator (kMostDeviation): one of the clocks is wrong, and it is not used.
+  double scale = 1;                   ///< True seconds per second of the device.
+  double std_dev = kResonatorStdDev;  ///< Standard deviation of the scale.
+  bool is_measured = false;           ///< If false, scale and std_dev are those of any resonator.
+  /// The measured scale is impossible for a resonator (kMostDeviation). One of the clocks is wrong, so it is not used.
   bool is_implausible = false;
 };
 
 inline constexpr double kMostDeviation = 0.02;
 
-/// The device's clock against the host's, MODEL.md eqs. (65) and (66): a frame is never early and mostly a little late,
-/// so of each stretch of the run (10 to 32 of them) only the earliest arrival counts, and a line goes through these;
-/// stretches in which everything was late are left out. Not measured where there are fewer than 150 arrivals or 10 s,
-/// or the result would be no better than what is known of any resonator. arrivals      N, both times rising. polling s,
-/// the grid that the host's times may be rounded up to; a coarser one may pass unseen. host_std_dev  Of the rate of the
-/// host's own clock, relative.
+/// Compares the device's clock with the host's, MODEL.md eqs. (65) and (66). A frame is never early and usually a
+/// little late. Therefore only the earliest arrival in each part of the run (10 to 32 parts) counts, and a line is
+/// fitted through these. Parts in which every frame was late are left out. The clock counts as not measured if there
+/// are fewer than 150 arrivals or 10 s, or if the result is less certain than the rate of any resonator.
+///
+/// arrivals      N, both times increasing.
+/// polling       s, the grid to which the host's times may be rounded up; a coarser grid may go undetected.
+/// host_std_dev  Relative standard deviation of the rate of the host's clock.
 DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, double host_std_dev);
 
-/// How often a host asks a USB device of full speed, such as an Arduino, s.
+/// Interval at which a host polls a full-speed USB device, such as an Arduino [s].
 inline constexpr double kUsbPolling = 1e-3;
 
-/// Relative standard deviation of the rate of this computer's monotonic clock: 10e-6 where the system says that it is
-/// kept in step with a time server, which slews it, else 30e-6, that of a quartz.
+/// Relative standard deviation of the rate of this computer's monotonic clock: 10e-6 if the system reports that a time
+/// server corrects it, otherwise 30e-6 as for a quartz.
 double HostClockStdDev();
 
 }  // namespace pendulum

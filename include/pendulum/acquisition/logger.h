@@ -17,7 +17,7 @@
 
 namespace pendulum {
 
-/// A message, and when the host had its last byte [s, HostTime].
+/// A message, and when the host received its last byte [s, HostTime].
 struct TimedMessage {
   LoggerMessage message;
   double host_time;
@@ -26,33 +26,34 @@ struct TimedMessage {
 /// This computer's monotonic clock [s].
 double HostTime();
 
-/// A logger at the other end of a port (firmware/pendulum_logger). Commands are repeated until they are answered.
+/// A logger connected to a port (firmware/pendulum_logger). Commands are repeated until they are answered.
 class Logger {
  public:
-  /// Once `stop` is true, what waits for the logger gives up with kTryAgain.
+  /// Once `stop` is true, functions that wait for the logger return kTryAgain.
   Logger(SerialPort port, const std::atomic<bool>& stop) : port_(std::move(port)), stop_(stop) {}
 
-  /// Stops whatever the board is doing and asks what it is. Opening the port resets most boards, whose boot loader
-  /// then listens for a second or two, so this is patient.
-  /// kDataLoss: nothing answers, something else does, or a logger of another protocol, clock or converter.
+  /// Stops a running measurement and asks the board for its Info. Opening the port resets most boards, and their boot
+  /// loader then listens for a second or two; `patience_seconds` must cover that. kDataLoss: no answer, not a logger,
+  /// or a logger with another protocol, clock or converter.
   Result<pendulum_logger::Info> Connect(double patience_seconds = 5);
 
-  /// kDataLoss: it refuses, or does not answer.
+  /// Sets the sampling rate. kDataLoss: the logger refuses or does not answer.
   Result<void> SetRate(const SamplingRate& rate);
 
-  /// Stores a calibration in its EEPROM and gives what it reads back. kDataLoss as above, or it reads back another.
+  /// Stores a calibration in the EEPROM and returns the Info read back. kDataLoss: as above, or the calibration read
+  /// back differs.
   Result<pendulum_logger::Info> StoreCalibration(const pendulum_logger::StraightLine& line);
 
-  /// From now on Receive gives Data. kDataLoss as above.
+  /// Starts a run; Receive then returns Data. kDataLoss as above.
   Result<void> Start();
 
-  /// Asks for the end of the run: Data that are on their way come, then End.
+  /// Asks the logger to end the run. Data already sent still arrive, then End.
   Result<void> RequestStop();
 
-  /// The next message within so many seconds; none when none came. kDataLoss: the port is gone.
+  /// The next message within `seconds`; std::nullopt if none arrives. kDataLoss: the port is gone.
   Result<std::optional<TimedMessage>> Receive(double seconds);
 
-  /// Pieces of what came that were no frame, since Start.
+  /// Number of invalid pieces of data received since Start.
   int RejectedFrames() const { return decoder_.rejected() - rejected_before_; }
 
  private:
@@ -68,8 +69,8 @@ class Logger {
   const std::atomic<bool>& stop_;
   MessageDecoder decoder_;
   std::deque<TimedMessage> pending_;
-  std::size_t bytes_ = 0;    // received
-  int rejected_before_ = 0;  // before the run
+  std::size_t bytes_ = 0;    // received so far
+  int rejected_before_ = 0;  // rejected before the run
 };
 
 }  // namespace pendulum

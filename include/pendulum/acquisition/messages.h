@@ -13,22 +13,22 @@
 
 namespace pendulum {
 
-/// An Info of another version of the protocol: nothing else of it is understood.
+/// An Info of another protocol version. Only its version can be understood.
 struct OtherProtocol {
   int version;
 };
 
-/// What a logger says (firmware/README.md, "Protocol").
+/// A message from a logger (firmware/README.md, "Protocol").
 using LoggerMessage = std::variant<pendulum_logger::Info, pendulum_logger::Data, pendulum_logger::Ack,
                                    pendulum_logger::End, OtherProtocol>;
 
-/// Finds messages in bytes as they come, whatever else is among them.
+/// Finds messages in a stream of bytes that may contain other data.
 class MessageDecoder {
  public:
-  /// The messages that these bytes complete.
+  /// Returns the messages that these bytes complete.
   std::vector<LoggerMessage> Take(std::span<const std::uint8_t> bytes);
 
-  /// Pieces between two zeros that were no frame, or none of a logger.
+  /// Number of pieces between two zeros that were not a frame, or not a message of a logger.
   int rejected() const { return rejected_; }
 
  private:
@@ -38,7 +38,7 @@ class MessageDecoder {
   int rejected_ = 0;
 };
 
-/// The bytes of a command, behind a 0 that ends whatever came over the line before it.
+/// The bytes of a command, preceded by a 0 that ends anything received before it.
 template <class Command>
 std::vector<std::uint8_t> CommandBytes(const Command& command) {
   std::vector<std::uint8_t> bytes(1 + pendulum_logger::kMostEncoded + 1);
@@ -46,7 +46,7 @@ std::vector<std::uint8_t> CommandBytes(const Command& command) {
   return bytes;
 }
 
-/// For people: "Arduino Uno", "version 1.0", "supply voltage (AVcc)"; of unknown ones their numbers.
+/// Texts for people: "Arduino Uno", "version 1.0", "supply voltage (AVcc)"; unknown values are shown as numbers.
 std::string BoardName(const pendulum_logger::Info& info);
 
 std::string FirmwareVersion(const pendulum_logger::Info& info);

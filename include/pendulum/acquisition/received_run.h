@@ -12,71 +12,72 @@
 
 namespace pendulum {
 
-/// What a logger's converter shows of its reference voltage and beyond, counts.
+/// The reading of the converter at its reference voltage and above, counts.
 inline constexpr int kFullScaleCounts = (1 << pendulum_logger::kAdcBits) - 1;
 
-/// When a logger samples: a conversion every `period` ticks, `oversample` of them added up to a sample.
+/// When a logger samples: one conversion every `period` ticks; a sample is the sum of `oversample` conversions.
 struct SamplingRate {
   std::uint16_t period = 10000;
   std::uint8_t oversample = 1;
 
-  std::int64_t Ticks() const { return std::int64_t{period} * oversample; }  ///< Between samples.
+  std::int64_t Ticks() const { return std::int64_t{period} * oversample; }  ///< Ticks between samples.
   double Hz() const { return static_cast<double>(pendulum_logger::kTickHz) / static_cast<double>(Ticks()); }
 };
 
-/// The rate of so many samples a second that the logger comes nearest to; none where it cannot: it makes 32 to 8000
-/// conversions a second.
+/// The possible rate nearest to `hz`. std::nullopt if there is none: a logger makes 32 to 8000 conversions per second.
 std::optional<SamplingRate> NearestRate(double hz, int oversample);
 
-/// What is missing in a run.
+/// The losses of a run.
 struct RunLosses {
-  std::int64_t samples = 0;      ///< All that are missing: by time stamps, and behind the last one by the End.
-  std::uint32_t dropped = 0;     ///< Of them, in the logger: the line was too slow.
-  std::uint32_t late = 0;        ///< Conversions that could not begin in time.
-  std::int64_t on_line = 0;      ///< Of them, on the way: by the numbers of the frames, or by what the logger sent.
-  int contradicting_frames = 0;  ///< Left out: right by their CRC, and impossible in this run.
-  bool is_end_known = false;     ///< The logger has said how many it sent.
+  std::int64_t samples = 0;      ///< All missing samples: gaps in the time stamps, and samples after the last one that
+                                 ///< End reports.
+  std::uint32_t dropped = 0;     ///< Those that the logger dropped because the line was too slow.
+  std::uint32_t late = 0;        ///< Conversions that could not start in time.
+  std::int64_t on_line = 0;      ///< Those lost on the line, according to frame numbers or to the number of samples
+                                 ///< sent.
+  int contradicting_frames = 0;  ///< Frames left out: their CRC is right, but they are impossible in this run.
+  bool is_end_known = false;     ///< The logger has reported how many samples it sent.
 };
 
-/// The samples of a run, put together from frames as they come. Their times are those the logger's timer had when it
-/// triggered them, so a frame that is lost leaves a gap and moves nothing.
+/// The samples of a run, assembled from frames in the order of arrival. Sample times come from the logger's timer, so a
+/// lost frame leaves a gap and does not shift later samples.
 class ReceivedRun {
  public:
   explicit ReceivedRun(const SamplingRate& rate) : rate_(rate) {}
 
-  /// Takes a frame that was complete at that time of the host [s]; false, and nothing is taken, where it contradicts
-  /// the run: not later than the samples before, much later than the host's time allows, off the grid of conversions,
-  /// or more than the converter can give.
+  /// Adds a frame that was completely received at `host_time` [s]. Returns false and ignores the frame if it
+  /// contradicts the run: it is not later than the previous samples, much later than the host's time allows, off the
+  /// grid of conversions, or contains more counts than the converter can give.
   bool Take(const pendulum_logger::Data& frame, double host_time);
 
   void TakeEnd(const pendulum_logger::End& end) { end_ = end; }
 
-  /// Forgets the samples behind the first so many, and what was lost behind them. Nothing is taken after that.
+  /// Keeps the first `samples` samples and forgets later ones and the losses after them. Do not add frames afterwards.
   void KeepFirst(std::size_t samples);
 
-  /// The same for the samples from that time on [s on the logger's clock].
+  /// Keeps the samples before `time` [s on the logger's clock] and forgets later ones likewise.
   void KeepUntil(double time);
 
   std::size_t size() const { return ticks_.size(); }
 
-  /// Since the first sample, s on the logger's clock.
+  /// Time since the first sample, s on the logger's clock.
   double Time(std::size_t sample) const;
 
-  /// The mean of a sample's conversions.
+  /// The mean of the sample's conversions, counts.
   double Counts(std::size_t sample) const;
 
-  /// Whether one of the sample's conversions at least is an end of what the converter can show.
+  /// Whether at least one of the sample's conversions is at an end of the converter's range.
   bool IsSaturated(std::size_t sample) const;
 
   RunLosses Losses() const;
 
   const SamplingRate& rate() const { return rate_; }
 
-  /// When the last sample of each frame was taken, and when the frame had come.
+  /// One entry for each frame: when its last sample was taken, and when the frame was received.
   const std::vector<Arrival>& arrivals() const { return arrivals_; }
 
  private:
-  /// What is missing before a sample.
+  /// The missing samples before a sample.
   struct Gap {
     std::size_t sample;
     std::int64_t missing, on_line;
@@ -87,14 +88,15 @@ class ReceivedRun {
   int LargestSum() const { return kFullScaleCounts * rate_.oversample; }
 
   SamplingRate rate_;
-  std::vector<std::int64_t> ticks_;  // N, since the first
+  std::vector<std::int64_t> ticks_;  // N, since the first sample
   std::vector<std::uint16_t> sums_;  // N
   std::vector<Arrival> arrivals_;
   std::vector<Gap> gaps_;
-  std::uint32_t last_tick_ = 0;      // of the last sample, modulo 2^32
-  std::uint16_t next_sequence_ = 0;  // of the next frame
+  std::uint32_t last_tick_ = 0;      // tick of the last sample, modulo 2^32
+  std::uint16_t next_sequence_ = 0;  // expected number of the next frame
   std::uint32_t dropped_ = 0, late_ = 0;
-  std::int64_t found_dropped_ = 0;  // of those dropped, how many the gaps have shown: a frame may tell of them before
+  std::int64_t found_dropped_ = 0;  // How many of the dropped samples the gaps explain so far. A frame may report drops
+                                    // before their gap appears.
   int contradicting_ = 0;
   std::optional<pendulum_logger::End> end_;
   bool is_trimmed_ = false;

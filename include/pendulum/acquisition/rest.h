@@ -5,24 +5,24 @@
 
 namespace pendulum {
 
-/// Tells when a pendulum that swung has come to rest: for kRestSeconds its reading has stayed within what rounding and
-/// noise make of one angle, and the turning points before lay on both sides of that angle. A pendulum that is held
-/// before it is released has not swung, and is not at rest. Made for 32 samples a second and more, and noise of up to
-/// two counts.
+/// Detects when a pendulum that swung has come to rest. For kRestSeconds its readings must stay within the rounding and
+/// noise about one angle, and the preceding turning points must lie alternately on both sides of that angle. A pendulum
+/// held before its release has not swung, so it does not count as at rest. Designed for at least 32 samples per second
+/// and noise of up to two counts.
 class RestDetector {
  public:
   static constexpr double kRestSeconds = 5;
 
-  /// The next sample: time [s], rising, and reading [counts].
+  /// Adds the next sample: time [s], increasing, and reading [counts].
   void Take(double time, double counts);
 
   bool IsAtRest() const;
 
-  /// Whether there were as many turning points as a swing has.
+  /// Whether there were as many turning points as a swing must have.
   bool HasSwung() const { return turns_.size() == kTurns; }
 
  private:
-  /// Samples of a tenth of a second or a little more, of which the mean counts.
+  /// Samples of at least a tenth of a second, which are averaged.
   struct Block {
     double time = 0;
     double sum = 0, squares = 0;
@@ -30,10 +30,10 @@ class RestDetector {
     int count = 0;
 
     double Mean() const { return sum / count; }
-    double Variance() const;  // of one sample, as noise makes it
+    double Variance() const;  // of one sample, caused by noise
   };
 
-  static constexpr std::size_t kTurns = 4;  // the last ones are kept
+  static constexpr std::size_t kTurns = 4;  // only the last ones are kept
 
   void Close();
   void FollowTurns(double mean);
@@ -41,8 +41,8 @@ class RestDetector {
   Block open_;
   std::deque<Block> blocks_;  // of the last kRestSeconds
   std::deque<double> turns_;  // readings at the last turning points
-  double extreme_ = 0;        // since the last turning point
-  int direction_ = 0;         // of the motion since then
+  double extreme_ = 0;        // extreme reading since the last turning point
+  int direction_ = 0;         // direction of the motion since then
   bool is_begun_ = false;
 };
 

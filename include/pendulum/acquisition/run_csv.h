@@ -14,27 +14,28 @@
 
 namespace pendulum {
 
-/// What a recording says of itself above its rows.
+/// The description of a recording in the head of its file.
 struct RunDescription {
   pendulum_logger::Info logger{};
-  int run = 0;                             ///< How often that logger had been started, this time included.
+  int run = 0;                             ///< How often this logger has been started, including this run.
   std::string begun;                       ///< Date and time of the start, UTC.
-  std::optional<Calibration> calibration;  ///< Of counts; none: the file holds counts alone.
+  std::optional<Calibration> calibration;  ///< Calibration of the counts; std::nullopt: the file contains only counts.
   DeviceClock clock;
-  std::optional<RunLosses> losses;  ///< None: the run goes on.
+  std::optional<RunLosses> losses;  ///< std::nullopt while the run continues.
 };
 
-/// The lines above the rows: comments, the metadata that ReadRecording knows, and the names of the columns time_s and
-/// adc_counts. A logger's clock is not applied to the times, as everywhere: # clock_scale says what it is.
+/// The lines above the rows: comments, the metadata that ReadRecording understands, and the column names time_s and
+/// adc_counts. Times are those of the logger's clock, uncorrected as in all files; # clock_scale gives its rate.
 std::string RunHead(const RunDescription& description, const SamplingRate& rate);
 
-/// The row of a sample: seconds since the first on the logger's clock, and counts.
+/// The row of a sample: seconds since the first sample on the logger's clock, and counts.
 std::string RunRow(const ReceivedRun& run, std::size_t sample);
 
-/// The calibration in a logger's EEPROM; none where there is none.
+/// The calibration stored in a logger's EEPROM; std::nullopt if there is none.
 std::optional<Calibration> StoredCalibration(const pendulum_logger::Info& info);
 
-/// A calibration as an EEPROM can keep it, in single precision. kInvalidArgument: of volts, or no straight line.
+/// A calibration in single precision, as an EEPROM stores it. kInvalidArgument: a calibration of volts, or not a
+/// straight line.
 Result<pendulum_logger::StraightLine> StraightLineOf(const Calibration& calibration);
 
 }  // namespace pendulum

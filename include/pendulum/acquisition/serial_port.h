@@ -12,22 +12,22 @@
 
 namespace pendulum {
 
-/// A serial port of this computer, as a user may name it.
+/// A serial port of this computer, as the user names it.
 struct PortName {
   std::string path;         ///< /dev/ttyACM0
-  std::string what;         ///< Maker and product as the USB device gives them; empty for none.
-  bool is_arduino = false;  ///< By its USB vendor, or one of the usual USB bridges of clones.
+  std::string what;         ///< Manufacturer and product as the USB device reports them; may be empty.
+  bool is_arduino = false;  ///< According to the USB vendor: Arduino, or a common USB bridge of clones.
 };
 
-/// The USB serial ports there are, in the order of their names. `root` is the top of the file system.
+/// The USB serial ports of this computer, sorted by name. `root` is the root of the file system.
 std::vector<PortName> ListSerialPorts(const std::filesystem::path& root = "/");
 
-/// A serial port that is open for this process alone, 8 bits, no parity, no handshake, nothing translated. A pseudo
-/// terminal will do.
+/// A serial port opened exclusively by this process: 8 bits, no parity, no handshake, no translation of bytes. It may
+/// be a pseudo terminal.
 class SerialPort {
  public:
-  /// kNotFound: there is no such port. kTryAgain: another program has it. kDataLoss: it may not be opened, is no serial
-  /// port, or cannot go at that rate.
+  /// kNotFound: there is no such port. kTryAgain: another program uses it. kDataLoss: it cannot be opened, is not a
+  /// serial port, or does not support the rate.
   static Result<SerialPort> Open(const std::string& path, unsigned baud);
 
   SerialPort(SerialPort&& other) noexcept;
@@ -36,11 +36,11 @@ class SerialPort {
   SerialPort& operator=(SerialPort&&) = delete;
   ~SerialPort();
 
-  /// Waits at most so long [s] for bytes and gives those that are there: none when none came, or a signal did.
-  /// kDataLoss: the port is gone, as when its cable is pulled.
+  /// Waits at most `seconds` for bytes and returns those available. Returns none after a timeout or a signal.
+  /// kDataLoss: the port is gone, for example because its cable was pulled.
   Result<std::vector<std::uint8_t>> Read(double seconds);
 
-  /// Writes all bytes, within a second. kDataLoss: the port is gone, or takes none.
+  /// Writes all bytes within a second. kDataLoss: the port is gone or accepts no bytes.
   Result<void> Write(std::span<const std::uint8_t> bytes);
 
   const std::string& path() const { return path_; }

@@ -3,12 +3,12 @@
 
 namespace pendulum {
 
-// Distributions of statistics, by Boost.Math, which takes seconds to compile: in the libraries distributions.cc alone
-// includes it. All numbers are dimensionless. Callers see to it that x and f are finite and at least 0, t is a number,
-// degrees of freedom above 0, whole or not, and probabilities strictly between 0 and 1: otherwise Boost throws
-// std::domain_error or std::overflow_error.
+// Statistical distributions, computed by Boost.Math. Its headers take seconds to compile, so of the libraries only
+// distributions.cc includes them. All numbers are dimensionless. The caller ensures that x and f are finite and at
+// least 0, t is not NaN, degrees of freedom are above 0 (not necessarily whole) and probabilities lie strictly between
+// 0 and 1. Otherwise Boost throws std::domain_error or std::overflow_error.
 
-/// The x below which a standard normal value lies with this probability.
+/// The quantile of the standard normal distribution: the x with P(X < x) = `probability`.
 double NormalQuantile(double probability);
 
 /// P(X > x) of a sum X of squares of `freedom` independent standard normal values.
@@ -32,8 +32,8 @@ double StudentQuantile(double probability, double freedom);
 /// P(F > f) of a ratio F of two mean squares.
 double FisherTail(double f, double numerator_freedom, double denominator_freedom);
 
-/// Limits of the probability of a success after 0 <= `successes` <= `trials`: the truth lies beyond each with
-/// probability `tail` at most (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
+/// Confidence limits of the probability of success after 0 <= `successes` <= `trials`. The true value lies beyond each
+/// limit with probability `tail` at most (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 double BinomialLowerLimit(int successes, int trials, double tail);
 double BinomialUpperLimit(int successes, int trials, double tail);
 

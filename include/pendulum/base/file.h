@@ -12,17 +12,17 @@
 
 namespace pendulum {
 
-/// kDataLoss: what is wrong in a file, which the sentence will name first.
+/// An error kDataLoss with the message "NAME: SENTENCE".
 tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence);
 
-/// A file that is open for reading, which may be a pipe.
+/// A file open for reading. It may be a pipe.
 class InputFile {
  public:
-  /// `kind`: what it should be, "a <kind> file". kNotFound: no such file. kDataLoss: a directory, or it cannot be
-  /// opened.
+  /// `kind` is the expected kind of file; messages say "a <kind> file". kNotFound: no such file. kDataLoss: the path is
+  /// a directory, or the file cannot be opened.
   static Result<InputFile> Open(const std::filesystem::path& path, std::string_view kind);
 
-  /// Standard input, "standard input" in messages.
+  /// Standard input. Messages call it "standard input".
   static InputFile StandardInput();
 
   InputFile(InputFile&& other) noexcept;
@@ -31,7 +31,7 @@ class InputFile {
   InputFile& operator=(InputFile&&) = delete;
   ~InputFile();
 
-  /// Waits for the next bytes to fill `room`; gives how many, fewer only at the file's end. kDataLoss: unreadable.
+  /// Waits until `room` is full or the file ends. Returns the number of bytes read. kDataLoss: the file cannot be read.
   Result<std::size_t> Read(std::span<char> room);
 
   const std::string& name() const { return name_; }
@@ -43,7 +43,7 @@ class InputFile {
   std::string name_;
 };
 
-/// Every byte of a file, which may be a pipe. `kind` says what it should be: "a <kind> file".
+/// Reads a whole file, which may be a pipe. `kind` is the expected kind of file; messages say "a <kind> file".
 /// kNotFound: there is no such file. kDataLoss: it is a directory, cannot be read or has more than `most_bytes`.
 Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t most_bytes);
 

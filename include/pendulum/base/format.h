@@ -6,25 +6,26 @@
 
 namespace pendulum {
 
-/// A number to at most that many significant digits, as printf's %g.
+/// `value` with at most `significant_digits` digits, as printf's %g writes it.
 std::string NumberText(double value, int significant_digits);
 
-/// The shortest decimal text that reads back as `value`: what a file or a message shows of a number.
+/// The shortest decimal text that reads back as exactly `value`, for files and messages.
 std::string NumberText(double value);
 
-/// A probability for a sentence: "0.03", "< 1e-99".
+/// A probability as messages show it: "0.03", "< 1e-99".
 std::string ProbabilityText(double p);
 
-/// "1 degree of freedom", "8 degrees of freedom".
+/// Degrees of freedom as messages show them: "1 degree of freedom", "8 degrees of freedom".
 std::string FreedomText(int degrees);
 
-/// A lower-case hexadecimal digit; `digit` below 16.
+/// One lower-case hexadecimal digit; `digit` is below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
 
-/// A piece of a file, 40 bytes at most, in double quotes for a message; what does not print or may be obeyed as \xNN.
+/// Text from a file in double quotes, for a message: at most 40 bytes. Unprintable bytes and bytes that could control a
+/// terminal become \xNN.
 std::string Quoted(std::string_view text);
 
-/// The names of items for a sentence: "inertia, viscous, zero_angle". Items are names, or have a member `name`.
+/// Names joined by commas, for a sentence: "inertia, viscous, zero_angle". An item is a name or has a member `name`.
 template <typename Range>
 std::string NameList(const Range& items) {
   std::string list;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Functions that are compiled for what any processor of its kind has, and again for AVX2 with fused multiplication and
-// for AVX-512: chosen by what the processor has. Fused, results differ in their last bits. Where PENDULUM_HAS_AVX is
-// not defined there is the one form only, so that a build by clang tests it. fitting/sample_kernel.h has the targets
-// once more.
+// Some functions are compiled three times: for the baseline of the processor family, for AVX2 with fused multiply-add,
+// and for AVX-512. The processor's features decide which one runs. Fused multiply-add changes the last bits of results.
+// Without PENDULUM_HAS_AVX only the baseline exists; a build with clang tests it. fitting/sample_kernel.h repeats these
+// targets.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define PENDULUM_HAS_AVX
 #define PENDULUM_AVX2 gnu::target("avx2,fma")
@@ -13,7 +13,7 @@
 
 namespace pendulum {
 
-/// The forms that there are, each with all that the ones before it have.
+/// The available instruction sets. Each includes all earlier ones.
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
 inline InstructionSet BestInstructionSet() {
@@ -26,7 +26,7 @@ inline InstructionSet BestInstructionSet() {
   return InstructionSet::kBaseline;
 }
 
-/// What this processor has.
+/// The best instruction set of this processor.
 inline const InstructionSet kInstructionSet = BestInstructionSet();
 
 }  // namespace pendulum

@@ -11,22 +11,24 @@
 
 namespace pendulum {
 
-/// No rig and no calibration comes near it, and a JSON object looks its keys up one by one.
+/// Far above the size of any rig or calibration file. The limit exists because ordered_json searches its keys linearly.
 inline constexpr std::size_t kMostJsonBytes = 65536;
 
-/// Neither rig nor request has more, within one another or in all; what has costs time and stack.
+/// Limits of nesting and of the number of keys, both above what any rig or request needs. More would cost time and
+/// stack.
 inline constexpr int kMostJsonDepth = 32, kMostJsonKeys = 4096;
 
-/// A JSON object from text, each key of every object once. `kind` is what it should be, "rig"; `form` shows one.
-/// kDataLoss: not JSON (line and column), no object, longer than `most_bytes`, deeper than kMostJsonDepth, with more
-/// than kMostJsonKeys, a repeated key, or a number beyond that of a double; the message begins with `name`.
+/// Parses a JSON object in which no object repeats a key. Messages call it a `kind`, such as "rig", and show `form` as
+/// an example. kDataLoss: not JSON (line and column), not an object, longer than `most_bytes`, deeper than
+/// kMostJsonDepth, more than kMostJsonKeys keys, a repeated key, or a number beyond the range of a double. The message
+/// begins with `name`.
 Result<nlohmann::ordered_json> ParseJsonObject(std::string_view text, const std::string& name, std::string_view kind,
                                                std::string_view form, std::size_t most_bytes = kMostJsonBytes);
 
-/// A JSON value as a message may show it: a string in quotes, of an array or object only that it is one.
+/// A JSON value as messages show it: a string in quotes; for an array or object only "an array" or "an object".
 std::string ShownJson(const nlohmann::ordered_json& value);
 
-/// A JSON value as text, in one line or with so many blanks for each level. Bytes that are no UTF-8 become U+FFFD.
+/// A JSON value as text: on one line, or with `indent` spaces per level. Invalid UTF-8 becomes U+FFFD.
 std::string JsonText(const nlohmann::ordered_json& value, int indent = -1);
 
 }  // namespace pendulum

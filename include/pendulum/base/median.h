@@ -7,7 +7,7 @@
 
 namespace pendulum {
 
-/// The middle one of at least one value, the upper of the two middle ones when their number is even.
+/// The median of at least one value. For an even number of values it is the upper of the two middle ones.
 inline double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

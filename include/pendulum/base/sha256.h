@@ -11,14 +11,14 @@ struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
 
 namespace pendulum {
 
-/// SHA-256 (FIPS 180-4) of bytes that come piece by piece. kInternal: OpenSSL cannot compute it.
+/// SHA-256 (FIPS 180-4) of bytes that arrive in pieces. kInternal: OpenSSL cannot compute it.
 class Sha256Digest {
  public:
   Sha256Digest();
 
   Result<void> Add(std::string_view bytes);
 
-  /// Of all bytes added, 64 lower-case hexadecimal digits. It ends the digest: called once, and last.
+  /// The digest of all bytes added: 64 lower-case hexadecimal digits. Finishes the digest, so it must be the last call.
   Result<std::string> Text();
 
  private:
@@ -26,10 +26,10 @@ class Sha256Digest {
     void operator()(evp_md_ctx_st* context) const;
   };
 
-  std::unique_ptr<evp_md_ctx_st, Free> context_;  // Null where OpenSSL cannot begin.
+  std::unique_ptr<evp_md_ctx_st, Free> context_;  // Null if OpenSSL cannot start a digest.
 };
 
-/// That of bytes in memory.
+/// SHA-256 of bytes in memory: 64 lower-case hexadecimal digits. kInternal: OpenSSL cannot compute it.
 Result<std::string> Sha256(std::string_view bytes);
 
 }  // namespace pendulum

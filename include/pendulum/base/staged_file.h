@@ -9,24 +9,25 @@
 
 namespace pendulum {
 
-/// "cannot write PATH: WHY", kCannotWrite.
+/// An error kCannotWrite with the message "cannot write PATH: WHY".
 tl::unexpected<Status> CannotWrite(const std::string& path, const std::string& why);
 
-/// The system's words for an errno.
+/// The operating system's message for an errno.
 std::string SystemWords(int error);
 
-/// The file a path stands for once symbolic links in its last component are followed, whether or not it exists.
+/// The file that a path refers to after symbolic links in its last component are followed. The file need not exist.
 std::filesystem::path FollowLinks(std::filesystem::path path);
 
-/// Writes all of it; false with errno where that fails.
+/// Writes all of `text`. Returns false, with errno set, on failure.
 bool WriteAll(int descriptor, std::string_view text);
 
-/// Whether a file that has been written survives a loss of power at once, or once its file system is synchronised.
+/// Whether a written file survives a loss of power immediately, or only after its file system has been synchronised.
 enum class Durability { kSynchronised, kDeferred };
 
-/// A file that is written under a temporary name beside its target, synchronised with the disk, and renamed: whoever
-/// looks sees the old file or the whole new one. Removed unless committed. A replaced file keeps its permissions; a
-/// symbolic link stays and its target is replaced. kCannotWrite: the system's own words follow the path.
+/// A file that is written under a temporary name beside its target, synchronised with the disk, and then renamed.
+/// Readers see either the old file or the complete new one. The temporary file is removed unless committed. A replaced
+/// file keeps its permissions. A symbolic link stays and its target is replaced. kCannotWrite: the path and the
+/// system's message.
 class StagedFile {
  public:
   explicit StagedFile(std::string path, Durability durability = Durability::kSynchronised);
@@ -36,18 +37,18 @@ class StagedFile {
   StagedFile& operator=(StagedFile&&) = delete;
   ~StagedFile();
 
-  /// Whether a file of that name is such a temporary one, of a process that lives or was killed.
+  /// Whether `name` is the name of such a temporary file. Its process may still run or may have been killed.
   static bool IsTemporary(std::string_view name) { return name.starts_with(kPrefix) && name.ends_with(kSuffix); }
 
   Result<void> Open();
 
-  /// Appends to the open file; may be called often.
+  /// Appends to the open file. May be called repeatedly.
   Result<void> Write(std::string_view text);
 
-  /// Puts what was written on the disk, unless that is deferred, and closes it.
+  /// Synchronises the written data with the disk, unless that is deferred, and closes the file.
   Result<void> Finish();
 
-  /// Gives the finished file its name, and puts that on the disk likewise.
+  /// Renames the finished file to its target and synchronises the folder, unless that is deferred.
   Result<void> Commit();
 
  private:

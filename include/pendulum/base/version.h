@@ -5,7 +5,7 @@
 
 namespace pendulum {
 
-/// The same as project(VERSION) in CMakeLists.txt; a test compares them.
+/// Equals project(VERSION) in CMakeLists.txt; a test compares them.
 inline constexpr std::string_view kVersion = "0.1.0";
 
 }  // namespace pendulum

@@ -14,20 +14,22 @@
 
 namespace pendulum {
 
-/// All that the turning points of a recording tell in closed form, in true seconds (clock_scale) but for their times.
+/// All closed-form results from the turning points of a recording. Everything except the peaks' times is in true
+/// seconds (clock_scale).
 struct ClosedForms {
-  Gravity gravity = Gravity::kSine;    ///< Of the model.
+  Gravity gravity = Gravity::kSine;    ///< The model's gravity law.
   PeakTable table;                     ///< Its peaks' times are on the file's own clock.
   std::vector<DecayRow> decay;         ///< One for each turning point.
-  std::optional<LogDecrement> linear;  ///< The textbook's formulas; nothing without a whole period.
-  std::optional<Decrement> decrement;  ///< Exact at any amplitude, with the model's friction.
-  std::string no_decrement;            ///< Why there is none.
-  std::string wrong_law;               ///< How the turning points exclude the model's friction law; empty: they do not.
-  std::vector<EnvelopeLaw> envelopes;  ///< Each term of friction alone; empty where they cannot be told.
-  std::string envelope;                ///< Which of them the amplitudes follow, a sentence.
+  std::optional<LogDecrement> linear;  ///< By the textbook's formulas; std::nullopt without a whole period.
+  std::optional<Decrement> decrement;  ///< Valid at any amplitude, with the model's friction.
+  std::string no_decrement;            ///< Why `decrement` is missing.
+  std::string wrong_law;               ///< How the turning points exclude the model's friction law, or empty.
+  std::vector<EnvelopeLaw> envelopes;  ///< One for each friction term alone; empty if they cannot be compared.
+  std::string envelope;                ///< A sentence: which of these laws the amplitudes follow.
 };
 
-/// kFailedPrecondition: as LocatePeaks. kTryAgain: a stop was requested before they were done.
+/// Computes them all. kFailedPrecondition: as LocatePeaks, or an uncalibrated reading for a model with sine gravity.
+/// kTryAgain: a stop was requested before the end.
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop = {});
 

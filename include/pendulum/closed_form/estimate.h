@@ -3,7 +3,7 @@
 
 namespace pendulum {
 
-/// A number and its standard error, both in the unit said where it stands.
+/// A number and its standard error, in the unit given at its declaration.
 struct Estimate {
   double value = 0;
   double std_error = 0;

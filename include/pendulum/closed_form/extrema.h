@@ -8,7 +8,7 @@
 namespace pendulum {
 
 struct Extremum {
-  double time = 0, value = 0;  ///< s; rad or rad/s, as the recording
+  double time = 0, value = 0;  ///< s; rad or rad/s, as in the recording
   Eigen::Index sample = 0;
 };
 
@@ -16,16 +16,18 @@ struct Extremum {
 /// neighbours. Curvature between samples counts as noise; quantized data may give 0.
 double SuccessiveDifferenceNoise(const Recording& recording);
 
-/// What a reading must move back by before a turn counts [unit of the recording]: noise, 2 sqrt(2 ln N) + 1 standard
-/// deviations of it, two resolutions and 3 % of the range (of a turn at most).
+/// How far a reading must move back before a turning point counts [unit of the recording]. This is the maximum of 2
+/// sqrt(2 ln N) + 1 standard deviations of `noise`, two resolutions, and 3 % of the range (of an angle's range at most
+/// one turn counts).
 double TurningThreshold(const Recording& recording, double noise);
 
-/// Turning points as FindExtrema, before them the first candidate: perhaps the start, or in a hold. May be empty.
+/// The turning points that FindExtrema finds, preceded by the first candidate, which may be the start or lie in a hold.
+/// May be empty.
 std::vector<Extremum> FindTurns(const Recording& recording, double threshold);
 
-/// Turning points in time order, maxima and minima in turn, located to O(h³), not to a sample. One counts once the
-/// reading has moved back from it by more than TurningThreshold; a hold, or a start in the middle of a swing, is none.
-/// kFailedPrecondition: fewer than three; the message says how many there were.
+/// Turning points in time order, alternately maxima and minima, located to O(h³) instead of to one sample. A turning
+/// point counts once the reading has moved back by more than TurningThreshold. A hold, or a start in the middle of a
+/// swing, is not one. kFailedPrecondition: fewer than three; the message gives their number.
 Result<std::vector<Extremum>> FindExtrema(const Recording& recording);
 
 }  // namespace pendulum

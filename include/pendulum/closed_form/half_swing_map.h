@@ -8,18 +8,18 @@
 
 namespace pendulum {
 
-/// What a half swing from rest to rest comes to.
+/// The result of a half swing from rest to rest.
 struct HalfSwingEnd {
   double amplitude = 0;   ///< rad from the zero, on the other side
   double duration = 0;    ///< s
-  double peak_rate = 0;   ///< rad/s, the largest on the way; 0 unless it is wanted. Likewise:
-  double peak_delay = 0;  ///< s, from the start to the peak
+  double peak_rate = 0;   ///< rad/s, the largest rate; like peak_delay only computed on request, otherwise 0
+  double peak_delay = 0;  ///< s, from the start to the peak of the rate
 };
 
-/// Lets a pendulum go at an amplitude > 0 [rad; below π] to swing in `direction` (±1), under any registered friction
-/// law (its parameters in units of G, of either sign) and small-angle natural frequency [rad/s]: exact to 1e-9 of
-/// itself up to 120 deg (MODEL.md eq. (32)). Nothing where friction holds it or stops it short of the other side. Cost:
-/// some microseconds.
+/// The half swing of a pendulum released at an amplitude > 0 [rad; below π] that moves in `direction` (±1). Works with
+/// any registered friction law (parameters in units of G, of either sign) and small-angle natural frequency [rad/s].
+/// The relative error is below 1e-9 up to 120 deg (MODEL.md eq. (32)). Returns std::nullopt if friction holds the
+/// pendulum or stops it before the other side. Cost: some microseconds.
 std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
                                          double natural_frequency, double direction = 1, bool wants_peak = false);
 

@@ -8,18 +8,19 @@
 
 namespace pendulum {
 
-/// One passage between two turning points of the reading that follow each other without a gap in the data.
+/// The motion between two successive turning points of the reading, without a gap in the data.
 struct HalfSwing {
   double crossing = 0;           ///< s, when the reading passes its zero
   double before = 0, after = 0;  ///< rad or rad/s, |reading - zero| at the turning points before and after
-  bool continues = false;        ///< True when the half swing before it in the table ends where this one begins.
+  bool continues = false;        ///< True if the previous half swing in the table ends where this one begins.
 };
 
 /// The half swings of a recording about its zero.
 struct HalfSwingTable {
   Quantity quantity = Quantity::kAngle;
-  Gravity gravity = Gravity::kSine;  ///< The law the closed forms take for it; the caller's choice.
-  /// rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points, to which dry friction adds nothing
+  Gravity gravity = Gravity::kSine;  ///< The gravity law that the closed forms assume; chosen by the caller.
+  /// rad or rad/s: median of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points. Dry friction does not change this
+  /// value.
   double zero = 0;
   std::vector<HalfSwing> half_swings;
 };

@@ -14,40 +14,43 @@
 
 namespace pendulum {
 
-/// What the formulas of a linear pendulum with viscous friction make of two turning points n periods apart (MODEL.md
-/// eq. (35)): they take small angles and friction b ω for granted. Units of G.
+/// The formulas of a linear pendulum with viscous friction, applied to two turning points n periods apart (MODEL.md
+/// eq. (35)). They assume small angles and friction b ω. Units of G.
 struct LogDecrement {
-  std::size_t first = 0;       ///< The turning point the n periods begin with, in the table.
+  std::size_t first = 0;       ///< Index in the table of the turning point at which the n periods begin.
   int periods = 0;             ///< n >= 1
   Estimate damped_frequency;   ///< rad/s, ω_d = 2π n / (t_2n - t_0)
-  Estimate log_decrement;      ///< a period, δ = log(x_0 / x_2n) / n
+  Estimate log_decrement;      ///< per period, δ = log(x_0 / x_2n) / n
   Estimate damping_ratio;      ///< ζ = δ / sqrt(4π² + δ²)
   Estimate natural_frequency;  ///< rad/s, ω_n = ω_d / sqrt(1 - ζ²)
   Estimate inertia;            ///< s^2, 1 / ω_n²
   Estimate viscous;            ///< s, 2 ζ / ω_n
-  /// s^2, the inertia with the period of each half swing divided by the elliptic integral's (MODEL.md eq. (20)).
+  /// s^2, the inertia after dividing the period of each half swing by the ratio of the elliptic integral (MODEL.md eq.
+  /// (20)).
   Estimate corrected_inertia;
   Eigen::MatrixXd gradient;  ///< 4 x 2 M, of (ζ, I, b, corrected I), as for CovarianceOf.
 };
 
-/// The formulas over the n periods from a turning point on; errors are propagated from times, values and zero.
-/// Nothing where the turning points do not follow each other so far, or lie on the wrong side of the zero.
+/// Applies the formulas to the n periods that follow a turning point. Errors are propagated from times, values and
+/// zero. Returns std::nullopt if the turning points do not follow each other for n periods, or one lies on the wrong
+/// side of the zero.
 std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods);
 
-/// The same over that many periods of the longest run of turning points, from its beginning, that give the damping
-/// ratio the smallest standard error. Nothing where no run has a whole period, or once a stop is requested.
+/// The same from the beginning of the longest run of turning points, over the number of periods that gives the damping
+/// ratio the smallest standard error. Returns std::nullopt if no run has a whole period, or once a stop is requested.
 std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity,
                                               const std::stop_token& stop = {});
 
-/// A line of the table of turning points: damping ratios with the turning point a period later, and since the first.
+/// A line of the table of turning points: damping ratios from pairs of turning points one period apart, and from the
+/// first.
 struct DecayRow {
-  std::size_t peak = 0;            ///< In the table.
-  std::optional<Estimate> pair;    ///< ζ of this turning point and the next on its side.
-  std::optional<Estimate> so_far;  ///< ζ of the first one on this side in its run and this one.
-  int periods = 0;                 ///< Between those two.
+  std::size_t peak = 0;            ///< Index in the table.
+  std::optional<Estimate> pair;    ///< ζ from this turning point and the next on its side.
+  std::optional<Estimate> so_far;  ///< ζ from the first turning point on this side in its run and this one.
+  int periods = 0;                 ///< Number of periods in `so_far`.
 };
 
-/// One line for each turning point; not for all once a stop is requested.
+/// One line for each turning point; fewer once a stop is requested.
 std::vector<DecayRow> TabulateDecay(const PeakTable& table, const std::stop_token& stop = {});
 
 }  // namespace pendulum

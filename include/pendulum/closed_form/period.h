@@ -5,16 +5,17 @@
 
 namespace pendulum {
 
-/// Period of an undamped pendulum over its small-angle period: (2/π) K(sin(A/2)), by the arithmetic-geometric mean.
-/// MODEL.md eq. (20). amplitude A in rad, |A| < π.
+/// Period of an undamped pendulum divided by its small-angle period: (2/π) K(sin(A/2)), by the arithmetic-geometric
+/// mean. MODEL.md eq. (20). amplitude A in rad, |A| < π.
 double PeriodRatio(double amplitude);
 
-/// The angle amplitude [rad] that goes with the amplitude of a reading: itself for an angle, 2 asin(ω_peak / 2 ω0) for
-/// the peak of a rate (MODEL.md eq. (21)), at most 3.1 rad. With linear gravity ω_peak / ω0, and no limit.
+/// The angle amplitude [rad] that belongs to the amplitude of a reading. For an angle it is the amplitude itself, for
+/// the peak of a rate 2 asin(ω_peak / 2 ω0), at most 3.1 rad (MODEL.md eq. (21)). With linear gravity it is ω_peak /
+/// ω0, without a limit.
 double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency, Gravity gravity = Gravity::kSine);
 
 /// Small-angle natural frequency ω0 [rad/s] from the crossings, whose spacing is (π/ω0) PeriodRatio(amplitude between
-/// them). Friction enters to second order, ω_d = ω0 sqrt(1 - ζ²).
+/// them). Friction changes it only to second order, ω_d = ω0 sqrt(1 - ζ²).
 double NaturalFrequency(const HalfSwingTable& table);
 
 }  // namespace pendulum

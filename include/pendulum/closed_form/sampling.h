@@ -8,39 +8,41 @@
 
 namespace pendulum {
 
-/// A rig's inertia from masses and lengths is good to some ten percent: its frequency to this share.
+/// A rig's inertia from masses and lengths is accurate to some ten percent; the predicted frequency is accurate to this
+/// share.
 inline constexpr double kExpectedWithin = 0.15;
 
-/// How a recording was sampled, beside how fast the pendulum swings. Times and frequencies are those of its clock.
+/// How a recording was sampled compared with the motion of the pendulum. Times and frequencies are on its own clock.
 struct Sampling {
-  double rate_hz = 0;       ///< One over the median interval.
+  double rate_hz = 0;       ///< 1 / median interval.
   double jitter = 0;        ///< s, scatter of the intervals: 1.4826 times their median deviation.
   int gaps = 0;             ///< Intervals in which readings are missing.
   double longest_gap = 0;   ///< s
-  double frequency_hz = 0;  ///< Of the swing: expected where that aliases, else seen; 0: unknown.
-  /// 0: unknown frequency. nyquist_margin is (rate / 2) / frequency; below 1 the swing aliases.
+  double frequency_hz = 0;  ///< Of the swing: the expected one if that aliases, otherwise the seen one; 0: unknown.
+  /// 0 if the frequency is unknown. nyquist_margin is (rate / 2) / frequency; below 1 the swing aliases.
   double samples_per_period = 0, nyquist_margin = 0;
-  /// Peak to peak in resolutions, 0 without one: the largest swing; the last period (8 samples at least).
+  /// Peak to peak in resolutions of the largest swing and of the last period (at least 8 samples). 0 without a
+  /// resolution.
   double start_counts = 0, end_counts = 0;
   Eigen::Index saturated = 0;                                      ///< Readings at an end of the sensor's range.
-  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< Of the turning points; of the rig.
+  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< From the turning points; from the rig.
 };
 
-/// The frequency [Hz] at which samples of one frequency seem to swing: |f - k rate| for the nearest k, at most rate / 2
+/// The frequency [Hz] that samples of an oscillation appear to have: |f - k rate| for the nearest k, at most rate / 2
 /// (MODEL.md eq. (44)). Shannon, Proc. IRE 37:10 (1949).
 double ApparentFrequency(double frequency_hz, double rate_hz);
 
-/// Whether two frequencies of [low, high] Hz may look the same at even samples: [2 low / rate, 2 high / rate] holds an
-/// integer, where the frequencies to both sides of it mirror each other (MODEL.md eq. (45)).
+/// Whether two frequencies in [low, high] Hz can give the same even samples. This is so if [2 low / rate, 2 high /
+/// rate] contains an integer: frequencies on both sides of it mirror each other (MODEL.md eq. (45)).
 bool HoldsMirror(double low_hz, double high_hz, double rate_hz);
 
-/// Measures the sampling of the samples that were used. half_period [s] as the turning points show it, which of an
-/// aliased swing is an apparent one; expected_frequency [Hz] of the rig at small amplitudes.
+/// Describes the sampling of the samples used. half_period [s] comes from the turning points; for an aliased swing it
+/// is an apparent one. expected_frequency [Hz] is the rig's at small amplitudes.
 Sampling DescribeSampling(const Recording& used, std::optional<double> half_period,
                           std::optional<double> expected_frequency);
 
-/// What a user should change: aliased, nearly_aliased, once_a_cycle (and twice), slow_sampling, few_counts, gaps,
-/// jitter; each says what, how much and what to do.
+/// Problems of the sampling: aliased, nearly_aliased, once_a_cycle (and twice), slow_sampling, few_counts, gaps,
+/// jitter. Each message states the problem, its size and what to do.
 std::vector<Warning> SamplingWarnings(const Sampling& sampling);
 
 }  // namespace pendulum

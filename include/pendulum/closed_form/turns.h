@@ -9,36 +9,37 @@
 
 namespace pendulum {
 
-/// All turning points of a recording, disturbed or not; half swing i goes from turn i to turn i + 1. For M turns.
+/// All M turning points of a recording, disturbed or not. Half swing i goes from turning point i to i + 1.
 struct TurnTable {
   const Recording& recording;        ///< Must outlive the table.
-  double noise = 0, threshold = 0;   ///< rad or rad/s: between neighbouring samples; what a turn stands out by
+  double noise = 0, threshold = 0;   ///< rad or rad/s: noise between neighbours; least height of a turning point
   std::vector<Extremum> turns = {};  ///< M
-  /// M, rad or rad/s: near each turn, for it may drift, and distance from it; empty when M < 3
+  /// M, rad or rad/s: zero near each turning point, since it may drift, and distance from it; empty if M < 3
   std::vector<double> zero = {}, amplitude = {};
-  double half_period = 0;  ///< s, typical, of a small swing
+  double half_period = 0;  ///< s, typical, for small swings
 
   std::size_t half_swings() const { return turns.empty() ? 0 : turns.size() - 1; }
 
-  /// What a half swing from this turn takes over one of a small swing (MODEL.md eq. (20)).
+  /// Duration of a half swing from this turning point, divided by that of a small swing (MODEL.md eq. (20)).
   double Stretch(std::size_t turn) const;
 
-  /// By how much a reading may differ from this turn's and be called the same: 5 % of the amplitude and the noise.
+  /// How far a reading may differ from that of this turning point and still count as equal: 5 % of the amplitude plus
+  /// noise.
   double Tolerance(std::size_t turn) const;
 };
 
 TurnTable TabulateTurns(const Recording& recording);
 
-/// What a half swing looks like beside its neighbours.
+/// Classification of a half swing compared with its neighbours.
 enum class Verdict {
-  kFree,           ///< Crosses the zero, loses amplitude as those around it, and takes as long.
-  kFreeAfterHold,  ///< The same, but takes half as long again: the turn before it is a hold.
-  kGains,          ///< Gains amplitude for good: it was pushed, or a hand lifted the pendulum.
-  kIrregular       ///< Neither: braked, too short, or samples were lost in it.
+  kFree,           ///< Crosses the zero, and loses as much amplitude and takes as long as its neighbours.
+  kFreeAfterHold,  ///< The same, but takes at least half as long again: the turning point before it is a hold.
+  kGains,          ///< Gains amplitude permanently: it was pushed, or a hand lifted the pendulum.
+  kIrregular       ///< Otherwise: braked, too short, or with lost samples.
 };
 
-/// One verdict for each half swing of three turns or more. A turn that stands out alone is an outlier and disturbs
-/// nothing; next to a gap in the samples only a gain counts.
+/// One verdict for each half swing; needs three turning points. A single deviating turning point is an outlier and
+/// disturbs no half swing. Next to a gap in the samples only a gain counts.
 std::vector<Verdict> JudgeHalfSwings(const TurnTable& table);
 
 }  // namespace pendulum

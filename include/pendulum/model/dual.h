@@ -8,17 +8,19 @@
 
 namespace pendulum {
 
-/// Four doubles side by side; a processor that has no room for as many takes them two by two. What contains quads says
-/// alignas(kQuadAlignment): code for wider instructions relies on it, and the type alone promises it only there.
+/// Four doubles in one vector. A processor with narrower vectors handles them in pairs. A type that contains quads must
+/// say alignas(kQuadAlignment): code for wider instructions relies on this alignment, and the type guarantees it only
+/// there.
 using Quad [[gnu::vector_size(32)]] = double;
 inline constexpr std::size_t kQuadAlignment = 32;
 
-/// Partial derivatives by P parameters, in as many quads as it takes. All is inlined: no quad is handed to a function,
-/// which instruction sets do differently.
+/// Partial derivatives by P parameters, stored in quads. All members are inlined, because the convention for passing a
+/// quad to a function depends on the instruction set.
 template <int P>
-class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): moved as it is copied
+class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): a move is the same as a copy
  public:
-  // Copied quad by quad: left to itself, g++ copies in halves, and quads that are read at once have to wait for both.
+  // Copies quad by quad. By default g++ copies half quads, and a following read of a whole quad must wait for both
+  // halves.
   Partials() = default;
   [[gnu::always_inline]] Partials(const Partials& other) { *this = other; }
   [[gnu::always_inline]] Partials& operator=(const Partials& other) {
@@ -27,13 +29,13 @@ class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): moved a
   }
 
   [[gnu::always_inline]] double operator[](int i) const { return quad_[i / 4][i % 4]; }
-  /// P numbers, one behind the other.
+  /// P consecutive numbers.
   [[gnu::always_inline]] const double* data() const {
-    return reinterpret_cast<const double*>(quad_.data());  // NOLINT: a quad may be read as the doubles it is made of
+    return reinterpret_cast<const double*>(quad_.data());  // NOLINT: a quad may be read as its doubles
   }
   [[gnu::always_inline]] void set(int i, double value) { quad_[i / 4][i % 4] = value; }
 
-  /// Adds s y for an s that is the same in all lanes.
+  /// Adds s y, where s has the same value in all lanes.
   [[gnu::always_inline]] void AddProduct(const Quad& s, const Partials& y) {
     for (std::size_t i = 0; i < kQuads; ++i) quad_[i] += s * y.quad_[i];
   }
@@ -79,8 +81,8 @@ class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): moved a
 
 static_assert(alignof(Partials<1>) == kQuadAlignment);
 
-/// A dual number: value `a` and partial derivatives `v` by P parameters, as ceres::Jet has them, which this floor does
-/// not include. It has what equations of motion are written with.
+/// A dual number: value `a` and partial derivatives `v` by P parameters, like ceres::Jet, which this floor does not
+/// include. It has only the operations that equations of motion need.
 template <int P>
 struct Dual {
   Partials<P> v;
@@ -88,7 +90,7 @@ struct Dual {
 
   Dual() = default;
   [[gnu::always_inline]] explicit Dual(double value) : a(value) {}
-  /// Parameter number i.
+  /// The value of parameter number i: its partial derivative by itself is 1.
   [[gnu::always_inline]] Dual(double value, int i) : a(value) { v.set(i, 1.0); }
   [[gnu::always_inline]] Dual(double value, const Partials<P>& partials) : v(partials), a(value) {}
 
@@ -139,7 +141,7 @@ concept DualNumber = requires(T x) {
   x.v;
 };
 
-/// The number of a T's partial derivatives.
+/// The number of partial derivatives of T; 0 for a double.
 template <typename T>
 inline constexpr int kPartials = 0;
 template <int P>

@@ -9,17 +9,18 @@
 
 namespace pendulum {
 
-/// A moment of inertia that the rig's description gives, beside a fitted one [kg m^2].
+/// A moment of inertia that follows from the rig's description, to compare with the fitted one [kg m^2].
 struct GeometricInertia {
-  bool is_point_mass = false;  ///< (M + m) l², the rod's mass taken to be in the bob.
+  bool is_point_mass = false;  ///< True for (M + m) l²: the rod's mass counts as part of the bob.
   double value = 0;
-  std::optional<double> std_error;  ///< Absent where the rig file gives no standard deviations.
-  /// Standard deviation of value - fitted by the rig's errors alone; both hang on the same masses and lengths.
+  std::optional<double> std_error;  ///< std::nullopt if the rig file gives no standard deviations.
+  /// Standard deviation of (value - fitted) due to the rig's errors alone. Both depend on the same masses and lengths.
   double difference_std_error = 0;
 };
 
-/// The inertia of the rig, its own or its geometry's, and of a rod and bob the point mass's (MODEL.md eq. (3), (36)).
-/// Errors by varying each value of the rig file by its standard deviation, which moves G and so the fitted inertia too.
+/// The inertia of the rig, given or computed from its geometry. For a rod and bob also the inertia of the point mass
+/// (MODEL.md eq. (3), (36)). The standard errors come from varying each value of the rig file by its standard
+/// deviation. Each variation also changes G and therefore the fitted inertia.
 std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted);
 
 }  // namespace pendulum

@@ -9,22 +9,24 @@
 
 namespace pendulum {
 
-/// What a richer friction law has beyond a simpler one that is a special case of it (the null).
+/// The parameters that a richer friction law adds to a simpler one. The simpler law is the null hypothesis: the richer
+/// law reduces to it at special values of these parameters.
 struct Nesting {
   std::vector<ParameterInfo> added;
-  int bounded = 0;  ///< Of the added: at their bound under the null, a torque of 0 or one no larger than another.
-  int free = 0;     ///< Within their bounds under the null.
-  std::vector<std::string_view> unidentified;  ///< Those of no effect under the null, not counted above.
+  int bounded = 0;  ///< How many are at a bound under the null: a torque that is 0 or equal to another torque.
+  int free = 0;     ///< How many are within their bounds under the null.
+  std::vector<std::string_view> unidentified;  ///< No effect under the null; in neither count.
 };
 
-/// How `simpler` is nested in `richer`: it has some of the same parameters and the same gravity. Nothing when it is
-/// not.
+/// How `simpler` is nested in `richer`: all its parameters also occur there, and the gravity law is the same.
+/// std::nullopt if it is not nested.
 std::optional<Nesting> FindNesting(const MotionModel& simpler, const MotionModel& richer);
 
-/// The richest model nested in this one; nothing when there is none.
+/// The nested model with the most parameters; std::nullopt if no model is nested in this one.
 std::optional<MotionModel> RichestWithin(const MotionModel& model);
 
-/// Indices among PhysicalParameters of a parameter that is at least another; negative where the law has no such pair.
+/// Indices into PhysicalParameters of the pair of which one is never below the other. Both are negative if the law has
+/// no such pair.
 OrderedPair OrderOf(const MotionModel& model);
 
 }  // namespace pendulum

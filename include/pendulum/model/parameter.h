@@ -19,13 +19,13 @@ struct ParameterRange {
   double upper = kUnbounded;
 };
 
-/// What is known of a parameter before the fit.
+/// Prior knowledge of a parameter, independent of the recording.
 struct ParameterPrior {
   double mean = 0;
   double std_dev = 0;  ///< Positive.
 };
 
-/// Indices of two parameters of a friction law, of which one is at least the other.
+/// Indices of two parameters of a friction law. The first is never below the second.
 struct OrderedPair {
   int larger = -1, smaller = -1;
 };
@@ -33,18 +33,18 @@ struct OrderedPair {
 using ParameterRanges = std::map<std::string, ParameterRange, std::less<>>;
 using ParameterPriors = std::map<std::string, ParameterPrior, std::less<>>;
 
-/// Everything that is said of a parameter, said once: flags, bounds, tables, JSON and the documentation follow from it.
-/// Torques are in units of the gravity torque G below the report (G = 1), so a parameter that is a torque, or an
-/// inertia, has two units: `unit` once a rig gives G, `relative_unit` (that of parameter / G) without one.
+/// All facts about a parameter in one place. Flags, bounds, tables, JSON and documentation are derived from it.
+/// Internally torques are in units of the gravity torque G (G = 1); only the report converts them. A torque or an
+/// inertia therefore has two units: `unit` if a rig gives G, and `relative_unit`, the unit of parameter / G, if not.
 struct ParameterInfo {
   std::string_view name;           ///< As in --fix, --set and JSON.
   std::string_view symbol;         ///< As in MODEL.md.
   std::string_view unit;           ///< SI.
-  std::string_view relative_unit;  ///< SI, of the value divided by G; equal to `unit` where G does not enter.
+  std::string_view relative_unit;  ///< SI, of parameter / G; equal to `unit` for a parameter that is not scaled by G.
   double lower, upper;             ///< The smallest and the largest admissible value.
   std::string_view description;
 
-  /// True when the value in SI is G times the value in units of G.
+  /// True if the value in SI units is G times the value in units of G.
   constexpr bool scales_with_gravity() const { return unit != relative_unit; }
 };
 

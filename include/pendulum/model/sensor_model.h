@@ -9,42 +9,42 @@
 
 namespace pendulum {
 
-/// How a reading follows from the motion (MODEL.md section 14).
+/// How a reading depends on the motion (MODEL.md section 14).
 enum class SensorKind {
   kDirect,        ///< The angle, or the rate, plus a constant.
-  kScaledRate,    ///< The rate times a constant, plus another: a gyro in volts or counts.
-  kAcceleration,  ///< What an accelerometer at a radius shows along one axis.
-  kCoordinate,    ///< One coordinate of a point at a radius, across the direction in which it hangs.
-  kArc,           ///< The angle under which a point is seen from near the pivot: both its coordinates.
+  kScaledRate,    ///< The rate times a constant, plus another constant: a gyro in volts or counts.
+  kAcceleration,  ///< The reading of an accelerometer at a radius along one axis.
+  kCoordinate,    ///< One coordinate of a point at a radius, perpendicular to the rod at rest.
+  kArc,           ///< The angle of a point seen from near the pivot; both its coordinates are needed.
 };
 
-/// Between a motion and its readings. All constants are known; what is not is among the S = size() parameters.
+/// Computes readings from a motion. The members are known constants; the S = size() parameters are not known.
 struct SensorModel {
   static constexpr int kMostParameters = 4;
-  static constexpr int kStates = 3;  ///< Angle, rate, acceleration of the angle.
+  static constexpr int kStates = 3;  ///< Angle, rate and angular acceleration.
 
   SensorKind kind = SensorKind::kDirect;
-  double gravity = 0;               ///< m/s^2, as far as an accelerometer shows it; 0: taken out of its readings.
-  double pivot_x = 0, pivot_y = 0;  ///< kArc: the point the angles were taken about, in the unit of the coordinates.
-  double down = 1;                  ///< kArc: the sign of y's direction downwards, 1 or -1.
+  double gravity = 0;               ///< m/s^2, as the accelerometer's readings contain it; 0 if it was removed.
+  double pivot_x = 0, pivot_y = 0;  ///< kArc: the reference point of the angles, in the coordinates' unit.
+  double down = 1;                  ///< kArc: the sign of the y coordinate downwards, 1 or -1.
 
-  /// A reading and its derivatives by angle, rate and acceleration, and by the sensor's parameters (S).
+  /// A reading and its derivatives by angle, rate and acceleration, and by the S sensor parameters.
   struct Response {
     double reading = 0;
     std::array<double, kStates> by_state{};
     std::array<double, kMostParameters> by_parameter{};
   };
 
-  /// Of an angle [rad] with its derivatives [rad/s, rad/s^2] seen by a sensor of these parameters (S); not of kDirect.
+  /// The reading for an angle [rad] and its derivatives [rad/s, rad/s^2]; `parameters` has S values. Not for kDirect.
   Response At(const std::array<double, kStates>& state, const double* parameters) const;
 
   int size() const;
 
-  /// Of kDirect none: its zero is zero_angle or rate_bias.
+  /// The parameters of the sensor. kDirect has none here: its zero is the parameter zero_angle or rate_bias.
   std::vector<ParameterInfo> Parameters() const;
 };
 
-/// Whether a parameter is one of a sensor, its zero apart.
+/// Whether the name belongs to a sensor parameter other than the zero.
 bool IsSensorParameter(std::string_view name);
 
 }  // namespace pendulum

@@ -9,14 +9,14 @@
 
 namespace pendulum {
 
-/// The highest order of a Taylor expansion: what OrderForTolerance asks for at a local tolerance of 4e-15.
+/// The highest order of a Taylor expansion: OrderForTolerance returns it for a local tolerance of 4e-15.
 inline constexpr int kMaxOrder = 25;
 
 /// Coefficients of a truncated Taylor series Σ c_n τⁿ, τ in s; T is double or Dual.
 template <typename T>
 using Series = std::array<T, kMaxOrder + 1>;
 
-/// 1/n: a division would hold up every coefficient.
+/// 1/n, tabulated because a division would delay every coefficient.
 inline constexpr std::array<double, kMaxOrder + 1> kInverse = [] {
   std::array<double, kMaxOrder + 1> inverse{};
   for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1.0 / static_cast<double>(n);
@@ -39,13 +39,13 @@ T SquareCoefficient(const Series<T>& x, int n) {
   return 2.0 * sum;
 }
 
-/// Coefficients of sin θ and cos θ along a trajectory, one after the other, by the coupled recurrence n sin_n = Σ ω_k
-/// cos_{n-1-k}, n cos_n = -Σ ω_k sin_{n-1-k} with ω = θ' (MODEL.md eq. (14)). What makes it fast: sums of sine and
-/// cosine of two successive coefficients are made side by side; they go from the middle outwards, so that what was
-/// known last is added last, and nothing else waits for it.
+/// Coefficients of sin θ and cos θ along a trajectory, in order of n, by the coupled recurrence
+/// n sin_n = Σ ω_k cos_{n-1-k}, n cos_n = -Σ ω_k sin_{n-1-k} with ω = θ' (MODEL.md eq. (14)). For speed, one quad holds
+/// the sums for sine and cosine of two successive coefficients. The sums run from the middle outwards: the latest
+/// coefficients are added last, so only the last additions wait for them.
 class SineSeries {
  public:
-  /// Coefficient n of the sine, n = 0, 1, 2, ... in this order, from θ_0 and coefficients 0..n-1 of ω.
+  /// Coefficient n of the sine, from θ_0 and coefficients 0..n-1 of ω. Call with n = 0, 1, 2, ... in this order.
   template <int n>
   [[gnu::always_inline]] double Next(double angle, const Series<double>& rate) {
     if constexpr (n == 0) {
@@ -67,9 +67,9 @@ class SineSeries {
     }
   }
 
-  /// Partial derivatives of coefficient n, which is known already, from those of coefficients 0..n of θ: d sin θ = cos
-  /// θ dθ (MODEL.md eq. (15)) costs one product of series per parameter, the recurrence in dual numbers four. An even
-  /// n leaves to its successor, in `next`, what can be known of it.
+  /// Partial derivatives of coefficient n from those of coefficients 0..n of θ. Next<n> must have been called. Using
+  /// d sin θ = cos θ dθ (MODEL.md eq. (15)) costs one product of series per parameter; the recurrence in dual numbers
+  /// costs four. For even n, `next` receives the part of coefficient n + 1 that can be computed already.
   template <int n, int P>
   [[gnu::always_inline]] Partials<P> PartialsOf(const Series<Partials<P>>& angle, Partials<P>& next) const {
     if constexpr (n % 2 == 1) {
@@ -95,7 +95,7 @@ class SineSeries {
   }
 
  private:
-  /// Terms k <= kOuter and their mirror images are added one by one, for they are known late.
+  /// Terms k <= kOuter and their mirror images are added one by one, because they become known late.
   static constexpr int kOuter = 1;
   template <int n>
   static constexpr bool kInPairs = n > 2 * kOuter + 1;
@@ -105,7 +105,7 @@ class SineSeries {
     double sine = 0, cosine = 0;
   };
 
-  /// What is between the outer terms: of coefficient n, and if n is even of its successor, too.
+  /// Sums of the inner terms of coefficient n; for even n also those of coefficient n + 1.
   template <int n>
   [[gnu::always_inline]] Sums InnerSums(const Series<double>& rate) {
     if constexpr (!kInPairs<n>) {
@@ -143,7 +143,7 @@ class SineSeries {
 
   Series<double> sine_{};
   Series<double> cosine_{};
-  alignas(kQuadAlignment) Series<Quad> spread_cosine_{};  ///< In all lanes.
+  alignas(kQuadAlignment) Series<Quad> spread_cosine_{};  ///< cos_n in all four lanes.
   alignas(kQuadAlignment) Series<Quad> pair_{};           ///< cos_n, sin_n, cos_{n+1}, sin_{n+1}
   Sums next_;
 };

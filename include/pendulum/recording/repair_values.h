@@ -5,10 +5,12 @@
 
 namespace pendulum {
 
-/// Repairs what needs no model, each with a warning that says how many readings it concerns: `unwrapped` (an angle's
-/// jumps by a whole turn), `stale_values` (repeats while the pendulum moves on), `spikes` (readings that lie 2 sqrt(2
-/// ln N) + 0.5 standard deviations of the noise there, and 2.5 resolutions, from the lines through the two before and
-/// the two after; more than a tenth are `many_spikes` and stay). `event_driven`: a row only where the value changes.
+/// Repairs errors that can be recognized without a model. Each warning gives the number of readings. `unwrapped`: jumps
+/// of an angle by a whole turn are removed. `stale_values`: readings repeated while the pendulum moves are left out.
+/// `spikes`: readings are left out that lie 2 sqrt(2 ln N) + 0.5 standard deviations of the local noise, and 2.5
+/// resolutions, from both the line through the two previous readings and the line through the two following ones.
+/// `many_spikes`: more than a tenth would be spikes, so they are kept. `event_driven`: there are rows only where the
+/// value changes.
 Recording RepairValues(Recording recording);
 
 }  // namespace pendulum

@@ -6,16 +6,16 @@
 namespace pendulum {
 
 /// The part of a recording with from <= time <= to [s, on the file's clock]; NaN leaves that end open.
-/// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples left; the message gives both spans.
+/// kInvalidArgument: from >= to. kFailedPrecondition: fewer than kMinimumSamples remain; the message gives both spans.
 Result<Recording> SelectWindow(Recording recording, double from, double to);
 
-/// The recording with seconds that last a second (clock_scale), from its first sample on.
+/// The recording with times converted to true seconds (clock_scale), counted from its first sample.
 Recording InTrueTime(Recording recording);
 
-/// At most `most` samples from the first (or the last) on, as dense as `per_second` [Hz] asks where the recording is.
+/// At most `most` samples from the start or from the end, thinned to `per_second` [Hz] if the recording is that dense.
 Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end);
 
-/// Every so many-th sample, so that at most `most` remain.
+/// Every k-th sample, with k such that at most `most` remain.
 Recording Thinned(const Recording& recording, Eigen::Index most);
 
 }  // namespace pendulum

@@ -9,20 +9,20 @@
 
 namespace pendulum {
 
-/// A change of an encoder's count.
+/// A change of the count of an encoder.
 struct CountChange {
   double time = 0;   ///< s, when the angle crosses the edge; exact.
-  double count = 0;  ///< The one entered, a whole number: the angle it stands for is count · resolution.
+  double count = 0;  ///< The new count, a whole number. It represents the angle count · resolution.
 };
 
-/// The changes of count of θ + zero between the trajectory's begin and `end` [s], in order. Each crossing of an edge,
-/// (k + 1/2) · resolution, has an error of its own, normal with the standard deviation options.noise; a seed gives the
-/// same ones however the encoder is read. Requires a resolution and a noise that is small against it.
+/// The changes of the count of θ + zero between the start of the trajectory and `end` [s], in order. Each crossing of
+/// an edge (k + 1/2) · resolution has its own normal error with the standard deviation options.noise. The errors depend
+/// only on the seed, not on how the encoder is read. Requires a resolution and a noise that is small compared with it.
 std::vector<CountChange> CountChanges(const Trajectory& trajectory, const SyntheticOptions& options, double end);
 
-/// Rows of an encoder as options.rows says; `instants` are those of even sampling, of which events take first and
-/// last. The stamps of events have normal errors of options.time_noise and increase all the same. Nothing else of the
-/// recording is set.
+/// Fills the rows of an encoder according to options.rows. `instants` are the instants of even sampling; event rows use
+/// only the first and the last of them. Time stamps of events have normal errors of options.time_noise but still
+/// increase. Only the times and readings of `recording` are set.
 void ReadEncoder(const Trajectory& trajectory, const SyntheticOptions& options, const Eigen::VectorXd& instants,
                  Recording& recording);
 

@@ -10,17 +10,18 @@
 
 namespace pendulum {
 
-/// A parameter whose true value differs from recording to recording: normal about `mean`, cut off at its bounds.
+/// A parameter whose true value varies between recordings: normally distributed about `mean`, truncated at its bounds.
 struct ScatteredParameter {
   ParameterInfo info;
   double mean = 0;     ///< SI, or in units of G.
-  double std_dev = 0;  ///< In the same unit, 0 or more; of 0 comes `mean` itself.
+  double std_dev = 0;  ///< In the same unit, 0 or more; 0 always gives `mean`.
 };
 
-/// Values of the parameters, drawn independently of each other, in their order and units. All are drawn again until
-/// each is within its bounds and `order` holds (OrderOf, of indices among `parameters`; negative: none). A seed gives
-/// the same everywhere; the draws are not those of the noise that SimulateRecording makes of the same seed.
-/// kInvalidArgument: a thousand draws, none of which was admissible; the message has the seed and what the last broke.
+/// Independent draws of the parameters, in their order and units. All values are drawn again until each is within its
+/// bounds and `order` holds. `order` contains indices into `parameters`, as OrderOf gives them; negative means no
+/// order. The draws depend only on the seed and differ from the noise that SimulateRecording makes with the same seed.
+/// kInvalidArgument: none of a thousand draws was admissible; the message gives the seed and the rule that the last
+/// broke.
 Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter> parameters, OrderedPair order,
                                               std::uint64_t seed);
 

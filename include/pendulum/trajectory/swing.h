@@ -24,16 +24,17 @@ struct Pendulum {
   std::array<T, kFrictionParameters<F>> friction;
 };
 
-/// The state at one instant. With a dual T the partial derivatives of angle and rate are those at a fixed time *since*
-/// this instant, and the partials of `time` say how the instant itself moves (it does once a reversal has been passed).
+/// The state at one instant. With a dual T the partial derivatives of angle and rate are taken at a fixed time *since*
+/// this instant. The partials of `time` are those of the instant itself, which depends on the parameters after a
+/// reversal.
 template <typename T>
 struct State {
   T time, angle, rate;  ///< s, rad, rad/s
 };
 
-/// A stretch of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
-/// Coefficients are in rad s⁻ⁿ. With a dual T `partials` are their derivatives at a fixed time since `start`, which
-/// moves itself: see PartialsAtFixedTime. With T = double `partials` are empty.
+/// A piece of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
+/// Coefficients are in rad s⁻ⁿ. With a dual T `partials` are their derivatives at a fixed time since `start`; `start`
+/// itself depends on the parameters, see PartialsAtFixedTime. With T = double `partials` are empty.
 template <typename T>
 struct Segment {
   double start = 0, end = 0;  ///< s
@@ -43,22 +44,22 @@ struct Segment {
   Series<PartialsFor<T>> partials;
 };
 
-/// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md eq.
-/// (17)). Where many samples are wanted the same is done at each of them (fitting/sample_kernel.h).
+/// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md
+/// eq. (17)). For many samples, fitting/sample_kernel.h applies the same correction at each sample.
 template <DualNumber T>
 PartialsFor<T> PartialsAtFixedTime(const Segment<T>& segment, int n) {
   const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
   return segment.partials[n] - rate * segment.start_partials;
 }
 
-/// The segment's rate ω(t) [rad/s], as a segment has the angle.
+/// The rate ω(t) [rad/s] of a segment, in the same form as the angle.
 template <typename T>
 Segment<T> RateOf(const Segment<T>& segment) {
   Segment<T> rate;
   rate.start = segment.start;
   rate.end = segment.end;
   rate.start_partials = segment.start_partials;
-  if (segment.order == 0) {  // at rest there is none
+  if (segment.order == 0) {  // the rate is 0 at rest
     rate.angle[0] = 0;
     rate.partials[0] = {};
     return rate;
@@ -71,14 +72,15 @@ Segment<T> RateOf(const Segment<T>& segment) {
   return rate;
 }
 
-/// The rate along a swing [rad s⁻¹⁻ⁿ], as numbers and as dual numbers if T is. The order is one less than the angle's.
+/// The rate along a swing [rad s⁻¹⁻ⁿ] as numbers, and as dual numbers if T is dual. Its order is one below the angle's.
 template <typename T>
 struct RateSeries {
   Series<double> value;
   Series<T> dual;
 };
 
-/// Σ coefficient(k) τ^k for k = 0..order, by Horner's rule over even and odd powers apart: neither waits for the other.
+/// Σ coefficient(k) τ^k for k = 0..order. Horner's rule runs separately over even and odd powers, so neither sum waits
+/// for the other.
 template <typename V, typename Coefficient>
 V EvaluatePolynomial(const Coefficient& coefficient, int order, double tau) {
   const double square = tau * tau;
@@ -103,9 +105,10 @@ PartialsFor<T> EvaluatePartials(const Series<T>& c, int order, double tau) {
   return EvaluatePolynomial<PartialsFor<T>>([&](int k) { return c[k].v; }, order, tau);
 }
 
-/// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), within the room of Series. The asymptotic
-/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005); here each step has a cost of
-/// its own, and what follows a step (location of reversals, the samples) gains by fewer, longer ones.
+/// Order of the expansion for a local tolerance: 1 - 0.72 ln(tolerance), limited by the size of Series. The asymptotic
+/// optimum is 1 - 0.5 ln(tolerance) (Jorba & Zou, Experimental Mathematics 14:99, 2005). The order is higher here
+/// because each step has a fixed cost, and locating reversals and evaluating samples are cheaper with fewer, longer
+/// steps.
 inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
@@ -124,24 +127,24 @@ Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
   return values;
 }
 
-/// Direction in which the pendulum moves on from a state: ±1, or 0 when static friction holds it (MODEL.md eq. (10)).
+/// Direction of the motion that follows a state: ±1, or 0 if static friction holds the pendulum (MODEL.md eq. (10)).
 template <FrictionModel F>
 double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, double rate) {
   if (rate != 0) return rate > 0 ? 1.0 : -1.0;
   const double torque = GravityTorque(pendulum.gravity, angle);
   const double direction = torque > 0 ? -1.0 : 1.0;
   const double holding = direction * F::Torque(0.0, direction, pendulum.friction.data());
-  constexpr double kMargin = 1.0 + 1e-12;  // at equality rounding must not start a motion
+  constexpr double kMargin = 1.0 + 1e-12;  // at equality, rounding must not start a motion
   return std::abs(torque) > holding * kMargin ? direction : 0.0;
 }
 
-/// log2 of a positive normal number within 0.09, exact for powers of two: the exponent, and the mantissa as if log2
-/// were linear between them.
+/// log2 of a positive normal number, accurate to 0.09 and exact for powers of two: the exponent plus the mantissa, as
+/// if log2 were linear between powers of two.
 inline double RoughLog2(double x) { return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - 1023; }
 
 /// Longest step whose truncation error stays near `tolerance` [rad]: the least of (tol / |c_k|)^(1/k) over the last
-/// four coefficients (some vanish: from rest, at 90 deg), within 2 %, at most `longest` [s]. 0 when a coefficient is
-/// not finite.
+/// four coefficients, to 2 %, and at most `longest` [s]. Four are used because some vanish after a start from rest or
+/// at 90 deg. Returns 0 if a coefficient is not finite.
 inline double StepLength(const Series<double>& angle, int order, double tolerance, double longest) {
   double log_step = std::numeric_limits<double>::infinity();
   for (int k = order - 3; k <= order; ++k) {
@@ -152,10 +155,11 @@ inline double StepLength(const Series<double>& angle, int order, double toleranc
   return std::min(std::exp2(log_step), longest);
 }
 
-/// First root of the rate in (0, step], or a negative number when the direction of motion holds throughout. The step is
-/// at most a quarter of the small-angle period, shorter than any half swing, so the sign at its end, of end_rate,
-/// decides. From rest the rate's root at 0 is divided out. Halley's method from the chord, kept inside a bisection's
-/// bracket: a relative step of 1e-4 is the last, what would follow is its cube.
+/// First root of the rate in (0, step]; negative if the direction of motion does not change. The step is at most a
+/// quarter of the small-angle period, which is shorter than any half swing, so the sign of end_rate, the rate at the
+/// end of the step, decides. For a start from rest the root at 0 is divided out. Halley's method starts from the chord
+/// and stays inside a bisection bracket. It stops after a relative step of 1e-4, because the remaining error is the
+/// cube of that.
 inline double FirstReversal(const Series<double>& rate, int order, double direction, double step, double end_rate) {
   if (direction * end_rate > 0) return -1;
   const double begin_rate = rate[0];
@@ -183,8 +187,9 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
   return root;
 }
 
-/// The state at a reversal, from the state at the same instant, whose rate is 0 but for rounding: the rate is 0 with
-/// all its derivatives, and the instant moves by -ω_p / α (implicit function theorem, MODEL.md eq. (16)).
+/// The state at a reversal, computed from the state at the same instant, whose rate is 0 except for rounding. The rate
+/// and its derivatives become 0, and the derivative of the instant is -ω_p / α (implicit function theorem, MODEL.md eq.
+/// (16)).
 template <typename T>
 State<T> StateAtReversal(const State<T>& state, double acceleration) {
   State<T> reversal{state.time, state.angle, T(0.0)};

@@ -9,12 +9,12 @@
 
 namespace pendulum {
 
-/// Expands swings into Taylor series. One coefficient waits for the one before, so the loop over them is unrolled: the
-/// processor finds the independent work, among it the derivatives', meanwhile.
+/// Expands swings into Taylor series. Each coefficient depends on the previous one, so the loop over them is unrolled.
+/// The processor can then do independent work in between, such as the derivatives.
 template <FrictionModel F, typename T>
 class SwingExpansion {
  public:
-  /// Writes to `angle` and `rate` on each call.
+  /// Each call of Expand writes to `angle` and `rate`.
   SwingExpansion(const Pendulum<F, T>& pendulum, Segment<T>& angle, RateSeries<T>& rate)
       : pendulum_(pendulum), values_(Values(pendulum)), angle_(angle), rate_(rate) {
     const double inverse_inertia = 1 / values_.inertia;
@@ -22,8 +22,8 @@ class SwingExpansion {
     if constexpr (DualNumber<T>) inertia_ = inverse_inertia * pendulum.inertia.v;
   }
 
-  /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate in one direction of motion from a
-  /// state (MODEL.md eq. (12)); with a dual T also their partial derivatives.
+  /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate, for one direction of motion from a
+  /// state (MODEL.md eq. (12)). With a dual T also their partial derivatives.
   void Expand(double direction, const State<T>& from) {
     direction_ = direction;
     angle_.angle[0] = Value(from.angle);
@@ -57,7 +57,7 @@ class SwingExpansion {
     rate_.value[n + 1] = (gravity + friction) * per_torque_[n + 1];
   }
 
-  /// Linear equations along the swing: (12) and (15), differentiated.
+  /// Linear equations for the derivatives along the swing: eq. (12) and (15), differentiated.
   template <Gravity kGravity, int n>
   void FindPartials() {
     angle_.partials[n + 1] = kInverse[n + 1] * rate_.dual[n].v;
@@ -76,7 +76,7 @@ class SwingExpansion {
   const Pendulum<F, T>& pendulum_;
   const Pendulum<F, double> values_;
   Series<double> per_torque_{};  ///< -1 / (I n)
-  PartialsFor<T> inertia_;       ///< Of the inertia, over the inertia.
+  PartialsFor<T> inertia_;       ///< Partials of the inertia, divided by the inertia.
   double direction_ = 1;
   Segment<T>& angle_;
   RateSeries<T>& rate_;

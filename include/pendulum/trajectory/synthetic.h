@@ -13,77 +13,82 @@
 
 namespace pendulum {
 
-/// From a time [s] on a sensor's readings stand so many resolutions higher: an incremental encoder missed edges.
+/// Lost counts of an incremental encoder that missed edges: from `time` [s] on, readings are `counts` resolutions
+/// higher.
 struct LostCounts {
   double time = 0;
   int counts = 0;
 };
 
-/// When a recording has a row.
+/// Which instants have a row in the recording.
 enum class RowTiming {
   kEven,          ///< At even times.
-  kEvents,        ///< When the count of an encoder changes, and at the start.
-  kEvenOfEvents,  ///< At even times, of the same encoder with the same errors of its edges.
+  kEvents,        ///< At the start and whenever the count of an encoder changes.
+  kEvenOfEvents,  ///< At even times, from the same encoder with the same edge errors as kEvents.
 };
 
-/// Of rows of events: an edge does not stray as far as the next one, and a row stands for each count.
+/// Limits for event rows. An edge must not move as far as the next edge, and each count produces a row.
 inline constexpr double kMostEventNoise = 0.2;  ///< Standard deviation of an edge, in counts.
 inline constexpr double kFinestEvents = 1e-5;   ///< Resolution, rad.
 
-/// A recording to be made, and with it the truth a fit of that recording should find.
+/// Options for a simulated recording. They contain the true values that a fit of the recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
-  /// Of PhysicalParameters(model), in units of G: inertia / G [s^2], viscous / G [s], ...
+  /// The values of PhysicalParameters(model) in units of G: inertia / G [s^2], viscous / G [s], ...
   std::vector<double> parameters;
 
   StartKind start = StartKind::kRelease;
-  /// Of kRelease: θ before the release [rad]; when, on the recording's clock before its last sample [s].
+  /// For kRelease: θ before the release [rad], and the release time [s] on the recording's clock, before its last
+  /// sample.
   double release_angle = 0, release_time = 0;
-  double initial_angle = 0, initial_rate = 0;  ///< θ [rad] and θ' [rad/s] at the first sample; kMoving.
+  double initial_angle = 0, initial_rate = 0;  ///< For kMoving: θ [rad] and θ' [rad/s] at the first sample.
 
-  double start_time = 0;                    ///< Clock at the first sample [s].
+  double start_time = 0;                    ///< Time stamp of the first sample [s].
   double duration = 20, sample_rate = 100;  ///< s, Hz; the recording has round(duration * sample_rate) samples.
-  double jitter = 0;  ///< Standard deviation of a sampling instant about start_time + i / sample_rate [s].
+  double jitter = 0;  ///< Standard deviation of a sampling instant from start_time + i / sample_rate [s].
 
   Quantity quantity = Quantity::kAngle;
-  SensorModel sensor;                     ///< Between the motion and the reading.
-  std::vector<double> sensor_parameters;  ///< S, of a sensor that is not direct; `zero` is then not used.
+  SensorModel sensor;                     ///< Computes readings from the motion.
+  std::vector<double> sensor_parameters;  ///< S values, for a sensor that is not direct; `zero` is then unused.
   double zero = 0;                        ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
   double noise = 0;                       ///< Standard deviation of the noise [rad or rad/s], before quantization.
-  double noise_correlation = 0;           ///< AR(1): of each sample's noise with that of the sample before, in (-1, 1).
+  double noise_correlation = 0;           ///< AR(1): correlation of each sample's noise with that of the previous
+                                          ///< sample, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
-  double resolution = 0;     ///< Spacing q of the levels the sensor can show [rad or rad/s]; 0 is none.
-  std::optional<SensorRange> range;     ///< rad or rad/s; none is unlimited.
-  std::vector<LostCounts> lost_counts;  ///< Of a sensor with levels; range is that of the levels before.
-  RowTiming rows = RowTiming::kEven;    ///< Of events `noise` is the error of each crossing of an edge.
-  double edge_lag = 0;                  ///< Of events: how far behind its edge the count changes [rad].
-  double time_noise = 0;                ///< Standard deviation of the error of an event's stamp [s].
+  double resolution = 0;     ///< Spacing q of the levels that the sensor can show [rad or rad/s]; 0 means continuous
+                             ///< readings.
+  std::optional<SensorRange> range;     ///< rad or rad/s; std::nullopt means unlimited.
+  std::vector<LostCounts> lost_counts;  ///< Only for a sensor with levels; `range` applies before counts are lost.
+  RowTiming rows = RowTiming::kEven;    ///< With events, `noise` is the error of each crossing of an edge.
+  double edge_lag = 0;                  ///< For events: how far behind its edge the count changes [rad].
+  double time_noise = 0;                ///< Standard deviation of the error of an event's time stamp [s].
 
-  std::uint64_t seed = 1;  ///< Of noise and jitter.
+  std::uint64_t seed = 1;  ///< Determines noise and jitter.
 };
 
-/// Parameters the recording is made with, in the order of a fit: of the model (units of G), of the start, of the
-/// sensor, and edge_lag of events.
+/// The true parameters of the recording in the order of a fit: those of the model (units of G), of the start and of the
+/// sensor, and edge_lag for events.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
-/// What the sensor shows of a value x: y = q round(x / q), with a range y = low + q round((x - low) / q) within the
-/// levels of [low, high], as an ADC seen through a linear calibration. Without a resolution x clipped to the range.
+/// The reading of the sensor for a value x: y = q round(x / q). With a range y = low + q round((x - low) / q), limited
+/// to the levels in [low, high], like an ADC with a linear calibration. Without a resolution x is clipped to the range.
 double SensorReading(double x, double resolution, const std::optional<SensorRange>& range);
 
-/// Simulates the recording of a free swing, within 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at 177 deg). A
-/// jittered sample is taken at the instant its stamp says; stamps increase, the first is start_time. A seed gives the
-/// same everywhere, and the same noise whatever the jitter, and whether events are sampled evenly; the noise is
-/// stationary, of standard deviation `noise` or, for Student's t with ν > 2, noise · sqrt(ν / (ν - 2)).
-/// kInvalidArgument: an option outside its domain, which the message names. kFailedPrecondition: friction holds the
-/// pendulum, the release comes after the last sample, too few samples, or the motion cannot be traced.
+/// Simulates the recording of a free swing. The error is below 1e-12 rad over 46 periods up to 120 deg (1e-10 rad at
+/// 177 deg). With jitter each sample is taken exactly at its time stamp. Time stamps increase; the first is start_time.
+/// A seed gives the same result on every platform. The noise does not depend on the jitter, nor on whether events are
+/// sampled evenly. It is stationary with standard deviation `noise` or, for Student's t with ν > 2,
+/// noise · sqrt(ν / (ν - 2)). kInvalidArgument: an option is outside its domain; the message names it.
+/// kFailedPrecondition: friction holds the pendulum, the release comes after the last sample, there are too few
+/// samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);
 
-/// Both coordinates of a point, N samples each, as a sensor of kind kArc sees it before the angles are made of them.
+/// Both coordinates of a point, N samples each, as a sensor of kind kArc sees it before angles are computed.
 struct TrackedPoint {
   Eigen::VectorXd time, x, y;
 };
 
-/// The point of which SimulateRecording makes angles about the circle it moves on. Errors as SimulateRecording.
+/// The point from which SimulateRecording computes the angles about its circle. Errors as for SimulateRecording.
 Result<TrackedPoint> SimulatePoint(const SyntheticOptions& options);
 
 }  // namespace pendulum

@@ -18,11 +18,11 @@
 namespace pendulum {
 
 enum class StartKind {
-  kRelease,  ///< Held at an angle, released at an instant.
+  kRelease,  ///< Held at an angle and released at an instant.
   kMoving,   ///< In motion at the first sample.
 };
 
-/// The start of a trajectory: held at `angle` until `time`, or passing `angle` with `rate` at `time`.
+/// The start of a trajectory: held at `angle` until `time`, or moving through `angle` with `rate` at `time`.
 template <typename T>
 struct Start {
   StartKind kind = StartKind::kMoving;
@@ -30,15 +30,16 @@ struct Start {
   T angle, rate;    ///< rad; rad/s, 0 for a release
 };
 
-/// How far and how accurately to trace.
+/// Time range and accuracy of a trajectory.
 struct TraceOptions {
-  double begin = 0, end = 0;  ///< s; a hold is reported from `begin` to the release.
+  double begin = 0, end = 0;  ///< s; segments start at `begin`, at rest until the release.
   double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
-  InstructionSet instruction_set = kInstructionSet;  ///< At most what the processor has.
-  int max_steps = 2'000'000;                         ///< Beyond this the trial is refused: its time scale is absurd.
+  InstructionSet instruction_set = kInstructionSet;  ///< Must be supported by the processor.
+  int max_steps = 2'000'000;                         ///< More steps mean an absurd time scale; the trial is then
+                                                     ///< refused.
 };
 
-/// What happened on the way.
+/// Summary of a traced motion.
 struct TraceSummary {
   enum class Outcome {
     kComplete,
@@ -48,38 +49,37 @@ struct TraceSummary {
   Outcome outcome = Outcome::kComplete;
   int steps = 0;
   int reversals = 0;
-  double stop_time = std::numeric_limits<double>::infinity();  ///< s; when it came to rest for good.
+  double stop_time = std::numeric_limits<double>::infinity();  ///< s; when it came to rest permanently.
   double smallest_reversal_margin =
       std::numeric_limits<double>::infinity();  ///< min over reversals of ||g(θ)| - T(0)| / G
 };
 
-/// What a trajectory hands its segments to, one after the other in time order.
+/// Receives the segments of a trajectory one by one in time order.
 template <typename T>
 using SegmentVisitor = std::function<void(const Segment<T>&)>;
 
-/// What a fit of law F traces a released pendulum with: derivatives by inertia, friction and the angle.
+/// The number type in which a fit of law F traces a released pendulum: derivatives by inertia, friction and angle.
 template <typename F>
 using ReleaseDual = Dual<kFrictionParameters<F> + 2>;
 
-/// What a fit of law F traces a pendulum in motion with: derivatives by inertia, friction, and the angle and rate at
-/// the start.
+/// The number type in which a fit of law F traces a moving pendulum: derivatives by inertia, friction, and the angle
+/// and rate at the start.
 template <typename F>
 using MovingDual = Dual<kFrictionParameters<F> + 3>;
 
-/// The number types that trajectories of law F are compiled for.
+/// The number types for which trajectories of law F are compiled.
 template <typename T, typename F>
 concept TracedWith = std::same_as<T, double> || std::same_as<T, ReleaseDual<F>> || std::same_as<T, MovingDual<F>>;
 
-/// Traces a pendulum from its start to options.end and calls visit(segment) for each stretch in time order: the hold,
-/// the swings in as many steps as the tolerance asks for, the rest. Reversals are located exactly, so every segment is
-/// a true solution of one smooth equation; nothing is stored. MODEL.md section 4. Compiled for the laws in
-/// FrictionModels and no others (src/trajectory/tracer.h): a minute of compilation that users of this header are
-/// spared.
+/// Traces a pendulum from its start to options.end and calls visit(segment) for each piece in time order: the hold, the
+/// swings in as many steps as the tolerance requires, and the rest. Reversals are located exactly, so each segment
+/// solves one smooth equation. Nothing is stored. MODEL.md section 4. Compiled only for the laws in FrictionModels
+/// (src/trajectory/tracer.h). That takes a minute, which users of this header do not need to spend.
 template <FrictionModel F, TracedWith<F> T>
 TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& start, const TraceOptions& options,
                              const std::type_identity_t<SegmentVisitor<T>>& visit);
 
-/// A trajectory kept for looking up: dense output at any time between the options' begin and end.
+/// A stored trajectory that gives angle, rate and acceleration at any time from options.begin to options.end.
 class Trajectory {
  public:
   void Append(const Segment<double>& segment) { segments_.push_back(segment); }
@@ -98,7 +98,8 @@ class Trajectory {
 };
 
 /// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of G. kInvalidArgument:
-/// wrong number of parameters, or inertia not positive. kFailedPrecondition: it never moves, or cannot be traced.
+/// wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never moves, or the motion
+/// cannot be traced.
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
                                   const Start<double>& start, const TraceOptions& options);
 

@@ -29,7 +29,7 @@ double AdcSensor::CountsPerDeg() const { return 1 / DegPerCount(); }
 SensorRange AdcSensor::ReadingRange() const { return {Counts(-travel_deg / 2), Counts(travel_deg / 2)}; }
 
 std::optional<double> AdcSensor::SaturationAngleDeg() const {
-  constexpr double kRounding = 1e-9;  // 3.3 V are 0.66 of 5 V, though not in doubles.
+  constexpr double kRounding = 1e-9;  // 3.3 V is 0.66 of 5 V, but not exactly in doubles.
   const double share = reference_voltage / (divider * supply_voltage);
   if (share >= 1 - kRounding) return std::nullopt;
   return travel_deg * (share - 0.5);

@@ -20,7 +20,7 @@ namespace {
 using Check = Result<void>;
 using Eigen::Index;
 
-/// The readings as -1 to 1: z = (reading - center) / half_span.
+/// Scales the readings to -1 to 1: z = (reading - center) / half_span.
 struct Scale {
   double center;
   double half_span;
@@ -40,7 +40,8 @@ Eigen::MatrixXd Powers(const Eigen::VectorXd& reading, const Scale& scale, Index
   return powers;
 }
 
-/// K x K: coefficients of the reading's powers from those of z, (x - center)ʲ / half_spanʲ multiplied out.
+/// K x K matrix that converts coefficients of powers of z to those of powers of the reading, by expanding
+/// (x - center)ʲ / half_spanʲ.
 Eigen::MatrixXd RawFromScaled(const Scale& scale, Index count) {
   Eigen::MatrixXd raw = Eigen::MatrixXd::Zero(count, count);
   raw(0, 0) = 1;
@@ -51,9 +52,9 @@ Eigen::MatrixXd RawFromScaled(const Scale& scale, Index count) {
   return raw;
 }
 
-/// Least squares in z.
+/// Least squares on z.
 struct LeastSquares {
-  bool is_determined = false;   // False: the points do not tell all coefficients, and nothing below is set.
+  bool is_determined = false;   // False: the points do not determine all coefficients, and nothing below is set.
   Eigen::VectorXd coefficient;  // K x 1.
   Eigen::MatrixXd factor;       // K x K, (ZᵀZ)⁻¹ = factor factorᵀ.
   Eigen::VectorXd residual;     // N x 1.
@@ -81,14 +82,15 @@ LeastSquares Solve(const CalibrationTable& table, const Scale& scale, int order)
   return fit;
 }
 
-/// Residuals below this share of the angles are those of rounding in the computation: the curve meets every point.
+/// A smaller sum of squares comes from rounding in the computation: the curve passes through every point.
 double SmallestRss(const CalibrationTable& table) {
   constexpr double kRounding = 1e-13;
   const double rounding = kRounding * table.angle.cwiseAbs().maxCoeff();
   return static_cast<double>(table.size()) * rounding * rounding;
 }
 
-/// `order` is that of the longer curve. None: too few points, or the shorter curve already meets every point.
+/// `order` is that of the longer curve. std::nullopt: too few points, or the shorter curve already passes through every
+/// point.
 std::optional<OrderTest> TestOrder(const CalibrationTable& table, const LeastSquares& shorter,
                                    const LeastSquares& longer, int order) {
   const int freedom = static_cast<int>(table.size()) - order - 1;
@@ -111,12 +113,12 @@ double RmsSlope(const CalibrationTable& table, const Calibration& calibration) {
   return std::sqrt(table.reading.unaryExpr(slope).squaredNorm() / static_cast<double>(table.size()));
 }
 
-/// The angle of a count, rms over the points; 0 for volts.
+/// The angle of one count, rms over the points; 0 for volts.
 double Resolution(const CalibrationTable& table, const Calibration& calibration) {
   return table.input == "counts" ? RmsSlope(table, calibration) : 0;
 }
 
-/// Points may lie on the line by chance: counts were rounded all the same.
+/// Sets the curve. The error is at least that of rounding to counts, even if the points lie on the line by chance.
 void SetCurve(const CalibrationTable& table, const LeastSquares& least_squares, const Scale& scale,
               Calibration& calibration) {
   calibration.input = table.input;
@@ -148,7 +150,7 @@ CalibrationFit FitOf(const CalibrationTable& table, const LeastSquares& least_sq
   return fit;
 }
 
-// ---- What cannot be calibrated -----------------------------------------------------------------------------------
+// ---- Tables that cannot be calibrated ----------------------------------------------------------------------------
 
 tl::unexpected<Status> FaultAtEnd(const CalibrationTable& table, const std::string& sentence) {
   return Fault(table.Place(table.size() - 1), sentence);
@@ -176,7 +178,8 @@ Check CheckInputRange(const CalibrationTable& table, const std::optional<SensorR
   return {};
 }
 
-/// The file holds powers of the reading itself, of which large readings leave nothing to tell angles by.
+/// Checks that the stored polynomial in powers of the reading reproduces the residuals. With large readings its terms
+/// cancel so strongly that no accuracy remains.
 Check CheckNumbers(const CalibrationTable& table, const CalibrationFit& fit) {
   constexpr double kAlike = 1e-9;
   const Calibration& calibration = fit.calibration;

@@ -38,8 +38,8 @@ class TableReader {
 
   LineReader lines_;
   Line line_;
-  char separator_ = '\0';  // What the line `sep=` says, or the header shows.
-  std::size_t width_ = 0;  // Columns; 0 before there is a header.
+  char separator_ = '\0';  // From the line `sep=`, or from the header.
+  std::size_t width_ = 0;  // Number of columns; 0 before the header.
   csv::Column reading_, angle_;
   csv::Numbers numbers_;
   std::vector<double> readings_, angles_;
@@ -87,10 +87,10 @@ Check TableReader::ReadHeader() {
   return {};
 }
 
-/// The unit at the end of a name, also where a recording would not take it for one: delay_s.
+/// The unit at the end of a name, even if a recording would not use it as a unit: delay_s.
 const csv::Unit* UnitOf(const csv::Name& name) { return csv::SplitName(csv::CanonicalName(name.text)).unit; }
 
-/// A table has two units and each column one.
+/// Checks that every column has at most one unit, and that the table has the two required ones.
 Check TableReader::CheckUnits(const std::vector<csv::Name>& names) const {
   for (const csv::Name& name : names) {
     const csv::Unit* unit = UnitOf(name);
@@ -176,7 +176,7 @@ Check TableReader::CheckEnd() const {
                                           "for each angle that was set");
 }
 
-// ---- What a table must be ----------------------------------------------------------------------------------------
+// ---- Requirements of a table -------------------------------------------------------------------------------------
 
 /// "261 counts (line 5)"
 std::string ReadingAt(const CalibrationTable& table, Index point) {
@@ -187,7 +187,7 @@ tl::unexpected<Status> FaultAt(const CalibrationTable& table, Index point, const
   return Fault(table.Place(point), sentence);
 }
 
-/// Of two points the one that stands later in the file, and the other.
+/// Of two points, the one later in the file, then the other.
 std::pair<Index, Index> LaterFirst(Index one, Index other) { return {std::max(one, other), std::min(one, other)}; }
 
 Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index>& order) {
@@ -203,7 +203,7 @@ Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index
   return {};
 }
 
-/// Most steps tell whether angles rise or fall with the readings; any that does not is a slip of the pen.
+/// The majority of steps determines whether angles rise or fall with the readings; any other step is a mistake.
 Check CheckAnglesRiseOrFall(const CalibrationTable& table, const std::vector<Index>& order) {
   const auto step = [&](std::size_t i) { return table.angle[order[i]] - table.angle[order[i - 1]]; };
   int balance = 0;

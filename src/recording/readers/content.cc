@@ -15,7 +15,7 @@ using namespace std::string_view_literals;
 constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1A\n"sv;
 constexpr std::string_view kMat = "MATLAB "sv;
 
-/// MATLAB's own versions begin with a text of 116 bytes, "MATLAB 5.0 MAT-file, ..."; from 7.3 on HDF5 follows it.
+/// MATLAB's own files begin with a text of 116 bytes, "MATLAB 5.0 MAT-file, ..."; from version 7.3 HDF5 follows it.
 /// Version 4 begins with a variable.
 bool IsMat(std::string_view begin) {
   constexpr std::size_t kHeader = 128, kUserBlock = 512;
@@ -27,7 +27,7 @@ bool IsMat(std::string_view begin) {
   return order == "IM" || order == "MI" || begin.substr(std::min(kUserBlock, begin.size())).starts_with(kHdf5);
 }
 
-/// What cannot be read though one sees what it is.
+/// A recognized format that cannot be read.
 struct Foreign {
   std::string_view magic;
   std::string_view sentence;

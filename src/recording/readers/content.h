@@ -9,15 +9,15 @@
 
 namespace pendulum {
 
-/// What a file is by its first bytes, whatever its name.
+/// The format of a file according to its first bytes; the file name is ignored.
 enum class Content { kText, kZip, kMat, kForeign };
 
-inline constexpr std::size_t kContentBytes = 520;  ///< So many bytes tell it.
+inline constexpr std::size_t kContentBytes = 520;  ///< Number of bytes needed for the detection.
 
-/// Of a file's first kContentBytes, or all that there are.
+/// Detects the format from a file's first kContentBytes, or from all its bytes if it is shorter.
 Content ContentOf(std::string_view begin);
 
-/// kDataLoss: what a file of kForeign is, and what to do about it. `name` stands for the path.
+/// kDataLoss for a file of kForeign: its format and what to do. `name` replaces the path.
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name);
 
 }  // namespace pendulum

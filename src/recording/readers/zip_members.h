@@ -23,19 +23,20 @@ class ZipMembers {
     bool is_encrypted = false;
   };
 
-  /// `bytes` must outlive this object. kDataLoss: they are no zip file.
+  /// `bytes` must outlive this object. kDataLoss: not a zip file.
   static Result<ZipMembers> Open(std::string_view bytes, const std::string& name);
 
-  /// Those that may be recordings: no folders, nothing that is hidden, no notes of phyphox ("meta/") or macOS.
+  /// The members that may be recordings: no folders, no hidden files, no metadata of phyphox ("meta/") or macOS.
   const std::vector<Member>& members() const { return members_; }
 
-  /// True where there is a file of that path, whatever it is.
+  /// True if there is a file with this path, of any kind.
   bool Has(std::string_view path) const;
 
-  /// The first bytes of a member, `most` at most. kDataLoss: encrypted, damaged, or packed as libzip cannot unpack.
+  /// The first bytes of a member, at most `most`. kDataLoss: encrypted, damaged, or packed in a way that libzip cannot
+  /// unpack.
   Result<std::string> Unpack(const Member& member, std::size_t most) const;
 
-  /// "NAME:MEMBER", which messages begin with.
+  /// "NAME:MEMBER", the beginning of messages.
   std::string NameOf(const Member& member) const;
 
  private:

@@ -23,14 +23,14 @@ namespace {
 
 using Member = ZipMembers::Member;
 
-/// What is known of a member by its first lines.
+/// Information on a member from its first lines.
 struct Look {
   const Member* member = nullptr;
-  std::vector<std::string> candidates;  // Names of columns; one is empty for a MAT-file, which is not looked into.
-  std::optional<Status> fault;          // Why nothing is known of it.
+  std::vector<std::string> candidates;  // Names of columns; one empty name for a MAT-file, which is not examined.
+  std::optional<Status> fault;          // Why the member cannot be read.
 };
 
-/// "MEMBER/COLUMN", each of them shortened where a message may not show more.
+/// "MEMBER/COLUMN", each shortened as for a message.
 std::string QuotedPair(const std::string& member, const std::string& column) {
   std::string pair = Quoted(member);
   if (column.empty()) return pair;
@@ -38,7 +38,7 @@ std::string QuotedPair(const std::string& member, const std::string& column) {
   return pair + Quoted(column).substr(1);
 }
 
-/// The columns that could be the quantity; none without a time.
+/// The columns that could be the quantity; empty without a time.
 std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& columns, const ReadOptions& options) {
   std::vector<std::string> candidates;
   const auto is_time = [](const csv::TableColumn& column) { return csv::IsTime(column.meaning); };
@@ -71,8 +71,8 @@ Look LookAt(const ZipMembers& zip, const Member& member, const ReadOptions& opti
   return look;
 }
 
-/// The member that --value_column names before a slash, or as a whole; its name is taken off. Whole paths go before
-/// names of files. nullptr: none of them. kInvalidArgument: two files have this name.
+/// The member that --value_column names before a slash or completely; its name is removed from the option. Whole paths
+/// have priority over file names. nullptr: no such member. kInvalidArgument: two files have this name.
 Result<const Member*> TakeNamed(const ZipMembers& zip, const std::string& name, ReadOptions& options) {
   const std::string& flag = options.value_column;
   const auto is_named = [&](std::string_view path) {
@@ -111,16 +111,16 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
                                    "\"FILE/COLUMN\", or name another recording");
 }
 
-/// The member that is to be read.
+/// Chooses the member to read.
 Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options,
                                    std::vector<Warning>& warnings) {
-  constexpr std::size_t kMostMembers = 1000, kMostWarnings = 8;  // A zip file of hostile bytes holds a million.
+  constexpr std::size_t kMostMembers = 1000, kMostWarnings = 8;  // A malicious zip file may contain a million members.
   Result<const Member*> named = TakeNamed(zip, name, options);
   if (!named || *named != nullptr) return named;
   if (zip.members().size() == 1) return &zip.members().front();
   std::vector<Look> looks;
   std::vector<std::string> candidates;
-  std::optional<Status> fault;  // Of the first that cannot be read.
+  std::optional<Status> fault;  // For the first unreadable member.
   for (std::size_t i = 0; i < std::min(zip.members().size(), kMostMembers); ++i) {
     Look look = LookAt(zip, zip.members()[i], options);
     if (look.fault && warnings.size() < kMostWarnings) warnings.push_back({"unreadable_member", look.fault->message});

@@ -40,14 +40,14 @@ struct LawName {
   }
 };
 
-/// The battery that every law in FrictionModels undergoes.
+/// Tests that every law in FrictionModels must pass.
 template <typename F>
 class FrictionLaw : public testing::Test {
  protected:
   static constexpr int kParameters = kFrictionParameters<F>;
   using Parameters = std::array<double, kParameters>;
 
-  /// Random values within the bounds, over four decades above the lower one.
+  /// Random values within the bounds, over four decades above the lower bound.
   Parameters RandomParameters() {
     std::uniform_real_distribution<double> decade(-3.0, 1.0);
     Parameters p;
@@ -58,7 +58,7 @@ class FrictionLaw : public testing::Test {
     return p;
   }
 
-  /// The law seen in a mirror: what has a sign changes it.
+  /// The parameters of the mirrored law: a parameter that may be negative changes its sign.
   static Parameters Mirrored(Parameters p) {
     for (int i = 0; i < kParameters; ++i) {
       if (F::kParameters[i].lower < 0) p[i] = -p[i];
@@ -114,8 +114,8 @@ struct TorqueSeries {
   double largest = 0;  ///< Largest |T| on the contour, which bounds every coefficient.
 };
 
-/// Taylor coefficients 0..kMaxOrder of T(ω(τ)) by Cauchy's integral over the unit circle, 128 points: the law alone,
-/// nothing of its recurrence.
+/// Taylor coefficients 0..kMaxOrder of T(ω(τ)) by Cauchy's integral over the unit circle with 128 points. It uses only
+/// the law, not its recurrence.
 template <typename F>
 TorqueSeries TorqueByContour(const Series<double>& rate, double direction,
                              const std::array<double, kFrictionParameters<F>>& p) {
@@ -155,14 +155,14 @@ TYPED_TEST(FrictionLaw, RecurrenceIsTheTaylorSeriesOfTheTorque) {
   for (int trial = 0; trial < 40; ++trial) {
     const double direction = trial % 2 == 0 ? 1.0 : -1.0;
     auto p = TypicalFriction<TypeParam>(1.0);
-    for (double& value : p) value *= factor(this->generator_);  // a bound does not matter to a series
+    for (double& value : p) value *= factor(this->generator_);  // The series does not depend on bounds.
     const Series<double> rate = RandomRate(this->generator_, direction);
     const TorqueSeries expected = TorqueByContour<TypeParam>(rate, direction, p);
     Series<double> known;
     known.fill(std::numeric_limits<double>::quiet_NaN());
     typename TypeParam::template Recurrence<double> recurrence;
     for (int n = 0; n <= kMaxOrder; ++n) {
-      known[n] = rate[n];  // coefficients 0..n and no more, n = 0, 1, 2, ... in order
+      known[n] = rate[n];  // The recurrence sees only coefficients 0..n, for n = 0, 1, 2, ... in order.
       ASSERT_THAT(recurrence(n, known, direction, p.data()),
                   DoubleNear(expected.coefficients[n], 1e-14 * expected.largest))
           << "coefficient " << n << " in trial " << trial;
@@ -190,7 +190,8 @@ TYPED_TEST(FrictionLaw, HasBoundsThatKeepItFromAddingEnergy) {
   }
 }
 
-// A parameter that the torque is proportional to is a torque too: N m in its unit, gone from its relative unit.
+// If the torque is proportional to a parameter, the parameter is a torque too: its unit contains N m, its relative unit
+// does not.
 TYPED_TEST(FrictionLaw, ScalesWithGravityExactlyTheParametersThatAreTorques) {
   for (const ParameterInfo& info : TypeParam::kParameters) {
     EXPECT_EQ(info.scales_with_gravity(), info.unit.starts_with("N m")) << info.name;
@@ -213,7 +214,7 @@ TYPED_TEST(FrictionLaw, HasAFormulaThatNamesEachParameterOnceAndTheRate) {
   for (const ParameterInfo& info : TypeParam::kParameters) EXPECT_THAT(braced, testing::Contains(info.name));
 }
 
-// ---- What each law says, in numbers worked by hand ---------------------------------------------------------------
+// ---- Each law in numbers computed by hand -------------------------------------------------------------------------
 
 TEST(ViscousFriction, IsProportionalToTheRate) {
   const std::array p = {0.5};

@@ -8,17 +8,17 @@
 namespace pendulum::adc_test {
 namespace {
 
-/// 5 V across 300 deg, read by 10 bits: 1024 counts in 300 deg.
+/// 5 V across 300 deg, converted with 10 bits: 1024 counts in 300 deg.
 AdcSensor Sensor(double reference_voltage = 5, double divider = 1) {
   return {
       .bits = 10, .reference_voltage = reference_voltage, .supply_voltage = 5, .travel_deg = 300, .divider = divider};
 }
 
-// By hand, from ADC = V_IN 1024 / V_REF of the data sheet.
+// Computed by hand from ADC = V_IN 1024 / V_REF of the data sheet.
 TEST(AdcSensor, ShowsTheCountsOfTheDataSheet) {
   EXPECT_EQ(Sensor().Counts(0), 512);       // 2.5 V
   EXPECT_EQ(Sensor().Counts(-150), 0);      // 0 V
-  EXPECT_EQ(Sensor().Counts(60), 716);      // 3.5 V: 716.8, cut off
+  EXPECT_EQ(Sensor().Counts(60), 716);      // 3.5 V: 716.8, truncated
   EXPECT_EQ(Sensor(3.3).Counts(0), 775);    // 775.76
   EXPECT_EQ(Sensor(1.1).Counts(-90), 930);  // 1 V: 930.9
   EXPECT_DOUBLE_EQ(Sensor().Volts(60), 3.5);
@@ -58,9 +58,9 @@ TEST(AdcSensor, DoesNotSaturateWhenADividerBringsTheSupplyDown) {
 
 TEST(AdcSensor, KnowsTheReadingsAtTheEndsOfTheTravel) {
   EXPECT_EQ(Sensor().ReadingRange().low, 0);
-  EXPECT_EQ(Sensor().ReadingRange().high, 1023);  // 5 V is just beyond full scale
+  EXPECT_EQ(Sensor().ReadingRange().high, 1023);  // 5 V is just above full scale
   EXPECT_EQ(Sensor(5, 0.5).ReadingRange().high, 512);
-  EXPECT_EQ(Sensor().Counts(1000), 1023);  // beyond its stop
+  EXPECT_EQ(Sensor().Counts(1000), 1023);  // beyond the stop
   EXPECT_EQ(Sensor().Counts(-1000), 0);
 }
 

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Pointwise;
 using testing::StartsWith;
 
-// Doubles of a well-conditioned problem of at most 40 points keep some 13 digits.
+// Results in doubles for a well-conditioned problem of at most 40 points are accurate to some 13 digits.
 constexpr double kDigits = 1e-12;
 
 CalibrationFit FitOf(const CalibrationTable& table, int order) {
@@ -44,7 +44,7 @@ void ExpectRelative(double value, double expected, double tolerance) {
 }
 
 /// NIST StRD, linear least squares, Norris: readings of an ozone monitor against a standard. Readings occur twice,
-/// which a table in a file must not have; least squares do not mind.
+/// which a table in a file must not contain but least squares permit.
 TEST(CalibrateSensor, MeetsTheCertifiedValuesOfNorris) {
   const std::vector<double> y = {0.1, 338.8, 118.1, 888.0, 9.2,   228.1, 668.5, 998.5, 449.1, 778.9, 559.2, 0.3,
                                  0.1, 778.1, 668.8, 339.3, 448.9, 10.8,  557.7, 228.3, 998.0, 888.8, 119.6, 0.3,
@@ -60,7 +60,7 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfNorris) {
   ExpectRelative(*fit.calibration.residual_std_dev, 0.884796396144373, kDigits);
 }
 
-/// NIST StRD, linear least squares, Pontius: a load cell, whose squares reach 9e12 beside a constant of 7e-4.
+/// NIST StRD, linear least squares, Pontius: a load cell. Squares of its readings reach 9e12 beside a constant of 7e-4.
 TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
   const std::vector<double> y = {.11019,  .21956,  .32949,  .43899,  .54803,  .65694,  .76562,  .87487,
                                  .98292,  1.09146, 1.20001, 1.30822, 1.41599, 1.52399, 1.63194, 1.73947,
@@ -70,7 +70,7 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
   std::vector<double> x;
   for (int i = 0; i < 40; ++i) x.push_back(150000.0 * (i % 20 + 1));
   const CalibrationFit fit = FitOf(TableOf("volts", "deg", x, y), 2);
-  constexpr double kNineDigits = 1e-9;  // of a constant that is 3e-4 of the readings
+  constexpr double kNineDigits = 1e-9;  // the constant is 3e-4 of the readings
   ExpectRelative(fit.calibration.coefficients[0], 0.673565789473684e-03, kNineDigits);
   ExpectRelative(fit.calibration.coefficients[1], 0.732059160401003e-06, kNineDigits);
   ExpectRelative(fit.calibration.coefficients[2], -0.316081871345029e-14, kNineDigits);
@@ -79,11 +79,11 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
   ExpectRelative(StdError(fit, 2), 0.486652849992036e-16, kNineDigits);
   ExpectRelative(*fit.calibration.residual_std_dev, 0.205177424076185e-03, kNineDigits);
   ASSERT_TRUE(fit.lower_order);
-  EXPECT_LT(fit.lower_order->p, 1e-10);  // certified t of the square: -64.95
+  EXPECT_LT(fit.lower_order->p, 1e-10);  // certified t of the quadratic term: -64.95
   ExpectRelative(fit.lower_order->f, 64.94989 * 64.94989, 1e-5);
 }
 
-/// Expected: normal equations in rational numbers (Python's fractions); covariance by numpy.linalg.inv(XᵀX).
+/// Expected values: normal equations in rational numbers (Python's fractions); covariance from numpy.linalg.inv(XᵀX).
 TEST(CalibrateSensor, FindsThePublishedLineOfTheReferenceRig) {
   const CalibrationFit fit = FitOf(TableOf(kReferenceTable), 1);
   EXPECT_EQ(fit.calibration.input, "counts");
@@ -97,12 +97,12 @@ TEST(CalibrateSensor, FindsThePublishedLineOfTheReferenceRig) {
   ExpectRelative(*fit.calibration.residual_std_dev, 1.1946581111131394, kDigits);
 }
 
-/// Expected: residuals and, for the points left out, seven straight lines through six points each, by
-/// numpy.linalg.lstsq.
+/// Expected values from numpy.linalg.lstsq: the residuals, and for points left out seven straight lines through six
+/// points.
 TEST(CalibrateSensor, GivesResidualsAndThoseOfCurvesWithoutThePoint) {
   const CalibrationTable table = TableOf(kReferenceTable);
   const CalibrationFit fit = FitOf(table, 1);
-  constexpr double kPrinted = 5e-9;  // of the expected numbers
+  constexpr double kPrinted = 5e-9;  // accuracy of the expected numbers
   EXPECT_THAT(fit.residual, Pointwise(DoubleNear(kPrinted), {0.8353871, 0.34892587, -0.53462412, -2.21235161,
                                                              0.27935278, 0.98415779, 0.29915218}));
   EXPECT_THAT(fit.left_out, Pointwise(DoubleNear(kPrinted), {1.59640944, 0.49090731, -0.64890123, -2.58342111,
@@ -121,7 +121,8 @@ TEST(CalibrateSensor, LeavesAPointOutAsATableWithoutItDoes) {
   }
 }
 
-/// scipy.stats: f.sf(2.4380, 1, 4) of numpy's sums of squares 7.13604 and 4.43348; chi2 of 7.13604 / (0.198544² / 12).
+/// Expected values from scipy.stats: f.sf(2.4380, 1, 4) with numpy's sums of squares 7.13604 and 4.43348; chi2 of
+/// 7.13604 / (0.198544² / 12).
 TEST(CalibrateSensor, TestsTheLineAgainstAParabolaAndAgainstRounding) {
   const CalibrationFit fit = FitOf(TableOf(kReferenceTable), 1);
   ASSERT_TRUE(fit.higher_order);
@@ -133,13 +134,13 @@ TEST(CalibrateSensor, TestsTheLineAgainstAParabolaAndAgainstRounding) {
   ExpectRelative(fit.resolution, 0.19854437482214096, kDigits);
   ASSERT_TRUE(fit.rounding);
   ExpectRelative(fit.rounding->std_dev, 0.057314824124824526, kDigits);
-  EXPECT_LT(fit.rounding->p, 1e-300);  // χ² = 2172 of 5 degrees of freedom
+  EXPECT_LT(fit.rounding->p, 1e-300);  // χ² = 2172 with 5 degrees of freedom
   const CalibrationFit parabola = FitOf(TableOf(kReferenceTable), 2);
   ASSERT_TRUE(parabola.lower_order);
   EXPECT_EQ(parabola.lower_order->f, fit.higher_order->f);
 }
 
-/// Angles of a straight line whose counts were rounded, as a converter does: their spread is q / √12.
+/// Angles of a straight line with counts rounded as by a converter: their standard deviation is q / √12.
 TEST(CalibrateSensor, FindsNoLackOfFitInRoundedCounts) {
   constexpr double kSlope = 0.25;
   std::vector<double> counts, angles;
@@ -148,7 +149,7 @@ TEST(CalibrateSensor, FindsNoLackOfFitInRoundedCounts) {
     counts.push_back(std::round((angles.back() + 60) / kSlope));
   }
   const CalibrationFit fit = FitOf(TableOf("counts", "deg", counts, angles), 1);
-  ExpectRelative(*fit.calibration.residual_std_dev, kSlope / std::sqrt(12.0), 0.15);  // 3 σ of 200 uniform ones
+  ExpectRelative(*fit.calibration.residual_std_dev, kSlope / std::sqrt(12.0), 0.15);  // 3 σ for 200 uniform errors
   ASSERT_TRUE(fit.rounding && fit.higher_order);
   EXPECT_GT(fit.rounding->p, 0.01);
   EXPECT_GT(fit.higher_order->p, 0.01);
@@ -165,7 +166,7 @@ TEST(CalibrateSensor, SeesTheCurvatureThatIsThere) {
   const CalibrationFit parabola = FitOf(table, 2);
   EXPECT_LT(parabola.lower_order->p, 1e-6);
   EXPECT_GT(parabola.higher_order->p, 0.05);
-  EXPECT_EQ(parabola.resolution, 0);  // a voltage tells no step
+  EXPECT_EQ(parabola.resolution, 0);  // a voltage has no step
   EXPECT_FALSE(parabola.rounding);
 }
 
@@ -244,7 +245,7 @@ TEST(CalibrateSensor, RefusesAReadingTheSensorCannotShow) {
 }
 
 TEST(CalibrateSensor, RefusesACurveThatTurnsBetweenThePoints) {
-  // Flat, then steep: the parabola through them has its vertex at 17/14 = 1.21.
+  // Flat, then steep: the fitted parabola has its vertex at 17/14 = 1.21.
   const CalibrationTable table = TableOf("volts,angle_deg\n0,0\n1,0\n2,0\n3,10\n4,30\n");
   EXPECT_THAT(FaultOf(table, 2), StartsWith("table.csv:6: the curve of order 2 turns at about 0 volts, between"));
   EXPECT_TRUE(CalibrateSensor(table, 1));
@@ -262,7 +263,7 @@ TEST(CalibrateSensor, RefusesNumbersItCannotComputeWith) {
   }
   const std::string spread = "volts,angle_deg\n0,0\n1,1\n2,2\n1e20,3\n";
   EXPECT_THAT(FaultOf(TableOf(spread), 2), HasSubstr("too unevenly spread for a curve of order 2"));
-  // Readings between 1e6 and 1e6 + 4: their fifth powers differ in the 5th digit and cancel below 1e30 · 2⁻⁵³.
+  // Readings between 1e6 and 1e6 + 4: their fifth powers differ in the 5th digit and are accurate only to 1e30 · 2⁻⁵³.
   const std::string alike = "volts,angle_deg\n1000000,0\n1000001,1\n1000002,2.1\n1000003,3\n1000004,4.2\n1000005,5\n";
   EXPECT_THAT(FaultOf(TableOf(alike), 5), HasSubstr("too large, too small or too alike for a curve of order 5"));
 }
@@ -273,7 +274,7 @@ TEST(TurningReading, FindsTheVertexOfAParabola) {
   parabola.coefficients = {0, -2, 1};  // falls to 1, then rises
   EXPECT_FALSE(TurningReading(parabola, 1.5, 4));
   EXPECT_FALSE(TurningReading(parabola, -4, 0.5));
-  EXPECT_NEAR(TurningReading(parabola, -4, 2).value(), 1, 0.006);  // a step of the grid
+  EXPECT_NEAR(TurningReading(parabola, -4, 2).value(), 1, 0.006);  // within a step of the grid
 }
 
 }  // namespace

@@ -69,7 +69,8 @@ TEST(ParseCalibrationTable, TakesRowsInAnyOrderAndAnglesThatFall) {
 }
 
 TEST(ParseCalibrationTable, TakesTheSameAngleTwiceAtNeighbouringReadings) {
-  EXPECT_EQ(TableOf("volts,angle_deg\n1,0\n1.01,0\n2,10\n1.99,10\n").size(), 4);  // set once up and once down
+  EXPECT_EQ(TableOf("volts,angle_deg\n1,0\n1.01,0\n2,10\n1.99,10\n").size(), 4);  // each angle set once from below,
+                                                                                  // once from above
 }
 
 TEST(ParseCalibrationTable, NamesTheColumnThatIsMissing) {

@@ -44,7 +44,7 @@ TEST(Content, SaysWhatAFileIsThatCannotBeRead) {
   EXPECT_THAT(FaultOf("PK\5\6"s + std::string(18, '\0')), HasSubstr("this zip file is empty"));
 }
 
-/// What ReadRecording makes of these bytes in a file whose name says nothing.
+/// Reads these bytes from a file whose name does not indicate its format.
 Recording ReadFileOf(const std::string& bytes) {
   const std::string path = testing::TempDir() + "/content_test";
   std::ofstream(path, std::ios::binary) << bytes;
@@ -68,7 +68,7 @@ TEST(Content, OfAFileCountsWhateverItsName) {
 TEST(Content, OfALargeForeignFileIsSaidByItsFirstBytes) {
   const std::string path = testing::TempDir() + "/content_test.bag";
   std::ofstream(path, std::ios::binary) << "#ROSBAG V2.0\n";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 33);  // of which the disk has next to nothing
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 33);  // sparse: it uses almost no disk space
   const Result<Recording> recording = ReadRecording(path);
   std::filesystem::remove(path);
   ASSERT_FALSE(recording.has_value());

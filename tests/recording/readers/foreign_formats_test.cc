@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as people and spreadsheets write them, and what the user may say beside them.
+// Files as people and spreadsheets write them, and options with which the user adds information.
 #include <cmath>
 #include <string>
 
@@ -279,7 +279,7 @@ TEST(ForeignFormats, RefuseAnInlineCalibrationThatIsNone) {
 
 TEST(ForeignFormats, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
   std::string rows;
-  for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: open by 0.1115 % each way, see clock_test.cc.
+  for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: the rate is uncertain by 0.1115 % each way, see clock_test.cc.
     rows += NumberText(std::round(i / 3.0) / 10, 6) + "," + NumberText(std::sin(i), 6) + "\n";
   }
   const double std_dev = (1.0 / 896 + 1.0 / 898) / 2 / std::sqrt(3.0);

@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Rows `0.5 i <separator> i` for i = 0 to count - 1, with a line end after each.
+/// Rows `0.5 i <separator> i` for i = 0 to count - 1, each with a line end.
 std::string Rows(int count = 8, const std::string& separator = ",") {
   std::string rows;
   for (int i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ Recording RecordingOf(const std::string& text) {
   return recording.value_or(Recording());
 }
 
-/// What the reader makes of Rows() under another spelling of everything around the numbers.
+/// Expects the rows of Rows() from text that differs only around the numbers.
 void ExpectTheRows(const std::string& text) {
   const Recording recording = RecordingOf(text);
   ASSERT_EQ(recording.size(), 8) << text;
@@ -53,17 +53,17 @@ Status ErrorOf(const std::string& text) {
   return recording ? Status{StatusCode::kInternal, "no fault"} : recording.error();
 }
 
-/// The message of an error of kind kDataLoss.
+/// The message of an error; expects the code kDataLoss.
 std::string FaultOf(const std::string& text) {
   const Status error = ErrorOf(text);
   EXPECT_EQ(error.code, StatusCode::kDataLoss) << error.message;
   return error.message;
 }
 
-/// The message when the eighth row (line 9) is `row`.
+/// The message if the eighth row (line 9) is `row`.
 std::string FaultOfRow(const std::string& row) { return FaultOf(kHeader + Rows(7) + row + "\n"); }
 
-// ---- What is read ------------------------------------------------------------------------------------------------
+// ---- Valid files -------------------------------------------------------------------------------------------------
 
 TEST(ParseRecording, ReadsTimeAndAngle) {
   ExpectTheRows(kHeader + Rows());
@@ -76,7 +76,7 @@ TEST(ParseRecording, ReadsTimeAndAngle) {
 }
 
 TEST(ParseRecording, HashesTheBytes) {
-  // By Python's hashlib from the same text.
+  // From Python's hashlib for the same text.
   EXPECT_EQ(RecordingOf(kHeader + Rows()).sha256, "c515710e2595eda778ddfc7a95ac90bce7cf9d874020fd7f820e239ec47c8371");
 }
 
@@ -85,7 +85,7 @@ TEST(ParseRecording, TakesQuantityAndUnitFromTheNameOfTheColumn) {
     const char* name;
     Quantity quantity;
     const char* unit;
-    double si;  // One of the unit, in SI; a degree is 0.017453292519943295 rad (NIST SP 811, table 6).
+    double si;  // One unit in SI; a degree is 0.017453292519943295 rad (NIST SP 811, table 6).
   };
   for (const Case& each :
        {Case{"angle_rad", Quantity::kAngle, "rad", 1},
@@ -170,7 +170,7 @@ TEST(ParseRecording, CarriesMetadataThatOthersApply) {
       "# clock_scale: 1.0001\n# clock_scale_std_dev: 2e-5\n# rig: {\"gravity_torque\": 1.8}\n" +
       kHeader + Rows());
   EXPECT_TRUE(recording.warnings.empty());
-  EXPECT_EQ(recording.time[1], 0.5);  // The time column's, neither scaled nor the rate's.
+  EXPECT_EQ(recording.time[1], 0.5);  // From the time column, neither scaled nor from the rate.
   EXPECT_EQ(recording.clock_scale, 1.0001);
   EXPECT_EQ(recording.clock_scale_std_dev, 2e-5);
   EXPECT_EQ(recording.rig_json, "{\"gravity_torque\": 1.8}");
@@ -187,7 +187,7 @@ TEST(ParseRecording, TakesTheDeclaredRangeInSi) {
   EXPECT_DOUBLE_EQ(recording.range->high, 0.7853981633974483);
 }
 
-// ---- What is refused ---------------------------------------------------------------------------------------------
+// ---- Invalid files -----------------------------------------------------------------------------------------------
 
 TEST(ParseRecording, RefusesMalformedMetadataWhereItStands) {
   EXPECT_EQ(FaultOf("# resolution: 0.1 deg\n" + kHeader + Rows()),
@@ -296,9 +296,9 @@ TEST(ParseRecording, SaysHowManyRowsThereAreAndHowManyAreNeeded) {
   }
 }
 
-// ---- Any bytes ---------------------------------------------------------------------------------------------------
+// ---- Random bytes ------------------------------------------------------------------------------------------------
 
-/// std::mt19937's numbers are fixed by the standard, those of its distributions are not.
+/// The standard specifies the numbers of std::mt19937, but not those of its distributions.
 std::string Mutated(std::string text, std::mt19937& random) {
   for (auto edits = random() % 4 + 1; edits > 0 && !text.empty(); --edits) {
     constexpr std::string_view kTelling = ",;\t\n\r\"#:.-+e0123456789_()[] naif\0\xC2\xFF";
@@ -368,7 +368,7 @@ TEST(ReadRecording, RefusesADirectory) {
   EXPECT_THAT(recording.error().message, HasSubstr("this is a directory"));
 }
 
-/// Numbers of samples as the recordings' README gives them.
+/// Numbers of samples as in the README of the recordings.
 TEST(ReadRecording, ReadsWhatPeopleRecorded) {
   const char* const folder = std::getenv("PENDULUM_RECORDINGS");
   if (folder == nullptr) GTEST_SKIP() << "PENDULUM_RECORDINGS names no folder";
@@ -379,7 +379,7 @@ TEST(ReadRecording, ReadsWhatPeopleRecorded) {
   EXPECT_EQ(ReadRecording(path / "yfysiks_data2_25.csv")->size(), 36831);
   const Result<Recording> gyro = ReadRecording(path / "ganesh_gyro.csv");
   ASSERT_TRUE(gyro.has_value()) << gyro.error().message;
-  EXPECT_EQ(gyro->size(), 17999 - 10 - 2 - 1);  // 10 rows twice, 2 that share a stamp, 1 that goes back
+  EXPECT_EQ(gyro->size(), 17999 - 10 - 2 - 1);  // 10 duplicate rows, 2 with a shared stamp, 1 that goes back
   EXPECT_FALSE(ReadRecording(path / "cubli_PRINT_00.csv")->is_calibrated());
 }
 

@@ -20,7 +20,7 @@ const std::string kMeta = "\"property\",\"value\"\n\"deviceModel\",\"a phone\"\n
 const std::string kTime =
     "\"event\",\"experiment time\",\"system time\",\"system time text\"\n\"START\",0.0,1.6E9,\"2020-09-13\"\n";
 
-/// As phyphox names and writes one sensor; its numbers have this form.
+/// One sensor in phyphox's names and format; `row` is the form of its rows.
 std::string Gyroscope(const std::string& row = "0.0{t},1,{v}E0,2,3") {
   return "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"\n" +
          Rows(row);
@@ -111,7 +111,7 @@ TEST(ReadZip, ReadsSemicolonsAndDecimalCommasAndLeavesOutNaN) {
   EXPECT_TRUE(recording.warnings.empty());
 }
 
-// ---- What is no recording ----------------------------------------------------------------------------------------
+// ---- Not a recording ---------------------------------------------------------------------------------------------
 
 TEST(ReadZip, SaysThatNoMemberIsARecording) {
   EXPECT_EQ(FaultOf(ZipOf({{"Light.csv", kLight}, {"notes.txt", "hello\n"}})),

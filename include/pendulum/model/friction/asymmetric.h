@@ -8,8 +8,8 @@ namespace pendulum {
 inline constexpr ParameterInfo kAsymmetry{
     "asymmetry", "α", "1", "1", -1.0, 1.0, "share by which dry friction is larger towards positive angles"};
 
-/// Viscous friction and dry friction that depends on the direction, as cables and brushes give:  T(ω) = b ω + s τ_c
-/// (1 + s α).  MODEL.md eq. (48).
+/// Viscous friction, and dry friction that depends on the direction, as cables and brushes cause:
+/// T(ω) = b ω + s τ_c (1 + s α).  MODEL.md eq. (48).
 struct AsymmetricFriction {
   static constexpr std::string_view kName = "asymmetric";
   static constexpr std::string_view kTitle = "dry friction that depends on the direction";

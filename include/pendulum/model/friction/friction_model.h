@@ -11,16 +11,22 @@
 
 namespace pendulum {
 
-/// A friction law: a type without objects. It names itself and its parameters, says in words what it is (kTitle) and
-/// where it is met (kAbout, for who has never heard of it), gives the torque T(ω) that opposes
-/// motion in direction s = ±1, and coefficient n of that torque's Taylor series along a swing, from the rate's
-/// coefficients 0..n. kFormula is T as text for the report's equation of motion: th' is the rate, {name} the value of a
-/// parameter. Torque and parameters are in units of the gravity torque G. Torque(0, 1, p) is the static torque: the
-/// pendulum stays at rest while |sin θ| does not exceed it, that of the direction in which it would move. The law is
-/// odd, T(-ω, -s) = -T(ω, s), but for parameters of either sign, which change theirs; it never adds energy, T(ω) ω >=
-/// 0, for parameters within their bounds; all torques 0 is no friction. Two members may be left out: kOrdered, a
-/// parameter that is never below another; kRateScales, where the last parameter is a rate that the torque is not linear
-/// in: the multiples of the largest rate from which a search begins.
+/// A friction law: a type without objects. It gives the torque T(ω) that opposes motion in direction s = ±1. Recurrence
+/// gives coefficient n of the Taylor series of that torque along a swing, from coefficients 0..n of the rate. Torque
+/// and parameters are in units of the gravity torque G.
+///
+/// kTitle says in words what the law is; kAbout explains to a beginner where it occurs. kFormula is T as text for the
+/// equation of motion in the report: th' is the rate, {name} the value of a parameter.
+///
+/// Torque(0, 1, p) is the static torque. The pendulum stays at rest while |sin θ| is at most the static torque for the
+/// direction in which it would move.
+///
+/// Invariants: the law is odd, T(-ω, -s) = -T(ω, s), except that parameters of either sign change sign too. It never
+/// adds energy: T(ω) ω >= 0 for parameters within their bounds. If all torques are 0, there is no friction.
+///
+/// Two members are optional. kOrdered names a parameter that is never below another. kRateScales is for a law whose
+/// last parameter is a rate in which the torque is not linear: it holds the multiples of the largest rate at which a
+/// search starts.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
@@ -47,18 +53,18 @@ concept HasRateScale = requires {
 template <FrictionModel F>
 inline constexpr int kFrictionParameters = static_cast<int>(F::kParameters.size());
 
-/// A closed list of friction laws: what can be chosen by name is what stands in it.
+/// A closed list of friction laws. Only these can be chosen by name.
 template <FrictionModel... Fs>
 struct FrictionModelList {
   static constexpr std::array<std::string_view, sizeof...(Fs)> kNames = {Fs::kName...};
 
-  /// Calls visit.operator()<F>() for the law of that name; false when there is none.
+  /// Calls visit.operator()<F>() for the law called `name`. Returns false if there is none.
   template <typename Visitor>
   static bool Visit(std::string_view name, Visitor&& visit) {
     return ((Fs::kName == name && (visit.template operator()<Fs>(), true)) || ...);
   }
 
-  /// Calls visit.operator()<F>() for every law, in the order of the list.
+  /// Calls visit.operator()<F>() for every law in list order.
   template <typename Visitor>
   static void ForEach(Visitor&& visit) {
     (visit.template operator()<Fs>(), ...);

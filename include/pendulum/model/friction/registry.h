@@ -10,7 +10,7 @@
 
 namespace pendulum {
 
-/// Every friction law there is. To add one: its header above, its name here (CONTRIBUTING.md tells the rest).
+/// All friction laws. To add one, include its header above and add its name here (CONTRIBUTING.md describes the rest).
 using FrictionModels =
     FrictionModelList<ViscousFriction, CoulombFriction, DragFriction, StribeckFriction, AsymmetricFriction>;
 

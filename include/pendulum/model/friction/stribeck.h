@@ -14,8 +14,8 @@ inline constexpr ParameterInfo kStiction{
 inline constexpr ParameterInfo kStribeckRate{
     "stribeck_rate", "ω_s", "rad/s", "rad/s", 1e-6, kUnbounded, "rate at which stiction has given way to coulomb"};
 
-/// Dry friction that grows towards rest, beside viscous:  T(ω) = b ω + s (τ_c + (τ_s - τ_c) exp(-(ω/ω_s)²)), τ_s >=
-/// τ_c.  MODEL.md eq. (47).
+/// Viscous friction, and dry friction that increases towards rest:
+/// T(ω) = b ω + s (τ_c + (τ_s - τ_c) exp(-(ω/ω_s)²)), τ_s >= τ_c.  MODEL.md eq. (47).
 struct StribeckFriction {
   static constexpr std::string_view kName = "stribeck";
   static constexpr std::string_view kTitle = "friction with the Stribeck effect";
@@ -34,7 +34,7 @@ struct StribeckFriction {
     return p[0] * rate + direction * (p[1] + (p[2] - p[1]) * share);
   }
 
-  /// E = exp(u), u = -(ω/ω_s)², by n E_n = Σ k u_k E_{n-k}.
+  /// E = exp(u) with u = -(ω/ω_s)², from n E_n = Σ k u_k E_{n-k}.
   template <typename T>
   struct Recurrence {
     T operator()(int n, const Series<T>& rate, double direction, const T* p) {

@@ -14,49 +14,52 @@ namespace pendulum {
 
 inline constexpr int kHighestCalibrationOrder = 5;
 
-/// Does the highest power of a curve earn its place? F test of the curve against the one without it, MODEL.md eq. (42).
+/// F test of the highest power of a curve: the curve against the one without it, MODEL.md eq. (42).
 struct OrderTest {
   int order;    ///< Of the curve with the power.
-  double f;     ///< F, with 1 and `freedom` degrees of freedom; infinite when the curve passes through every point.
+  double f;     ///< F, with 1 and `freedom` degrees of freedom; infinite if the curve passes through every point.
   int freedom;  ///< N - order - 1.
-  double p;     ///< Probability of such an F if the power were not there.
+  double p;     ///< Probability of so large an F if the power were absent.
 };
 
-/// Are the residuals no larger than what rounding to whole counts makes them? MODEL.md eq. (42).
+/// Tests whether rounding to whole counts alone explains the residuals, MODEL.md eq. (42).
 struct RoundingTest {
-  double std_dev;  ///< Of the residuals that rounding alone would leave, resolution / √12, angle_unit.
-  double p;        ///< Probability of residuals as large or larger by rounding alone, χ².
+  double std_dev;  ///< Of the residuals caused by rounding alone, resolution / √12, angle_unit.
+  double p;        ///< Probability of residuals at least as large by rounding alone, χ².
 };
 
-/// A curve through a table, and how well it fits. The N residuals are in the order of the table, in its angle_unit.
+/// A curve through a table, and the quality of the fit. The N residuals are in the table's order and its angle_unit.
 struct CalibrationFit {
-  Calibration calibration;  ///< With all its keys in `source`; covariance 0 x 0 when N = order + 1.
+  Calibration calibration;  ///< With all its keys in `source`; covariance 0 x 0 if N = order + 1.
   int order = 1;
-  Eigen::VectorXd residual, left_out;     ///< N x 1: angle - curve; - curve without that point, 0 x 1 if N = order + 1.
+  Eigen::VectorXd residual, left_out;     ///< N x 1: angle - curve; left_out: the same with a curve without that point,
+                                          ///< 0 x 1 if N = order + 1.
   Eigen::Index largest = 0;               ///< Point of the largest residual.
   double resolution = 0;                  ///< Angle of one count, rms over the points, angle_unit; 0 for volts.
-  std::optional<RoundingTest> rounding;   ///< Of counts, unless N = order + 1.
-  std::optional<OrderTest> lower_order;   ///< Of this curve against one of lower order; none for a straight line.
-  std::optional<OrderTest> higher_order;  ///< Of one higher order; none with too few points or for the highest.
+  std::optional<RoundingTest> rounding;   ///< For counts, unless N = order + 1.
+  std::optional<OrderTest> lower_order;   ///< This curve against the next lower order; std::nullopt for a line.
+  std::optional<OrderTest> higher_order;  ///< The next higher order against this one; std::nullopt with too few points
+                                          ///< or at the highest order.
 
-  /// Root mean square of left_out, angle_unit; none if N = order + 1.
+  /// Root mean square of left_out, angle_unit; std::nullopt if N = order + 1.
   std::optional<double> LeaveOneOutRms() const;
 };
 
-/// Least squares of angle on reading, MODEL.md eqs. (40) and (41): a polynomial of that order with the covariance of
-/// its coefficients σ̂² (XᵀX)⁻¹, σ̂² = RSS / (N - order - 1). Residuals count as independent and of one size. Centred
-/// and scaled readings lose no digits at orders up to 5; the coefficients are those of powers of the reading itself.
-/// `input_range` is what the sensor can show. kInvalidArgument: an order not in 1 to kHighestCalibrationOrder, a
-/// reading outside input_range. kDataLoss: fewer points than coefficients, a curve that turns between the points,
-/// readings too far apart or too alike for the order.
+/// Least squares of angle on reading, MODEL.md eqs. (40) and (41): a polynomial of the given order. The covariance of
+/// its coefficients is σ̂² (XᵀX)⁻¹ with σ̂² = RSS / (N - order - 1). Residuals count as independent and equally large.
+/// Readings are centred and scaled, so no digits are lost at orders up to 5; the coefficients are those of powers of
+/// the reading. `input_range` is the range that the sensor can show. kInvalidArgument: an order not in 1 to
+/// kHighestCalibrationOrder, or a reading outside input_range. kDataLoss: fewer points than coefficients, a curve that
+/// turns between the points, or readings too far apart or too similar for the order.
 Result<CalibrationFit> CalibrateSensor(const CalibrationTable& table, int order,
                                        const std::optional<SensorRange>& input_range = std::nullopt);
 
-/// As ParseCalibration reads it: every key, unrounded; absent covariance, residual_std_dev and input_range are null.
+/// JSON that ParseCalibration reads: every key, unrounded. Missing covariance, residual_std_dev and input_range are
+/// null.
 nlohmann::ordered_json CalibrationJson(const Calibration& calibration);
 
-/// The first of 1001 readings from low to high where the curve does not go the way it goes as a whole from low to high:
-/// there two readings show one angle. None: it rises or falls throughout.
+/// The first of 1001 readings from low to high at which the curve runs against its overall direction, so that two
+/// readings show one angle. std::nullopt: the curve rises or falls throughout.
 std::optional<double> TurningReading(const Calibration& calibration, double low, double high);
 
 }  // namespace pendulum

@@ -10,14 +10,14 @@
 #include "pendulum/base/physics.h"
 #include "recording/readers/columns/csv.h"
 
-/// What a header says: which separator the file uses, and the unit that each column's name tells.
+/// The information in a header: the file's separator, and the unit in each column's name.
 namespace pendulum::csv {
 
-/// An acceleration or a length is a quantity only where there is none of the others.
+/// An acceleration or a length is used as the quantity only if there is no other.
 enum class Kind { kTime, kAngle, kRate, kRaw, kAcceleration, kLength };
 
-/// What a column is when its name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 / 1000.0,
-/// the double nearest to 0.033, which 33 * 1e-3 is not.
+/// The unit of a column whose name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 /
+/// 1000.0, the double nearest to 0.033, unlike 33 * 1e-3.
 struct Unit {
   std::string_view suffix;
   Kind kind;
@@ -28,12 +28,12 @@ struct Unit {
   constexpr double ToSi(double number) const { return number * factor / divisor; }
 };
 
-/// An acceleration or a length.
+/// True for an acceleration or a length.
 constexpr bool IsSecondChoice(const Unit& unit) {
   return unit.kind == Kind::kAcceleration || unit.kind == Kind::kLength;
 }
 
-/// A suffix stands before any that it ends in.
+/// A suffix comes before any suffix that it ends in.
 constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},
     Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
@@ -51,10 +51,10 @@ constexpr std::array kUnits = {
     Unit{"m", Kind::kLength, "m"},
 };
 
-/// How the name of the column of a quantity may end.
+/// Possible endings of the name of a column with a quantity.
 inline constexpr std::string_view kSuffixes = "_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm";
 
-/// Small letters, and what stands in ASCII for ° and for the two code points of µ.
+/// Lower-case letters, with ASCII in place of ° and of the two code points of µ.
 inline std::string PlainName(std::string_view name) {
   struct Spelling {
     std::string_view letter, ascii;
@@ -88,13 +88,13 @@ inline std::string CanonicalName(std::string_view name) {
   return canonical;
 }
 
-/// The unit of that suffix, or nullptr.
+/// The unit with this suffix, or nullptr.
 inline const Unit* UnitOfSuffix(std::string_view suffix) {
   const auto* const found = std::ranges::find(kUnits, suffix, &Unit::suffix);
   return found == kUnits.end() ? nullptr : found;
 }
 
-/// The unit that a canonical name ends in, and what stands before it.
+/// The unit at the end of a canonical name, and the part before it.
 struct NameParts {
   std::string_view stem;
   const Unit* unit = nullptr;
@@ -109,21 +109,21 @@ inline NameParts SplitName(std::string_view canonical) {
   return {canonical};
 }
 
-/// The unit that the name tells, if any. Only `time` itself is a time: `delay_s` is not.
+/// The unit in the name, if any. Only `time` itself is a time; `delay_s` is not.
 inline const Unit* FindUnit(std::string_view name) {
   const std::string canonical = CanonicalName(name);
   const auto [stem, unit] = SplitName(canonical);
   return unit != nullptr && unit->kind == Kind::kTime && stem != "time_" ? nullptr : unit;
 }
 
-/// The unit of time that the name of a column tells that the user says is the time: `t_ms` too.
+/// The unit of time in the name of a column that the user declares to be the time; also `t_ms`.
 inline const Unit* FindTimeUnit(std::string_view name) {
   const std::string canonical = CanonicalName(name);
   const Unit* unit = SplitName(canonical).unit;
   return unit != nullptr && unit->kind == Kind::kTime ? unit : nullptr;
 }
 
-/// The unit before the last of a name that tells two, such as `angle_deg [rad]`; else nullptr.
+/// The unit before the last one if the name has two, such as `angle_deg [rad]`; otherwise nullptr.
 inline const Unit* SecondUnit(std::string_view name) {
   const std::string canonical = CanonicalName(name);
   std::string_view stem = SplitName(canonical).stem;
@@ -133,8 +133,8 @@ inline const Unit* SecondUnit(std::string_view name) {
   return unit == nullptr || rest.empty() || unit->kind == Kind::kTime ? nullptr : unit;
 }
 
-/// The separator that the header uses most outside quotes, a blank where it uses none of the others; a comma is the
-/// likeliest to stand in a name instead.
+/// The most frequent separator outside quotes in the header; a blank if there is no other. In a tie a comma loses,
+/// because it is most likely part of a name.
 inline char Separator(std::string_view header) {
   constexpr std::string_view kCandidates = "\t;,";
   std::array<std::size_t, kCandidates.size()> uses{};

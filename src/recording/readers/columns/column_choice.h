@@ -13,42 +13,42 @@
 #include "recording/readers/columns/column.h"
 #include "recording/readers/columns/csv.h"
 
-/// Which columns of a file are the time and the quantity, by its header and by what the user says.
+/// Chooses the columns for time and quantity from the header and the user's options.
 namespace pendulum::csv {
 
 struct Column {
   std::size_t index = 0;
-  std::string name;  // As a message shows it.
+  std::string name;  // As messages show it.
   const Unit* unit = nullptr;
-  bool is_gyro = false;             // Its name says so.
-  bool is_without_gravity = false;  // Its name says so: a linear acceleration.
+  bool is_gyro = false;             // According to its name.
+  bool is_without_gravity = false;  // According to its name: a linear acceleration.
 };
 
 struct Layout {
   char separator = ',';
   std::size_t width = 0;
   bool has_header = false;
-  std::optional<Column> time;  // None: the times are a sample rate's, or the host's.
+  std::optional<Column> time;  // std::nullopt: times come from a sample rate or from the host.
   bool is_time_unit_told = true;
   Column value;
-  std::optional<Column> second;  // The vertical coordinate, where `value` is the horizontal one of the same point.
+  std::optional<Column> second;  // The vertical coordinate of a point whose horizontal one is `value`.
 };
 
-/// A name in the header and where it stands.
+/// A name in the header and its position.
 struct Name {
-  std::string_view text;  // What tells quantity and unit; empty for a column that is out of the question.
+  std::string_view text;  // Determines quantity and unit; empty if the column cannot be used.
   const char* at;
-  std::string_view written = text;  // As the file has it, for messages and flags.
+  std::string_view written = text;  // As in the file, for messages and flags.
 };
 
-/// True for what only a header holds: letters that are no part of a number.
+/// True for text that occurs only in a header: letters that are not part of a number.
 inline bool IsName(std::string_view text) {
   text = Unquote(text);
   return text.find_first_not_of("0123456789+-.,;eE:> \t") != std::string_view::npos ||
          (!text.empty() && text.find_first_not_of("eE") == std::string_view::npos);
 }
 
-/// The fields of a header that blanks separate; a blank before a bracket or inside does not.
+/// Splits a header at blanks, except those before or inside brackets.
 inline std::vector<Name> SplitAtBlanks(std::string_view header) {
   std::vector<Name> names;
   header = Trim(header);
@@ -84,7 +84,7 @@ inline std::size_t CountFields(std::string_view row, char separator) {
   return count;
 }
 
-/// The separator that makes every field of a row a number, if any.
+/// The separator with which every field of a row is a number, if any.
 inline std::optional<char> SeparatorOfNumbers(std::string_view row) {
   for (const char separator : {'\t', ';', ',', ' '}) {
     if (separator != ' ' && row.find(separator) == std::string_view::npos) continue;
@@ -100,10 +100,10 @@ inline std::optional<char> SeparatorOfNumbers(std::string_view row) {
   return std::nullopt;
 }
 
-/// Chooses the columns of one file. Faults are those of ReadRecording.
+/// Chooses the columns of one file. Errors as ReadRecording.
 class ColumnChooser {
  public:
-  /// `names` are empty when there is no header. `has_rate`, `has_host`: there are times without a column of times.
+  /// `names` is empty without a header. `has_rate`, `has_host`: there are times without a column of times.
   ColumnChooser(const Line& line, const std::vector<Name>& names, const ReadOptions& options, bool has_rate,
                 bool has_host)
       : line_(line), names_(names), options_(options), has_rate_(has_rate), has_host_(has_host) {}
@@ -139,7 +139,7 @@ class ColumnChooser {
   bool has_host_;
 };
 
-/// The header's names as a message may show them.
+/// The header's names as messages show them.
 inline std::string ColumnChooser::ColumnNames() const {
   constexpr std::size_t kShown = 8;
   std::string list;
@@ -165,7 +165,7 @@ inline tl::unexpected<Status> ColumnChooser::Ambiguous(std::size_t one, std::siz
                                          "; choose one with " + flag);
 }
 
-/// A column by its name or by its number.
+/// Finds a column by its name or its number.
 inline Result<std::size_t> ColumnChooser::FindColumn(const std::string& flag, std::string_view name,
                                                      Layout& layout) const {
   const auto found = std::ranges::find(names_, name, &Name::written);
@@ -181,7 +181,7 @@ inline Result<std::size_t> ColumnChooser::FindColumn(const std::string& flag, st
   return static_cast<std::size_t>(number) - 1;
 }
 
-/// The columns whose names tell a unit of these kinds.
+/// The columns whose names contain a unit of these kinds.
 inline std::vector<std::size_t> ColumnChooser::Columns(Kind first, Kind last) const {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -191,7 +191,8 @@ inline std::vector<std::size_t> ColumnChooser::Columns(Kind first, Kind last) co
   return columns;
 }
 
-/// A file without a header is read when all that the header would say is said: the message lists what is not.
+/// A file without a header is read if options replace the header completely; otherwise the message lists the missing
+/// ones.
 inline Result<void> ColumnChooser::CheckSomethingIsSaid(const Layout& layout) const {
   if (layout.has_header) return {};
   const bool needs_time =
@@ -220,7 +221,7 @@ inline Result<void> ColumnChooser::Choose(Layout& layout) {
   return ChooseValue(layout);
 }
 
-/// NAME, NUMBER, and either with :s, :ms or :us.
+/// NAME or NUMBER, optionally with :s, :ms or :us.
 inline Result<void> ColumnChooser::ChooseNamedTime(Layout& layout) {
   std::string_view name = options_.time_column;
   const Unit* told = nullptr;
@@ -269,7 +270,7 @@ inline Result<void> ColumnChooser::ChooseTime(Layout& layout) {
                                             "--time_column or --sample_rate_hz");
 }
 
-/// The one column that neither is the time nor tells a unit.
+/// The only column that is not the time and has no unit.
 inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& layout) const {
   std::optional<std::size_t> only;
   for (std::size_t i = 0; i < layout.width; ++i) {
@@ -283,8 +284,8 @@ inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& la
                      "none of the columns " + ColumnNames() + " can be the quantity; choose one with --value_column");
 }
 
-/// True where an angle, a rate or readings are asked for, and beside lengths and accelerations there is a column whose
-/// name does not tell what it is.
+/// True if the user requests an angle, a rate or raw readings, the columns with units are lengths and accelerations,
+/// and there is also a column whose name has no unit.
 inline bool ColumnChooser::IsAnotherKindAsked(const std::vector<std::size_t>& columns, const Layout& layout) const {
   const Unit* asked = UnitOfSuffix(options_.unit);
   if (!layout.has_header || asked == nullptr || IsSecondChoice(*asked)) return false;
@@ -296,7 +297,7 @@ inline bool ColumnChooser::IsAnotherKindAsked(const std::vector<std::size_t>& co
   return is_open && std::ranges::all_of(columns, [&](auto i) { return IsSecondChoice(*FindUnit(names_[i].text)); });
 }
 
-/// The column that the user chose, or the one whose name tells a unit that was asked for, or any unit.
+/// The column that the user chose; otherwise one whose name has the requested unit; otherwise one with any unit.
 inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
   if (!options_.value_column.empty()) return FindColumn("--value_column", options_.value_column, layout);
   std::vector<std::size_t> columns = Columns(Kind::kAngle, Kind::kRaw);
@@ -320,7 +321,7 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
                                             std::string(kSuffixes) + ", or give --value_column and --unit");
 }
 
-/// The column of the same point's other coordinate: bob_y_px beside bob_x_px.
+/// The column with the other coordinate of the same point: bob_y_px for bob_x_px.
 inline std::optional<std::size_t> ColumnChooser::FindVertical(std::size_t horizontal) const {
   const std::string x = CanonicalName(names_[horizontal].text);
   const auto [stem, unit] = SplitName(x);
@@ -332,7 +333,7 @@ inline std::optional<std::size_t> ColumnChooser::FindVertical(std::size_t horizo
   return static_cast<std::size_t>(found - names_.begin());
 }
 
-/// A point as high on one side as on the other tells neither: fitted alone, it would swing twice as fast.
+/// Refuses a vertical coordinate: it is equal on both sides, so fitted alone it would swing twice as fast.
 inline Result<void> ColumnChooser::CheckCoordinate(std::size_t index) const {
   if (index >= names_.size()) return {};
   const std::string name = CanonicalName(names_[index].text);

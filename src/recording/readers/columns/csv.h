@@ -15,7 +15,7 @@
 #include "pendulum/base/status.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 
-/// The grammar of CSV text, without a copy of a field: blanks, quotes, numbers, separators.
+/// The grammar of CSV text: blanks, quotes, numbers, separators. Fields are never copied.
 namespace pendulum::csv {
 
 constexpr bool IsBlank(char c) { return c == ' ' || c == '\t'; }
@@ -37,9 +37,9 @@ struct Line {
   std::string_view text;
   std::size_t number = 0;
 
-  static constexpr std::size_t kNoNumber = static_cast<std::size_t>(-1);  // Of a file that has no lines.
+  static constexpr std::size_t kNoNumber = static_cast<std::size_t>(-1);  // For a file without lines.
 
-  /// An error at the byte `at` of the text.
+  /// An error at byte `at` of the text.
   tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
                                StatusCode code = StatusCode::kDataLoss) const {
     if (number == kNoNumber) return Error(code, std::string(file) + ": " + sentence);
@@ -48,7 +48,7 @@ struct Line {
   }
 };
 
-/// Calls take() for each line of a file, as `line`, until one is refused.
+/// Calls take() for each line of a file, stored in `line`, until take() returns an error.
 template <typename Take>
 Result<void> ForEachLine(LineReader& lines, Line& line, const Take& take) {
   line.file = lines.name();
@@ -62,7 +62,7 @@ Result<void> ForEachLine(LineReader& lines, Line& line, const Take& take) {
   }
 }
 
-/// std::from_chars, and a leading plus sign.
+/// std::from_chars that also accepts a leading plus sign.
 inline std::from_chars_result FromChars(const char* begin, const char* end, double& number) {
   if (end - begin > 1 && begin[0] == '+' && begin[1] != '-') ++begin;
   return std::from_chars(begin, end, number);
@@ -84,13 +84,13 @@ inline std::from_chars_result FromCharsWithComma(const char* begin, const char* 
   return {begin + (read_to - point.data()), error};
 }
 
-/// Reads the numbers of one file, all with a decimal point or all with a decimal comma: the first that has a mark
-/// tells.
+/// Reads the numbers of one file, which all have a decimal point or all a decimal comma. The first number with a
+/// decimal mark decides.
 class Numbers {
  public:
   explicit Numbers(bool may_have_comma = false) : mark_(may_have_comma ? kUnknown : '.') {}
 
-  /// As std::from_chars.
+  /// Like std::from_chars.
   std::from_chars_result From(const char* begin, const char* end, double& number) {
     if (mark_ == '.') return FromChars(begin, end, number);
     const std::from_chars_result plain = FromChars(begin, end, number);
@@ -103,14 +103,14 @@ class Numbers {
     return comma;
   }
 
-  /// True when the whole of it is a finite number.
+  /// True if the whole text is a finite number.
   bool Parse(std::string_view text, double& number) {
     const char* end = text.data() + text.size();
     const auto [stop, error] = From(text.data(), end, number);
     return error == std::errc() && stop == end && std::isfinite(number);
   }
 
-  /// What is wrong with a field that Parse refuses, and what to do.
+  /// Why Parse refuses the field, and what to do.
   std::string WhyNot(std::string_view text) const;
 
  private:
@@ -139,17 +139,17 @@ inline std::string Numbers::WhyNot(std::string_view text) const {
   return holds + ", a number followed by " + Quoted(rest) + "; correct the field or delete the row";
 }
 
-/// Parses a number with a decimal point: what metadata and flags have.
+/// Parses a number with a decimal point, for metadata and flags.
 inline bool ParseNumber(std::string_view text, double& number) { return Numbers().Parse(text, number); }
 
-/// std::find at the speed of memchr.
+/// std::find as fast as memchr.
 inline const char* Find(const char* from, const char* end, char wanted) {
   const void* found = from == end ? nullptr : std::memchr(from, wanted, end - from);
   return found == nullptr ? end : static_cast<const char*>(found);
 }
 
-/// Cuts a line into fields. A separator inside a field that begins with a double quote does not end it; a run of blanks
-/// is one separator where the separator is a blank.
+/// Splits a line into fields. A separator inside a field that begins with a double quote does not end it. If the
+/// separator is a blank, a run of blanks is one separator.
 class FieldCutter {
  public:
   FieldCutter(std::string_view line, char separator)
@@ -161,10 +161,10 @@ class FieldCutter {
 
   bool done() const { return done_; }
 
-  /// Where the text of the next field begins.
+  /// The start of the next field's text.
   const char* at() const { return SkipBlanks(at_); }
 
-  /// The next field with its blanks and quotes, found without looking at each byte of it.
+  /// The next field including blanks and quotes, found without examining each of its bytes.
   std::string_view Next() {
     const char* begin = at_;
     const char* from = SkipBlanks(begin);
@@ -174,8 +174,8 @@ class FieldCutter {
     return {begin, static_cast<std::size_t>(stop - begin)};
   }
 
-  /// The next field when it is an unquoted finite number, read without finding its end first; otherwise stays in front
-  /// of it.
+  /// Reads the next field if it is an unquoted finite number, without first finding its end. Otherwise does not
+  /// advance.
   bool NextNumber(Numbers& numbers, double& number) {
     const auto [stop, error] = numbers.From(SkipBlanks(at_), end_, number);
     const char* next = SkipBlanks(stop);
@@ -190,7 +190,7 @@ class FieldCutter {
     return at;
   }
 
-  /// A doubled quote stands for a quote; one that is never closed runs to the end of the line.
+  /// A doubled quote is part of the field. A quote that is never closed extends to the end of the line.
   const char* ClosingQuote(const char* opening) const {
     const char* quote = Find(opening + 1, end_, '"');
     while (end_ - quote > 1 && quote[1] == '"') quote = Find(quote + 2, end_, '"');

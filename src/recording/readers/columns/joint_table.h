@@ -9,10 +9,10 @@
 #include "pendulum/recording/clock.h"
 #include "recording/readers/columns/table.h"
 
-/// Tables of which each row is one joint's.
+/// Tables in which each row belongs to one joint.
 namespace pendulum::csv {
 
-/// What --value_column says of such a table: JOINT, COLUMN or JOINT/COLUMN; empty where it says nothing.
+/// The meaning of --value_column for such a table: JOINT, COLUMN or JOINT/COLUMN. Missing parts are empty.
 struct JointChoice {
   std::string joint, column;
 };
@@ -30,17 +30,17 @@ class JointTable {
  public:
   static constexpr std::size_t kMostJoints = 1000;
 
-  /// False beyond kMostJoints.
+  /// Adds a row. Returns false beyond kMostJoints.
   bool Add(std::string_view joint, double time, double value, std::size_t line);
 
-  /// The joint that is asked for, the only one or the only one that moves; nullptr without rows. `line` is that of the
-  /// names, `column` the
-  /// name of the column of values. kDataLoss: there are several. kInvalidArgument: there is no such joint.
+  /// The requested joint, or the only one, or the only one that moves; nullptr without rows. `line` is that of the
+  /// names, `column` the name of the value column. kDataLoss: several are possible. kInvalidArgument: there is no such
+  /// joint.
   Result<JointRows*> Choose(const Line& line, const std::string& joint, const std::string& column);
 
  private:
   std::vector<JointRows> joints_;
-  std::size_t last_ = 0;  // That of the row before.
+  std::size_t last_ = 0;  // Joint of the previous row.
 };
 
 }  // namespace pendulum::csv

@@ -10,7 +10,7 @@
 namespace pendulum {
 namespace {
 
-/// The first such byte, or nullptr.
+/// The first byte equal to `wanted`, or nullptr.
 const char* Find(const char* from, const char* end, char wanted) {
   return from == end ? nullptr : static_cast<const char*>(std::memchr(from, wanted, end - from));
 }
@@ -42,7 +42,7 @@ Result<void> LineReader::Begin() {
   return {};
 }
 
-/// Moves what is left of the block to its front and reads behind it.
+/// Moves the rest of the block to its front and reads more data after it.
 Result<void> LineReader::Refill() {
   const std::size_t left = end_ - at_;
   std::memmove(block_->data(), at_, left);
@@ -54,14 +54,14 @@ Result<void> LineReader::Refill() {
   return Take({at_ + left, *got});
 }
 
-/// Hashes bytes that came into memory, and looks for what a logger leaves that lost its power, or an encoding of two
-/// bytes a character.
+/// Hashes new bytes and checks for NUL bytes. A logger that lost its power leaves them, and so do encodings with two
+/// bytes per character.
 Result<void> LineReader::Take(std::string_view bytes) {
   if (auto added = digest_.Add(bytes); !added) return added;
   const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
   if (nul == nullptr) return {};
   const std::string_view before(at_, nul);
-  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the line that at_ begins.
+  const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the line that starts at at_.
   return Error(
       StatusCode::kDataLoss,
       name_ + ":" + std::to_string(number_ + 1 + std::ranges::count(before, '\n')) + ":" +
@@ -75,7 +75,7 @@ tl::unexpected<Status> LineReader::TooLong() const {
                                           ", so this is not CSV text; name a CSV file");
 }
 
-/// The next line when all of it is in memory.
+/// Takes the next line if it is completely in memory.
 bool LineReader::GoOn() {
   const char* line_end = Find(at_, end_, '\n');
   if (line_end == nullptr || !has_begun_ || static_cast<std::size_t>(line_end - at_) > kLongestLine) return false;
@@ -91,7 +91,7 @@ void LineReader::TakeLine(const char* line_end) {
   ++number_;
 }
 
-/// The next line when more has to be read, or the last, or a fault.
+/// Takes the next line when more data must be read, or the last line, or returns an error.
 Result<bool> LineReader::NextBlock() {
   if (!has_begun_) {
     if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());

@@ -13,7 +13,7 @@
 #include "pendulum/recording/sensor.h"
 #include "recording/readers/columns/csv.h"
 
-/// The keys of `# key: value` lines, and what their values must look like.
+/// The keys of `# key: value` lines and the form of their values.
 namespace pendulum::csv {
 
 inline bool IsPositive(std::string_view text) {
@@ -66,9 +66,9 @@ constexpr std::array kMetadataKeys = {
     MetadataKey{"rig", IsObject, "a JSON object on the same line"},
 };
 
-/// What the `# key: value` lines of one file say.
+/// The values of the `# key: value` lines of one file.
 struct Metadata {
-  std::optional<double> resolution;  // In the unit of the file, as the range.
+  std::optional<double> resolution;  // In the unit of the file, like the range.
   std::optional<Range> range;
   double sample_rate_hz = 0;  // 0: not given.
   double clock_scale = 1;
@@ -80,7 +80,7 @@ struct Metadata {
   std::array<bool, kMetadataKeys.size()> seen{};
 };
 
-/// Stores a well-formed value.
+/// Stores a value that has been checked.
 inline Result<void> StoreMetadata(const Line& line, std::string_view key, std::string_view value, Metadata& metadata) {
   if (key == "resolution") ParseNumber(value, metadata.resolution.emplace());
   if (key == "range") ParseRange(value, metadata.range.emplace());
@@ -98,7 +98,7 @@ inline Result<void> StoreMetadata(const Line& line, std::string_view key, std::s
   return {};
 }
 
-/// Takes what follows the `#` of a line; most of it is a comment.
+/// Reads the text after the `#` of a line; in most cases it is a comment.
 inline Result<void> ReadMetadata(const Line& line, std::string_view comment, Metadata& metadata) {
   const std::size_t colon = std::min(comment.find(':'), comment.size());
   const auto* const entry = std::ranges::find(kMetadataKeys, Trim(comment.substr(0, colon)), &MetadataKey::key);

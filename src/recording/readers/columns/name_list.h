@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-/// Names in sentences.
+/// Lists of names for sentences.
 namespace pendulum {
 
-/// A, B and C; of many the first.
+/// "A, B and C"; only the first ones if there are many.
 inline std::string ListOf(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 8;
   std::string list;
@@ -19,7 +19,7 @@ inline std::string ListOf(const std::vector<std::string>& names) {
   return list + (names.size() > kShown ? ", ..." : "");
 }
 
-/// What is wrong with two columns or more, and what to do.
+/// The error and advice if two or more columns could be the quantity.
 inline std::string SeveralQuantities(const std::vector<std::string>& names) {
   return ListOf(names) + " could " + (names.size() == 2 ? "both" : "all") +
          " be the quantity; choose one with --value_column";

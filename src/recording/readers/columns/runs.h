@@ -9,11 +9,11 @@
 
 #include "recording/readers/columns/table.h"
 
-/// Several runs side by side, as Logger Pro and Graphical Analysis ("Run 1: Time (s)", "Latest: Angle (rad)", "Data Set
-/// 1:Time(s)") and Capstone ("Time (s) Run #1") name their columns.
+/// Several runs side by side. Logger Pro and Graphical Analysis name their columns "Run 1: Time (s)", "Latest: Angle
+/// (rad)" or "Data Set 1:Time(s)", Capstone "Time (s) Run #1".
 namespace pendulum::csv {
 
-/// A name as our headers would have it: these programs write `V` for volts and superscripts.
+/// Converts a name to our form of header: these programs write `V` for volts and superscripts.
 inline std::string PlainUnits(std::string_view name) {
   std::string plain(name);
   for (const auto& [theirs, ours] : {std::pair{"\u00B2", "2"}, {"(V)", "(volts)"}}) {
@@ -24,7 +24,7 @@ inline std::string PlainUnits(std::string_view name) {
   return plain;
 }
 
-/// A name and the run that it tells, if any.
+/// A name split into the run, if it contains one, and the rest.
 struct RunName {
   std::string_view run, rest;
 };
@@ -43,13 +43,13 @@ inline RunName SplitRun(std::string_view name) {
   return {Trim(name.substr(at)), Trim(rest)};
 }
 
-/// True for what a header calls the time, with its unit.
+/// True for the name of a time with its unit.
 inline bool IsTime(std::string_view name) {
   const Unit* unit = FindUnit(name);
   return unit != nullptr && unit->kind == Kind::kTime;
 }
 
-/// Tells runs and columns apart where the name of a time tells a run; true when it does.
+/// Separates runs and columns if the name of a time contains a run. Returns whether it does.
 inline bool SplitRuns(std::vector<TableColumn>& columns) {
   const auto is_time_of_run = [](const TableColumn& column) {
     const auto [run, rest] = SplitRun(column.written);

@@ -13,7 +13,7 @@
 namespace pendulum::csv {
 namespace {
 
-/// The length of a vector has lost its sign, so that it swings twice as often.
+/// The length of a vector has no sign, so it would swing twice as often.
 bool IsLengthOfVector(const TableColumn& column) {
   constexpr std::string_view kWord = "absolute";
   const std::string canonical = CanonicalName(column.meaning);
@@ -22,7 +22,7 @@ bool IsLengthOfVector(const TableColumn& column) {
   return canonical.starts_with(kWord) && (canonical[kWord.size()] == '_' || IsBlank(canonical[kWord.size()]));
 }
 
-/// The run whose columns are read; none where that is for the chooser to say.
+/// The run whose columns are read; std::nullopt if ColumnChooser must report the error.
 Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector<TableColumn>& columns,
                                              const ReadOptions& options) {
   for (const std::string& flag : {options.value_column, TimeFlagOf(columns, options.time_column).column}) {

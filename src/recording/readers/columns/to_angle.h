@@ -15,15 +15,15 @@
 #include "recording/readers/columns/column_choice.h"
 #include "recording/readers/columns/metadata.h"
 
-/// From the numbers of a file's value column to what a Recording holds.
+/// Converts the numbers of a file's value column to the contents of a Recording.
 namespace pendulum::csv {
 
-/// The calibration that applies to a column of counts or volts, if any: the user's before the file's own.
+/// The calibration for a column of counts or volts, if any: the user's, otherwise the file's own.
 inline const std::optional<Calibration>& ChosenCalibration(const ReadOptions& options, const Metadata& metadata) {
   return options.calibration ? options.calibration : metadata.calibration;
 }
 
-/// A calibration must be of the column's unit; the file's own may be about another column than that of angles.
+/// Checks that a calibration has the column's unit. The file's own may belong to another column than that of angles.
 inline Result<void> CheckCalibration(const Line& header, const Column& column, const ReadOptions& options,
                                      const Metadata& metadata, std::vector<Warning>& warnings) {
   const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
@@ -46,7 +46,7 @@ inline bool AllWhole(const Eigen::VectorXd& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
 }
 
-/// A resolution that the values contradict is believed, and said.
+/// Warns if the values contradict the given resolution, which is still used.
 inline void WarnOfResolution(double found, Recording& recording) {
   constexpr double kAlike = 0.1;
   if (found == 0 || std::abs(recording.resolution - found) <= kAlike * found) return;
@@ -57,7 +57,8 @@ inline void WarnOfResolution(double found, Recording& recording) {
                                    " apart (in the file's unit): a wrong one makes the error bars wrong"});
 }
 
-/// The spacing of the values and who tells it: the user, the file, or the values themselves; whole counts are levels.
+/// Sets the spacing of the values and its origin: the user, the file, or the values themselves. Whole counts are
+/// levels.
 inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
                           Recording& recording) {
   if (options.resolution || metadata.resolution) {
@@ -71,7 +72,7 @@ inline void SetResolution(const Unit& unit, const ReadOptions& options, const Me
   recording.resolution_source = "found";
 }
 
-/// The range of a converter whose counts reach an end of it again and again.
+/// The range of a converter if counts reach one of its ends repeatedly.
 inline std::optional<SensorRange> ConverterRange(const Eigen::VectorXd& counts) {
   constexpr std::array kFullScales = {1023.0, 4095.0, 16383.0, 65535.0};
   constexpr Eigen::Index kOften = 2;
@@ -101,7 +102,7 @@ inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadat
   recording.range.reset();
 }
 
-/// Values that a unit alone turns into SI, or counts and volts as they are.
+/// Converts values to SI by their unit. Counts and volts stay as they are.
 inline void ScaleValues(const Unit& unit, Recording& recording) {
   if (unit.ToSi(1) == 1) return;
   for (double& value : recording.value) value = unit.ToSi(value);
@@ -109,7 +110,7 @@ inline void ScaleValues(const Unit& unit, Recording& recording) {
   if (recording.range) recording.range = SensorRange{unit.ToSi(recording.range->low), unit.ToSi(recording.range->high)};
 }
 
-/// Counts or volts through their calibration. The spacing of readings is that at the middle of the data.
+/// Converts counts or volts with their calibration. The spacing of readings is that in the middle of the data.
 inline void Calibrate(const Calibration& calibration, Recording& recording) {
   const auto [low, high] = std::minmax_element(recording.value.begin(), recording.value.end());
   const double slope = calibration.Slope(*low / 2 + *high / 2);
@@ -124,7 +125,7 @@ inline void Calibrate(const Calibration& calibration, Recording& recording) {
   recording.calibration = calibration;
 }
 
-/// What a column of that name measures: a gyro's volts are a rate.
+/// The quantity that a column with this name measures: a gyro's volts are a rate.
 inline Quantity QuantityOf(const Column& column) {
   switch (column.unit->kind) {
     case Kind::kRate: return Quantity::kRate;
@@ -135,7 +136,7 @@ inline Quantity QuantityOf(const Column& column) {
   }
 }
 
-/// Both coordinates of a point are the angle about the centre of the circle it moves on.
+/// Converts both coordinates of a point to the angle about the centre of its circle.
 inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd& y, Recording& recording) {
   const Unit& unit = *vertical.unit;
   const Eigen::VectorXd height = y.unaryExpr([&](double number) { return unit.ToSi(number); });
@@ -143,14 +144,14 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
   if (!arc) return Error(arc.error().code, recording.path + ": " + arc.error().message);
   for (Eigen::Index i = 0; i < height.size(); ++i) recording.value[i] = arc->Angle(recording.value[i], height[i]);
   recording.quantity = Quantity::kAngle;
-  recording.resolution = 0;  // levels of coordinates are none of the angle
+  recording.resolution = 0;  // levels of coordinates are not levels of the angle
   recording.resolution_source.clear();
   recording.range.reset();
   recording.arc = *std::move(arc);
   return {};
 }
 
-/// Fills value, unit, quantity, resolution, range and calibration from the numbers that `value` holds.
+/// Sets value, unit, quantity, resolution, range and calibration from the numbers in `value`.
 inline void SetValues(const Column& column, const ReadOptions& options, const Metadata& metadata,
                       Recording& recording) {
   const Unit& unit = *column.unit;

@@ -35,7 +35,7 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
   }
 }
 
-/// Seconds, with the clock repaired.
+/// Converts times to seconds and repairs the clock.
 Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions& options) {
   const Layout& layout = columns.layout;
   RawSamples& samples = columns.samples;

@@ -37,26 +37,26 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr char kComplete = 'E';  // The last byte of what comes whole.
-constexpr int kNoMemory = 2;     // What a process ends with that has none left.
+constexpr char kComplete = 'E';  // The last byte of a complete answer.
+constexpr int kNoMemory = 2;     // Exit status of a process that ran out of memory.
 
 void Limit(int resource, rlim_t soft, rlim_t hard) {
   const rlimit limit{soft, hard};
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
-/// Bytes that this process has for data, which a child begins with.
+/// Bytes of data memory used by this process, which a child inherits.
 rlim_t DataInUse() {
   rlim_t pages = 0;
   std::ifstream counts("/proc/self/statm");
-  for (int field = 0; field < 6; ++field) counts >> pages;  // total, resident, shared, code, nothing, data
+  for (int field = 0; field < 6; ++field) counts >> pages;  // total, resident, shared, code, unused, data
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// ---- The child: other threads of the process are not there, and nothing of theirs may be waited for ---------------
+// ---- The child. It has none of the process's other threads and must not wait for a lock of theirs -----------------
 
-/// Handlers of the process would write to descriptors that are no longer theirs. What a terminal or a service manager
-/// sends to all is for the parent to answer, with whom the child ends.
+/// The handlers of this process would write to descriptors that the child has closed. The parent answers signals that a
+/// terminal or a service manager sends to all processes, and the child ends with it.
 void ForgetSignals() {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
@@ -65,8 +65,8 @@ void ForgetSignals() {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Closes all descriptors but this one; gives its new number, the first after those of standard input and output,
-/// which go nowhere.
+/// Closes all descriptors except this one. Returns its new number, the first after the standard ones, which are
+/// redirected to /dev/null.
 int KeepOnly(int descriptor) {
   constexpr int kFirst = STDERR_FILENO + 1;
   const int above = ::fcntl(descriptor, F_DUPFD, kFirst);
@@ -74,7 +74,7 @@ int KeepOnly(int descriptor) {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);
   if (above != kFirst) ::dup2(above, kFirst);
   if (::close_range(kFirst + 1, ~0U, 0) == 0) return kFirst;
-  const int most = static_cast<int>(::sysconf(_SC_OPEN_MAX));  // A kernel before 5.9
+  const int most = static_cast<int>(::sysconf(_SC_OPEN_MAX));  // For kernels before 5.9
   for (int other = kFirst + 1; other < most; ++other) ::close(other);
   return kFirst;
 }
@@ -87,7 +87,7 @@ int KeepOnly(int descriptor) {
   const int to = KeepOnly(descriptor);
   const auto seconds = static_cast<rlim_t>(limits.processor_seconds);
   Limit(RLIMIT_CORE, 0, 0);
-  Limit(RLIMIT_CPU, seconds, seconds + 1);  // The first tells itself by SIGXCPU, the second kills.
+  Limit(RLIMIT_CPU, seconds, seconds + 1);  // The soft limit sends SIGXCPU, the hard limit kills.
   if (kMemoryIsLimited) Limit(RLIMIT_DATA, in_use + limits.memory_bytes, in_use + limits.memory_bytes);
   try {
     if (WriteAll(to, work())) WriteAll(to, {&kComplete, 1});
@@ -101,7 +101,7 @@ int KeepOnly(int descriptor) {
 
 // ---- The parent --------------------------------------------------------------------------------------------------
 
-/// A process that is there, and this end of its pipe; it does not outlive this object.
+/// A running child process and the reading end of its pipe. The destructor ends the process.
 class Child {
  public:
   Child(pid_t process, int from) : process_(process), from_(from) {}
@@ -118,7 +118,7 @@ class Child {
 
   int from() const { return from_; }
 
-  /// How it ended, none where it has not by then.
+  /// The status with which it ended; std::nullopt if it still runs at the deadline.
   std::optional<int> WaitUntil(Clock::time_point deadline) {
     int ended = 0;
     while (::waitpid(process_, &ended, WNOHANG) == 0) {
@@ -134,7 +134,7 @@ class Child {
   int from_;
 };
 
-/// All bytes up to the end of a pipe.
+/// Reads all bytes up to the end of a pipe.
 tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_point deadline, std::size_t most) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string bytes;
@@ -144,7 +144,7 @@ tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_poin
     if (left <= 0) return tl::unexpected(ChildFailure::kOutOfTime);
     pollfd readable{descriptor, POLLIN, 0};
     const int ready = ::poll(&readable, 1, static_cast<int>(std::min<std::int64_t>(left, 1000)));
-    if (ready <= 0) continue;  // the deadline will tell
+    if (ready <= 0) continue;  // the deadline is checked again
     if (used == bytes.size()) bytes.resize(std::min(used + std::max(used, kBlock), most + 1));
     const ssize_t got = ::read(descriptor, bytes.data() + used, bytes.size() - used);
     if (got < 0 && errno == EINTR) continue;
@@ -158,7 +158,8 @@ tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_poin
 
 ChildFailure WhyEnded(std::optional<int> ended) {
   if (!ended || (WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGXCPU)) return ChildFailure::kOutOfTime;
-  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // By the kernel, which has no more.
+  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // Killed by the kernel for lack of
+                                                                              // memory.
   const bool has_no_memory = WIFEXITED(*ended) && WEXITSTATUS(*ended) == kNoMemory;
   return is_killed || has_no_memory ? ChildFailure::kOutOfMemory : ChildFailure::kCrashed;
 }

@@ -10,14 +10,14 @@
 
 namespace pendulum {
 
-/// Not under an address sanitizer, which maps all addresses that there are and keeps what is freed.
+/// False under an address sanitizer, which maps the whole address space and keeps freed memory.
 extern const bool kMemoryIsLimited;
 
-/// What a process may use.
+/// Limits for a child process.
 struct ChildLimits {
   int processor_seconds = 2;
-  std::chrono::milliseconds time{15'000};           // By the clock on the wall.
-  std::size_t memory_bytes = std::size_t{1} << 32;  // Beyond what is in use, where it is limited.
+  std::chrono::milliseconds time{15'000};           // Elapsed time.
+  std::size_t memory_bytes = std::size_t{1} << 32;  // In addition to the memory in use, if it is limited.
   std::size_t answer_bytes = std::size_t{1} << 29;
 };
 
@@ -25,13 +25,13 @@ enum class ChildFailure {
   kNotStarted,
   kCrashed,
   kOutOfTime,
-  kOutOfMemory,  // Of its own, or this process has none for the answer.
+  kOutOfMemory,  // In the child, or in this process for the answer.
   kAnswerTooLarge,
 };
 
-/// What `work` gives, done in a process of its own that may crash, hang or eat memory: libraries that read binary files
-/// of strangers do so (see MatTable). Its output goes nowhere, it has none of this process's descriptors, and it ends
-/// with the thread that waits for it. Any number of threads may ask at once.
+/// Returns the result of `work`, executed in a separate process that may crash, hang or run out of memory. Libraries
+/// that read untrusted binary files do that (see MatTable). Its output is discarded, it has none of this process's
+/// descriptors, and it ends with the thread that waits for it. Any number of threads may call this at the same time.
 tl::expected<std::string, ChildFailure> InChild(const std::function<std::string()>& work, const ChildLimits& limits);
 
 }  // namespace pendulum

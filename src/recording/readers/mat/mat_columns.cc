@@ -30,15 +30,15 @@ struct FreeVariable {
   void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
 };
 
-/// The run of variables that belong to no structure or matrix with a time of its own.
+/// The run of variables outside any structure or matrix with its own time.
 constexpr const char* kTopLevel = "top level";
 
 constexpr const char* kObject = "an object";
 
-std::string* complaint = nullptr;  // Where matio complains to; it has no other place to remember whom it speaks to.
+std::string* complaint = nullptr;  // Where matio's messages are stored. Its callback has no argument for this.
 
-/// That a file ends too early is only a warning, and numbers are wrong after it; that it holds a kind of object or text
-/// which matio does not know is one too, and says nothing of the other variables.
+/// Keeps serious messages of matio. A file that ends too early causes only a warning, although the following numbers
+/// are wrong. Warnings of unknown kinds of objects or text are ignored, because other variables are not affected.
 void TakeComplaint(int level, char* message) {
   constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
   const auto says = [&](std::string_view words) {
@@ -46,18 +46,18 @@ void TakeComplaint(int level, char* message) {
   };
   if (complaint == nullptr || (level & kSerious) == 0) return;
   if (level == MATIO_LOG_LEVEL_WARNING && (says("not a supported class") || says("for character data"))) return;
-  // HDF5's reasons come one by one, from the outermost to the first.
+  // HDF5 reports causes one by one, from the outermost to the first.
   const bool is_other_file = says("minor: Unable to open file");
   if (is_other_file || complaint->empty()) *complaint = is_other_file ? kOtherFile : message;
 }
 
-/// From here on this process opens no file.
+/// After this call the process can open no more files.
 void OpenNoMore() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_NOFILE, &none);
 }
 
-/// `t`, `time` and `tout` are times in seconds, as far as one can tell.
+/// `t`, `time` and `tout` are probably times in seconds.
 std::string MeaningOf(const std::string& name) {
   const std::string canonical = csv::CanonicalName(name);
   if (canonical == "t" || canonical == "time" || canonical == "tout") return "time_s";
@@ -81,7 +81,7 @@ std::vector<double> Doubles(const matvar_t& variable, std::size_t count) {
   return values;
 }
 
-/// All numbers of a real, full array in MATLAB's order; none of anything else.
+/// All numbers of a real, full array in MATLAB's order; empty for anything else.
 std::vector<double> NumbersOf(const matvar_t& variable) {
   const std::size_t count = CountOf(variable);
   if (variable.data == nullptr || variable.isComplex != 0 || variable.data_size <= 0) return {};
@@ -118,7 +118,7 @@ std::string KindOf(const matvar_t& variable) {
 /// Puts the variables of a file into a table.
 class Collector {
  public:
-  /// Variables that are objects are not its business.
+  /// Variables that are objects are skipped.
   Collector(MatTable& table, const std::vector<MatReference>& objects) : table_(table) {
     for (const MatReference& object : objects) {
       const bool is_within = object.place.find_first_of(".{") != std::string::npos;
@@ -127,7 +127,7 @@ class Collector {
   }
 
   void Add(const matvar_t& variable) {
-    // Of objects matio knows no name, or that of the system they belong to.
+    // matio gives no name for objects, or that of the system to which they belong.
     if (variable.name == nullptr || variable.class_type == MAT_C_OPAQUE) return;
     const std::string name = variable.name;
     if (name.empty() || objects_.contains(name)) return;
@@ -146,7 +146,8 @@ class Collector {
   }
 
  private:
-  /// A vector, or the columns (rows, where there are more columns) of a matrix. A first column that increases is time.
+  /// Adds a vector, or the columns of a matrix (its rows, if there are more columns). A first column that increases is
+  /// the time.
   void AddArray(const matvar_t& variable, const std::string& written, const std::string& meaning,
                 const std::string& run) {
     std::vector<double> numbers = NumbersOf(variable);
@@ -176,7 +177,8 @@ class Collector {
     }
   }
 
-  /// Simulink's times are in seconds: `tout`, and those of a structure with signals (AddStructure).
+  /// Whether the unit of a time is certain. Simulink's times are in seconds: `tout`, and those of a structure with
+  /// signals (AddStructure).
   static bool TellsUnit(const std::string& name, const std::string& sense) {
     const std::string canonical = csv::CanonicalName(name);
     return sense != "time_s" || (canonical != "t" && canonical != "time");
@@ -186,7 +188,7 @@ class Collector {
     return *std::max_element(variable.dims, variable.dims + variable.rank);
   }
 
-  /// The fields of a structure, and of those in it: what Simulink calls `signals` has the quantity in `values` and its
+  /// Adds the fields of a structure and of nested ones. In Simulink's `signals` the quantity is in `values` and its
   /// name in `label`.
   void AddStructure(const matvar_t& structure, const std::string& written, const std::string& meaning) {
     constexpr std::size_t kMostElements = 100, kDeepest = 6;
@@ -221,7 +223,7 @@ class Collector {
     }
   }
 
-  /// MATLAB writes letters in one byte or two; in a unit those beyond ASCII are not needed.
+  /// MATLAB writes letters in one or two bytes. A unit needs only ASCII letters.
   static std::string AsciiOf(const matvar_t& text) {
     const std::size_t count = CountOf(text);
     std::string ascii;
@@ -234,7 +236,7 @@ class Collector {
     return ascii;
   }
 
-  /// The text in the field `label` where it tells a unit, else `otherwise`.
+  /// The text in the field `label` if it contains a unit, otherwise `otherwise`.
   static std::string LabelOf(std::span<matvar_t* const> fields, const std::string& otherwise) {
     for (const matvar_t* field : fields) {
       const bool is_label = field != nullptr && field->name != nullptr && std::string_view(field->name) == "label";
@@ -251,7 +253,7 @@ class Collector {
     }
   }
 
-  /// Columns of a structure that has a time of its own are a run of theirs.
+  /// Columns of a structure with its own time form a run.
   void GroupByTime(std::size_t first, const std::string& run) {
     const std::span<MatColumn> own = std::span(table_.columns).subspan(first);
     const auto is_time = [](const MatColumn& column) {
@@ -277,7 +279,7 @@ MatTable ReadMatTable(const std::string& path, std::string_view bytes) {
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   const mat_ft version = file == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file.get());
   std::function<MatSubsystem()> in_hdf5;
-  if (version == MAT_FT_MAT73) in_hdf5 = OpenHdf5(path);  // While files may still be opened.
+  if (version == MAT_FT_MAT73) in_hdf5 = OpenHdf5(path);  // Before opening files is disabled.
   OpenNoMore();
   if (file == nullptr && (table.complaint.empty() || table.complaint == kOtherFile)) {
     table.complaint = "no MAT-file, or cut off";

@@ -8,14 +8,14 @@
 
 namespace pendulum {
 
-/// The complaint about a file whose data stand in another one.
+/// The complaint about a file whose data are in another file.
 inline constexpr std::string_view kOtherFile = "another file";
 
-/// Reads the file at this path, which has these bytes, by matio, which was written for files of friends: it and the
-/// HDF5 library below it crash on some that are damaged, so this is called in a process of its own. Both are for one
-/// thread. A file of version 7.3 may say that its data stand in any other file, which HDF5 would open and read, or wait
-/// for where it is a pipe: so once this one is open, the process opens no more, ever. Objects, which matio does not
-/// know, are taken apart here (mat_timeseries.h).
+/// Reads the file at this path, which contains these bytes, with matio. matio and the HDF5 library were written for
+/// trusted files and crash on some damaged ones, so this must run in a separate process. Both support only one thread.
+/// A file of version 7.3 may refer to data in any other file. HDF5 would open and read that file, or block if it is a
+/// pipe. Therefore this process can open no other file once the given one is open. Objects, which matio does not
+/// support, are decoded here (mat_timeseries.h).
 MatTable ReadMatTable(const std::string& path, std::string_view bytes);
 
 }  // namespace pendulum

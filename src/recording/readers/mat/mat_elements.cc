@@ -35,7 +35,7 @@ std::vector<double> Doubles(std::string_view bytes, bool is_swapped) {
   return numbers;
 }
 
-/// Whatever the class of a matrix, its numbers may stand in a smaller type.
+/// The numbers of a matrix may be stored in a smaller type than its class.
 std::vector<double> NumbersIn(const MatElement& element, bool is_swapped) {
   switch (element.type) {
     case kInt8: return Doubles<std::int8_t>(element.bytes, is_swapped);
@@ -58,7 +58,7 @@ struct EndUnpacking {
   void operator()(z_stream* stream) const { inflateEnd(stream); }
 };
 
-/// Letters of a name, whose type differs from version to version.
+/// Letters of a name; their type depends on the version.
 std::optional<std::string_view> TakeLetters(MatElements& elements) {
   const std::optional<MatElement> element = elements.Next();
   if (!element || (element->type != kInt8 && element->type != kUint8 && element->type != kUtf8)) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<std::string_view> TakeLetters(MatElements& elements) {
 
 MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth);
 
-/// The matrices within one, `count` of them; false where there are not so many or something is left.
+/// Reads the `count` matrices inside another one. Returns false if there are fewer or if data remain.
 bool TakeParts(MatElements& contents, std::size_t count, bool with_numbers, int depth, MatValue& value) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::optional<std::string_view> part = contents.Next(kMatrixElement);
@@ -100,7 +100,7 @@ bool TakeNumbers(MatMatrix& matrix, MatValue& value) {
   return value.numbers.size() == *count;
 }
 
-/// MATLAB writes letters in one byte or two.
+/// MATLAB writes letters in one or two bytes.
 bool TakeText(MatMatrix& matrix, MatValue& value) {
   const std::optional<MatElement> element = matrix.contents.Next();
   if (!element) return false;
@@ -108,7 +108,7 @@ bool TakeText(MatMatrix& matrix, MatValue& value) {
   return true;
 }
 
-/// Which objects an opaque matrix refers to stands in a matrix of its own.
+/// A separate matrix contains the references of an opaque matrix to its objects.
 bool TakeObject(MatMatrix& matrix, MatValue& value) {
   value.text = matrix.class_name;
   const std::optional<std::string_view> part = matrix.contents.Next(kMatrixElement);
@@ -151,7 +151,7 @@ std::optional<MatElement> MatElements::Next() {
   if (IsAtEnd() || bytes_.size() - at_ < kTag) return std::nullopt;
   const std::string_view rest = bytes_.substr(at_);
   const auto type = NumberAt<std::uint32_t>(rest.data(), is_swapped_);
-  if (const std::size_t small = type >> 16; small > 0) {  // Of up to four bytes size and type are one word.
+  if (const std::size_t small = type >> 16; small > 0) {  // Up to four bytes: size and type share a word.
     if (small > kWord) return std::nullopt;
     at_ += kTag;
     return MatElement{type & 0xFFFF, rest.substr(kWord, small)};
@@ -230,7 +230,7 @@ std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
   z_stream stream{};
   if (packed.size() > UINT32_MAX || inflateInit(&stream) != Z_OK) return std::nullopt;
   const std::unique_ptr<z_stream, EndUnpacking> end(&stream);
-  // zlib's letters are unsigned, and it does not write to what it reads.
+  // zlib uses unsigned bytes and does not write to its input.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT
   stream.avail_in = static_cast<uInt>(packed.size());
   int state = Z_OK;

@@ -17,7 +17,7 @@ namespace {
 
 using Kind = MatValue::Kind;
 
-/// Something of HDF5's that is open.
+/// An open object of HDF5.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -37,7 +37,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// What cannot be read here says nothing of the file's other variables, so matio, which listens, is not told.
+/// Turns off HDF5's error messages. matio listens to them, and errors here do not affect the file's other variables.
 class Silence {
  public:
   Silence() {
@@ -55,7 +55,7 @@ class Silence {
   void* listener_ = nullptr;
 };
 
-/// The text in an attribute, empty where there is none.
+/// The text in an attribute; empty if there is none.
 std::string TextIn(hid_t object, const char* name) {
   constexpr std::size_t kMost = 256;
   if (H5Aexists(object, name) <= 0) return "";
@@ -71,7 +71,7 @@ std::string TextIn(hid_t object, const char* name) {
   return text.substr(0, text.find('\0'));
 }
 
-/// The whole number in an attribute, 0 where there is none.
+/// The whole number in an attribute; 0 if there is none.
 int NumberIn(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return 0;
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
@@ -83,7 +83,7 @@ int NumberIn(hid_t object, const char* name) {
   return H5Aread(attribute.id(), H5T_NATIVE_INT, &number) < 0 ? 0 : number;
 }
 
-/// The chunks that a dataset is made of when all are there; 0 where it is not made of chunks.
+/// The number of chunks of a complete dataset; 0 if it has no chunks.
 hsize_t ChunksOf(hid_t dataset) {
   constexpr int kMostSizes = H5S_MAX_RANK;
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
@@ -100,7 +100,7 @@ hsize_t ChunksOf(hid_t dataset) {
   return chunks;
 }
 
-/// What was never written HDF5 would read as zeros.
+/// HDF5 would read data that were never written as zeros.
 bool IsWritten(hid_t dataset) {
   hsize_t written = 0;
   if (const hsize_t chunks = ChunksOf(dataset); chunks > 0) {
@@ -111,7 +111,7 @@ bool IsWritten(hid_t dataset) {
   return H5Dget_space_status(dataset, &status) >= 0 && status == H5D_SPACE_STATUS_ALLOCATED;
 }
 
-/// A dataset, whose sizes HDF5 has in the order that is not MATLAB's.
+/// A dataset. HDF5 stores its sizes in the reverse of MATLAB's order.
 struct Dataset {
   explicit Dataset(hid_t dataset) : id(dataset) {
     constexpr int kMostSizes = 32;
@@ -128,7 +128,7 @@ struct Dataset {
     count = CountIn(sizes).value_or(0);
   }
 
-  /// All of it; none where there is nothing or it cannot be read.
+  /// All values; empty if there are none or they cannot be read.
   template <typename T>
   std::vector<T> Read(hid_t type) const {
     if (count == 0 || !IsWritten(id)) return {};
@@ -139,7 +139,7 @@ struct Dataset {
 
   bool HasNumbers() const { return kind == H5T_INTEGER || kind == H5T_FLOAT; }
 
-  /// Whether the numbers are of this type in the file, byte by byte: HDF5 checks none of what it is told.
+  /// Whether the numbers in the file have exactly this type. HDF5 does not check the type it is given.
   bool HasType(hid_t type) const {
     const Handle own(H5Dget_type(id), H5Tclose);
     return own && H5Tequal(own.id(), type) > 0;
@@ -156,17 +156,17 @@ herr_t TakeName(hid_t, const char* name, const H5L_info_t* info, void* names) {
   return 0;
 }
 
-/// What is in a group, not what it only points to.
+/// The members of a group, without links to other places.
 std::vector<std::string> NamesIn(hid_t group) {
   std::vector<std::string> names;
   H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, TakeName, &names);
   return names;
 }
 
-/// Reads values, of which one may be in another, and in itself where the file is damaged.
+/// Reads values, which may be nested and, in a damaged file, contain themselves.
 class Reader {
  public:
-  /// Without `with_numbers` only what leads to objects is looked at.
+  /// Without `with_numbers` only parts that lead to objects are read.
   Reader(hid_t file, bool with_numbers) : file_(file), with_numbers_(with_numbers) {}
 
   MatValue ValueAt(hobj_ref_t reference) {
@@ -190,8 +190,8 @@ class Reader {
     return value;
   }
 
-  /// The type that MATLAB writes a class of numbers in, on all machines that it has been running on since there are
-  /// these objects; negative for other classes.
+  /// The type in which MATLAB writes numbers of a class on every machine that supports these objects; negative for
+  /// other classes.
   static hid_t TypeOf(const std::string& name) {
     const std::array<std::pair<std::string_view, hid_t>, 12> types = {{{"double", H5T_IEEE_F64LE},
                                                                        {"single", H5T_IEEE_F32LE},
@@ -229,7 +229,7 @@ class Reader {
     return value;
   }
 
-  /// What is empty has its sizes as numbers.
+  /// An empty array stores its sizes as numbers.
   static bool TakeEmpty(const Dataset& dataset, MatValue& value) {
     if (!dataset.HasNumbers()) return false;
     const std::vector<std::uint64_t> sizes = dataset.Read<std::uint64_t>(H5T_NATIVE_UINT64);
@@ -255,7 +255,7 @@ class Reader {
     return value.text.size() == dataset.count;
   }
 
-  /// A structure of one element; of others the fields hold references without a class.
+  /// A structure of one element. In structures of several elements the fields contain references without a class.
   MatValue OfGroup(hid_t group) {
     MatValue value;
     if (KindOf(TextIn(group, "MATLAB_class")) != Kind::kStructure) return value;

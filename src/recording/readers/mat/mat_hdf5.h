@@ -8,8 +8,8 @@
 
 namespace pendulum {
 
-/// Opens the file of version 7.3 at this path at once, if it is one; the function then finds its objects, in HDF5's
-/// groups and datasets. It never fails, but gives what is whole; HDF5 itself may crash.
+/// Opens the file at this path immediately if it is of version 7.3. The returned function finds its objects in HDF5's
+/// groups and datasets. It never fails but returns the undamaged part; HDF5 itself may crash.
 std::function<MatSubsystem()> OpenHdf5(const std::string& path);
 
 }  // namespace pendulum

@@ -58,8 +58,8 @@ Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& nam
   return {};
 }
 
-/// The variables of version 5 follow each other, each with its size before it: matio itself does not say when the last
-/// one is cut off.
+/// In version 5 each variable is preceded by its size. These sizes are checked here, because matio does not report that
+/// the last variable is cut off.
 Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kOrderAt = 126;
   if (bytes.size() > 4 * kHeaderBytes && bytes.substr(4 * kHeaderBytes).starts_with("\x89HDF")) return {};
@@ -79,7 +79,8 @@ Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   return {};
 }
 
-/// A file that matio can open: it reads no memory, and HDF5 follows the links of /proc, so it must be a real one.
+/// A temporary file for matio, which cannot read from memory. It must be a real file, because HDF5 follows the links of
+/// /proc.
 class TemporaryFile {
  public:
   explicit TemporaryFile(std::string_view bytes) {
@@ -99,7 +100,7 @@ class TemporaryFile {
     if (exists_) ::unlink(path_.c_str());
   }
 
-  int error() const { return error_; }  // The errno of what went wrong, or 0.
+  int error() const { return error_; }  // The errno of a failure, or 0.
   const std::string& path() const { return path_; }
 
  private:
@@ -108,19 +109,19 @@ class TemporaryFile {
   int error_ = 0;
 };
 
-/// A second is enough for a hundred megabytes, and for ever is what some damaged files take. Until numbers of the file
-/// are an answer, there are several copies of them.
+/// A second is enough for a hundred megabytes, but some damaged files would take forever. Several copies of the numbers
+/// exist until the answer is complete.
 ChildLimits LimitsFor(std::size_t bytes, std::size_t most_unpacked) {
   constexpr std::size_t kCopies = 8, kLeast = std::size_t{1} << 26;
   ChildLimits limits;
   limits.answer_bytes = most_unpacked;
   limits.memory_bytes = std::min(limits.memory_bytes, kLeast + kCopies * std::max(most_unpacked, bytes));
   limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
-  limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Others use the processors too.
+  limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Other processes also use the processors.
   return limits;
 }
 
-/// Why matio gave no table, and what to do.
+/// Why matio returned no table, and what to do.
 tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, const std::string& name) {
   constexpr std::string_view kLess = "; save only the times and the angles, or export them as CSV";
   const std::string less(kLess);
@@ -162,13 +163,13 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
-/// Of numbers, but not a vector of them, or an object, which may have some.
+/// True for numbers that are not a vector, or for an object, which may contain some.
 bool MayHoldTheQuantity(const SkippedVariable& variable) {
   const std::array kinds = {"a cell array", "complex", "sparse"};
   return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
 }
 
-/// The variable that says why there is no column of angles; nullptr where the columns are to say it themselves.
+/// The variable that explains why there is no column of angles; nullptr if the columns themselves give the error.
 const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                                       const ReadOptions& options) {
   const std::vector<SkippedVariable>& all = table.skipped;
@@ -185,12 +186,12 @@ const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<c
   };
   if (const SkippedVariable* const named = first(tells_unit); named != nullptr) return named;
   const bool is_other = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
-  if (is_other && !options.unit.empty()) return nullptr;  // the only one may be it
+  if (is_other && !options.unit.empty()) return nullptr;  // the only other column may be the quantity
   if (const SkippedVariable* const object = first(&SkippedVariable::is_object); object != nullptr) return object;
   return is_other || columns.empty() ? nullptr : first(MayHoldTheQuantity);
 }
 
-/// What there is instead of a column of angles.
+/// Reports what the file contains instead of a column of angles.
 Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                             const std::string& name, const ReadOptions& options) {
   const SkippedVariable* const skipped = WhatIsNoColumn(table, columns, options);
@@ -215,7 +216,7 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
                          "; save the times as t and the angles as angle_deg");
 }
 
-/// The numbers of the columns that were chosen, without rows in which one of them is none.
+/// The numbers of the chosen columns, without rows in which one of them is NaN.
 Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, const std::string& name) {
   const std::vector<double>& value = table.columns[layout.value.index].values;
   const std::vector<double>& time = layout.time ? table.columns[layout.time->index].values : value;
@@ -269,7 +270,8 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
   for (const MatColumn& column : table.columns) columns.push_back(column.name);
   const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
   const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
-  if (time < columns.size() && !table.columns[time].is_unit_told) columns[time].meaning = "time";  // the user may say
+  if (time < columns.size() && !table.columns[time].is_unit_told)
+    columns[time].meaning = "time";  // the user may give the unit
   if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
   const auto names = csv::NamesOf(line, columns, options);
   if (!names) return tl::unexpected(names.error());

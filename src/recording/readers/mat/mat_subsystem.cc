@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kMatHeaderBytes = 128, kMatOrderBytes = 2;
 
-/// That of a file or of its subsystem, by the letters that tell it; none where there are others.
+/// Whether numbers of a file or of its subsystem are byte-swapped, from its two letters; std::nullopt for other
+/// letters.
 std::optional<bool> IsSwapped(std::string_view order) {
   constexpr bool kIsLittle = std::endian::native == std::endian::little;
   if (order == "IM") return !kIsLittle;
@@ -23,7 +24,7 @@ std::optional<bool> IsSwapped(std::string_view order) {
   return std::nullopt;
 }
 
-/// Where the subsystem begins, 0 where there is none; blanks stand for none, too.
+/// The position of the subsystem; 0 if there is none. Blanks also mean none.
 std::size_t PlaceOfSubsystem(std::string_view bytes, bool is_swapped) {
   constexpr std::size_t kPlaceAt = 116, kPlaceBytes = 8;
   const auto words = WordsOf(bytes.substr(kPlaceAt, kPlaceBytes), is_swapped);
@@ -33,8 +34,8 @@ std::size_t PlaceOfSubsystem(std::string_view bytes, bool is_swapped) {
   return is_little ? second << 32 | first : first << 32 | second;
 }
 
-/// The bytes of the matrix that an element at top level is, unpacked into `room` where it is packed. Without `all`
-/// numbers, which nothing can be within, are not unpacked.
+/// The bytes of the matrix in an element at top level, unpacked into `room` if it is compressed. Without `all`,
+/// matrices of numbers, which cannot contain anything, are not unpacked.
 std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bool all, std::string& room) {
   constexpr std::size_t kHead = 1024, kTag = 8, kMost = std::size_t{1} << 33;
   if (element.type == kMatrixElement) return OpenMatrix(element.bytes, is_swapped);
@@ -51,14 +52,14 @@ std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bo
   return matrix ? OpenMatrix(*matrix, is_swapped) : std::nullopt;
 }
 
-/// The subsystem's own bytes, which a matrix of bytes holds, and where the cells are in them.
+/// The subsystem's own bytes, stored in a matrix of bytes, and the positions of the cells in them.
 struct Cells {
   std::string bytes;
   std::vector<std::string_view> cells;
   bool is_swapped = false;
 };
 
-/// The cells: in a structure's field MCOS an opaque one, which holds an array of cells.
+/// Finds the cells: the field MCOS of a structure is an opaque matrix that contains an array of cells.
 bool FindCells(Cells& found) {
   constexpr std::size_t kOrderAt = 2, kHead = 8;
   const std::string_view bytes = found.bytes;
@@ -97,7 +98,7 @@ void TakeSubsystem(const MatElement& element, bool is_swapped, MatSubsystem& sub
   auto matrix = MatrixIn(element, is_swapped, true, room);
   const auto bytes = matrix && matrix->kind == kUint8Class ? matrix->contents.Next() : std::nullopt;
   if (!bytes) return;
-  const auto found = std::make_shared<Cells>();  // Which a function that may be copied holds.
+  const auto found = std::make_shared<Cells>();  // Shared by copies of the function.
   found->bytes = bytes->bytes;
   if (!FindCells(*found)) return;
   subsystem.objects = TableIn(*found);

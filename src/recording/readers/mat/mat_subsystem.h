@@ -13,17 +13,17 @@
 
 namespace pendulum {
 
-/// The objects of a MAT-file, whose variables only refer to them: all are in a part of the file of its own.
+/// The objects of a MAT-file. Its variables only refer to them; the objects are in a separate part of the file.
 struct MatSubsystem {
-  std::size_t variables = SIZE_MAX;      // Those before the objects, which are last as MATLAB writes it: matio cannot
-                                         // always unpack what comes then.
-  std::vector<MatReference> references;  // From its variables.
-  std::optional<Mcos> objects;           // None: there are none, or damage.
-  std::size_t cells = 0;                 // Number of values of properties and the like.
-  std::function<MatValue(std::size_t)> cell;  // One of them; kOther where it is damaged.
+  std::size_t variables = SIZE_MAX;           // Number before the objects. MATLAB writes objects last, and matio cannot
+                                              // always unpack them.
+  std::vector<MatReference> references;       // From its variables.
+  std::optional<Mcos> objects;                // std::nullopt: no objects, or damage.
+  std::size_t cells = 0;                      // Number of cells with values of properties and others.
+  std::function<MatValue(std::size_t)> cell;  // Returns one of them; kOther if it is damaged.
 };
 
-/// From the bytes of a file of version 5, which MATLAB calls 6 and 7. Never fails: it gives what is whole.
+/// From the bytes of a file of version 5, which MATLAB calls 6 and 7. Never fails: returns the undamaged part.
 MatSubsystem SubsystemOf(std::string_view bytes);
 
 }  // namespace pendulum

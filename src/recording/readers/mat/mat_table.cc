@@ -22,7 +22,7 @@ void PutText(const std::string& text, std::string& bytes) {
   bytes += text;
 }
 
-/// Takes things off the front of bytes; zeros where there are no more.
+/// Removes values from the front of bytes; returns zeros after the end.
 class Taker {
  public:
   explicit Taker(std::string_view bytes) : bytes_(bytes) {}

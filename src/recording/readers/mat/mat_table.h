@@ -10,30 +10,30 @@
 
 namespace pendulum {
 
-/// Of one matrix: with more it is none of readings.
+/// Limit for one matrix; with more columns it is not a matrix of readings.
 inline constexpr std::size_t kMostMatColumns = 100;
 
-/// A column of numbers in a MAT-file, and what it is called there.
+/// A column of numbers in a MAT-file and its name there.
 struct MatColumn {
   csv::TableColumn name;
   std::vector<double> values;
-  bool is_unit_told = true;  // That of a time.
+  bool is_unit_told = true;  // For a time: its unit is certain.
 };
 
-/// A variable that holds no columns, and what it is.
+/// A variable without columns, and its kind.
 struct SkippedVariable {
   std::string name, kind;
-  bool is_object = false;  // Whose numbers MATLAB can save.
+  bool is_object = false;  // MATLAB can save its numbers.
 };
 
-/// What a MAT-file holds that may be a recording.
+/// The contents of a MAT-file that may be a recording.
 struct MatTable {
   std::vector<MatColumn> columns;
   std::vector<SkippedVariable> skipped;
-  std::string complaint;  // Of matio; what it complains of cannot be trusted.
+  std::string complaint;  // From matio; the data it complains about cannot be trusted.
 };
 
-/// The table as bytes, for the way between processes, and back.
+/// Converts the table to bytes, to send it between processes, and back.
 std::string Pack(const MatTable& table);
 MatTable UnpackMatTable(std::string_view bytes);
 

@@ -23,20 +23,20 @@ using Kind = MatValue::Kind;
 constexpr std::string_view kTimeseries = "timeseries", kTimeClass = "tsdata.timemetadata",
                            kDataClass = "tsdata.datametadata";
 
-/// What a timeseries is that cannot be read, after "is".
+/// Why a timeseries cannot be read; follows "is" in a message.
 using Refusal = tl::unexpected<std::string>;
 template <typename T>
 using Readable = tl::expected<T, std::string>;
 
 Refusal Unknown() { return Refusal("a timeseries that is damaged, or from a version of MATLAB that is not known"); }
 
-/// Values of properties of a file's objects.
+/// Values of the properties of a file's objects.
 class Properties {
  public:
   explicit Properties(const MatSubsystem& subsystem)
       : subsystem_(subsystem), objects_(*subsystem.objects), defaults_(subsystem.cell(subsystem.cells - 1)) {}
 
-  /// The object's own, else its class's default; none where that is not kept either.
+  /// The object's own value, otherwise its class's default; std::nullopt if neither is stored.
   std::optional<MatValue> Of(std::size_t object, std::string_view name) const {
     if (const McosProperty* const own = objects_.Find(object, name); own != nullptr) return ValueOf(*own);
     const std::size_t class_id = objects_.ClassOf(object);
@@ -45,7 +45,7 @@ class Properties {
     return value == nullptr ? std::nullopt : std::optional(*value);
   }
 
-  /// The one object of this class that a property is; none where it is something else.
+  /// The single object of this class that a property refers to; std::nullopt if it is anything else.
   std::optional<std::size_t> ObjectIn(std::size_t object, std::string_view name, std::string_view class_name) const {
     const std::optional<MatValue> value = Of(object, name);
     const std::optional<MatObjects> found = value ? ObjectsOf(*value) : std::nullopt;
@@ -78,7 +78,7 @@ class Properties {
 
 // ---- The times ---------------------------------------------------------------------------------------------------
 
-/// A unit of time of a timeseries: what a column in it says, after its numbers were multiplied.
+/// A unit of time of a timeseries: the name of a column in this unit after its numbers were scaled.
 struct TimeUnit {
   std::string_view name, meaning;
   double factor = 1, divisor = 1;
@@ -91,7 +91,8 @@ constexpr std::array kTimeUnits = {
     TimeUnit{"days", "time_s", 86'400},  TimeUnit{"weeks", "time_s", 604'800},
 };
 
-/// That of an object tsdata.timemetadata; seconds are the default of the class itself, and likely where it was emptied.
+/// The unit of a tsdata.timemetadata object. Seconds are the default of the class, and are assumed if the unit is
+/// empty.
 Readable<TimeUnit> TimeUnitOf(const Properties& properties, std::size_t info) {
   const std::optional<MatValue> units = properties.Of(info, "Units");
   if (!units) return kTimeUnits.front();
@@ -102,14 +103,14 @@ Readable<TimeUnit> TimeUnitOf(const Properties& properties, std::size_t info) {
   return Refusal("a timeseries whose unit of time (" + units->text.substr(0, 32) + ") is not known");
 }
 
-/// A property that is one number, if it is.
+/// A property that is a single number; std::nullopt otherwise.
 std::optional<double> NumberIn(const Properties& properties, std::size_t object, std::string_view name) {
   const std::optional<MatValue> value = properties.Of(object, name);
   if (!value || value->kind != Kind::kNumbers || value->numbers.size() != 1) return std::nullopt;
   return value->numbers.front();
 }
 
-/// Times that are listed; none where there are none.
+/// Explicitly listed times; empty if there are none.
 Readable<std::vector<double>> ListIn(const Properties& properties, std::size_t object) {
   const std::optional<MatValue> list = properties.Of(object, "Time_");
   if (!list || list->IsEmpty()) return std::vector<double>();
@@ -117,7 +118,7 @@ Readable<std::vector<double>> ListIn(const Properties& properties, std::size_t o
   return list->numbers;
 }
 
-/// The times in the order of the rows, at most `most`: listed in the object itself or in its TimeInfo, or uniform.
+/// The times in row order, at most `most`: listed in the object itself or in its TimeInfo, or uniform.
 Readable<std::vector<double>> TimesOf(const Properties& properties, std::size_t object, std::size_t info,
                                       std::size_t most) {
   const Readable<std::vector<double>> own = ListIn(properties, object), list = ListIn(properties, info);
@@ -139,7 +140,7 @@ Readable<std::vector<double>> TimesOf(const Properties& properties, std::size_t 
 
 // ---- The values --------------------------------------------------------------------------------------------------
 
-/// As a header would have the unit that a timeseries tells; empty where it tells none.
+/// The unit of a timeseries in the form of a header; empty if it has none.
 std::string UnitIn(const Properties& properties, std::size_t object) {
   const auto info = properties.ObjectIn(object, "DataInfo", kDataClass);
   const std::optional<MatValue> units = info ? properties.Of(*info, "Units") : std::nullopt;
@@ -150,16 +151,16 @@ std::string UnitIn(const Properties& properties, std::size_t object) {
   return text;
 }
 
-/// Of a name with places, `run.angle_deg(2)`, what its last part says: angle_deg.
+/// The last part of a name with indices: angle_deg for `run.angle_deg(2)`.
 std::string LastPart(std::string name) {
   while (name.ends_with(')') || name.ends_with('}')) name.resize(std::min(name.find_last_of("({"), name.size() - 1));
   return name.substr(name.rfind('.') + 1);
 }
 
-/// How the numbers of the columns are spread over the array: time is its last dimension where there are three or more,
-/// else the one that is as long, the first if both are.
+/// How columns are laid out in the array. With three or more dimensions time is the last one. Otherwise it is the
+/// dimension of the same length, the first if both match.
 struct Spread {
-  std::size_t columns = 1, step = 1, next = 1;  // From row to row, from column to column.
+  std::size_t columns = 1, step = 1, next = 1;  // step: from row to row, next: from column to column.
   bool is_first = true;
 };
 
@@ -172,7 +173,7 @@ std::optional<Spread> SpreadOf(const std::vector<std::size_t>& sizes, std::size_
   return Spread{columns, columns, 1, false};
 }
 
-/// As MATLAB writes it: Data, Data(:,2), or Data(2,1,:) where time is the last dimension.
+/// In MATLAB's notation: Data, Data(:,2), or Data(2,1,:) if time is the last dimension.
 std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes, std::size_t column) {
   if (spread.columns == 1) return "Data";
   if (spread.is_first) return "Data(:," + std::to_string(column + 1) + ")";
@@ -184,7 +185,7 @@ std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes,
   return "Data(" + places + ":)";
 }
 
-/// The columns of one object, the time first.
+/// The columns of one object, starting with the time.
 Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::size_t object, const std::string& name,
                                            const std::string& meaning) {
   const std::optional<MatValue> storage = properties.Of(object, "Storage_");
@@ -221,7 +222,7 @@ class Adder {
     for (const MatColumn& column : table.columns) names_.insert({column.name.run, column.name.written});
   }
 
-  /// True where there is one.
+  /// Returns true if there is at least one.
   bool Run() {
     constexpr std::size_t kMost = 1000;
     const Mcos& objects = properties_.objects();
@@ -255,7 +256,7 @@ class Adder {
     std::ranges::move(*columns, std::back_inserter(table_.columns));
   }
 
-  /// A name that no other has, nor a run or column of other variables.
+  /// A name different from all others, and from runs and columns of other variables.
   std::string Unique(const std::string& name) {
     if (!name.empty() && names_.insert(name).second) return name;
     for (std::size_t number = count_;; ++number) {
@@ -280,7 +281,7 @@ void AddTimeseries(const MatSubsystem& subsystem, MatTable& table) {
     const bool is_timeseries = class_name == kTimeseries;
     const bool is_known =
         is_readable && subsystem.objects->ClassName(subsystem.objects->ClassOf(object)) == kTimeseries;
-    if (is_timeseries ? is_known : has_some) continue;  // what other objects hold is there, too
+    if (is_timeseries ? is_known : has_some) continue;  // other objects contain these
     table.skipped.push_back({place, is_timeseries ? Unknown().value() : "an object of class " + class_name, true});
   }
 }

@@ -6,11 +6,12 @@
 
 namespace pendulum {
 
-/// Adds the objects of class timeseries (R2010b and later), each a run of columns: `ts.Time`, whose unit it tells,
-/// `ts.Data` or `ts.Data(:,1)` and so on, in the unit that it tells, if any, else that of its name. That is where a
-/// variable refers to it, or its property Name, or `timeseries 2`. What cannot be read is skipped and says why, and so
-/// are variables of other classes where there is no timeseries. The properties are those that the class itself
-/// declares; this is not yet proved on a file of MATLAB's own.
+/// Adds the objects of class timeseries (R2010b and later), each as a run of columns. `ts.Time` has the unit stored in
+/// the object. `ts.Data`, or `ts.Data(:,1)` and so on, has the unit stored in the object or, if there is none, that in
+/// its name. The name is the place where a variable refers to the object, or its property Name, or `timeseries 2`.
+/// Objects that cannot be read are skipped with a reason, and so are variables of other classes if there is no
+/// timeseries. The properties are those that the class itself declares. This has not yet been verified with a file
+/// written by MATLAB.
 void AddTimeseries(const MatSubsystem& subsystem, MatTable& table);
 
 }  // namespace pendulum

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-/// Values of MATLAB's as objects are made of them, whichever way the file keeps them.
+/// MATLAB values that occur in objects, independent of the file version.
 namespace pendulum {
 
 /// One array.
@@ -17,9 +17,9 @@ struct MatValue {
     kNumbers,    // Real and full.
     kText,       // In ASCII, with ? for other letters.
     kCells,      // `parts` are the cells.
-    kStructure,  // `parts` are the fields of each element after those of the one before.
-    kObject,     // `text` is the class, `numbers` tell which (ObjectsOf).
-    kOther,      // What is not needed, or damaged.
+    kStructure,  // `parts` are the fields, element by element.
+    kObject,     // `text` is the class, `numbers` identify it (ObjectsOf).
+    kOther,      // Not needed, or damaged.
   };
   Kind kind = Kind::kOther;
   std::vector<std::size_t> sizes;  // In MATLAB's order.
@@ -28,38 +28,38 @@ struct MatValue {
   std::vector<std::string> names;  // Of fields.
   std::vector<MatValue> parts;
 
-  /// That there is nothing in it, as far as one can tell.
+  /// Whether it is known to be empty.
   bool IsEmpty() const;
-  /// The field of a structure of one element, else nullptr.
+  /// The field of a structure of one element, otherwise nullptr.
   const MatValue* Field(std::string_view name) const;
 };
 
-/// How deep values may be within each other.
+/// Maximum nesting depth of values.
 inline constexpr int kDeepestValue = 16;
 
-/// A letter as MATLAB numbers it, in ASCII, with ? for others.
+/// The ASCII letter for MATLAB's code; ? for others.
 char AsciiLetter(double letter);
 
-/// Elements of an array of these sizes; none where there cannot be so many.
+/// Number of elements of an array with these sizes; std::nullopt if it is impossibly large.
 std::optional<std::size_t> CountIn(const std::vector<std::size_t>& sizes);
 
-/// The objects, numbered from 1 on in their file, that stand in the place of a value, and their class.
+/// The objects that replace a value, numbered from 1 in their file, and their class.
 struct MatObjects {
   std::vector<std::size_t> objects;
   std::size_t class_id = 0;
 };
 
-/// What a column 0xDD000000, number of sizes, sizes, objects, class refers to; none where it is not one.
+/// Decodes a column 0xDD000000, number of sizes, sizes, objects, class; std::nullopt if it is not one.
 std::optional<MatObjects> ObjectsOf(const MatValue& value);
 
-/// A place in a file's variables where an object stands.
+/// A place in a file's variables that refers to an object.
 struct MatReference {
-  std::string place;  // As MATLAB writes it: `run.angle`, `runs(2)`, `logs{1}`.
+  std::string place;  // In MATLAB's notation: `run.angle`, `runs(2)`, `logs{1}`.
   std::string class_name;
-  std::size_t object = 0;  // 0: not to be told.
+  std::size_t object = 0;  // 0: unknown.
 };
 
-/// Adds the objects in a variable of this name, at most a hundred thousand.
+/// Adds the objects in a variable with this name, at most a hundred thousand.
 void AddReferences(const MatValue& value, const std::string& name, std::vector<MatReference>& references);
 
 }  // namespace pendulum

@@ -16,7 +16,7 @@ namespace {
 
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// As MATLAB names variables, up to the zero at its end.
+/// Whether this is a MATLAB variable name with a final zero.
 bool IsName(std::string_view name) {
   if (name.size() < 2 || name.back() != '\0' || !IsLetter(name.front())) return false;
   name.remove_suffix(1);
@@ -26,7 +26,7 @@ bool IsName(std::string_view name) {
 std::optional<std::size_t> SizeInOrder(std::string_view bytes, bool is_little) {
   constexpr std::size_t kHeader = 20, kLongestName = 64;
   constexpr std::uint32_t kBigType = 1000, kPrecisions = 10, kKinds = 3;
-  constexpr std::array<std::size_t, 6> kNumberBytes = {8, 4, 4, 2, 2, 1};  // By the tens of the type.
+  constexpr std::array<std::size_t, 6> kNumberBytes = {8, 4, 4, 2, 2, 1};  // Indexed by the tens of the type.
   const bool is_swapped = is_little != (std::endian::native == std::endian::little);
   const auto words = bytes.size() < kHeader ? std::nullopt : WordsOf(bytes.substr(0, kHeader), is_swapped);
   if (!words) return std::nullopt;

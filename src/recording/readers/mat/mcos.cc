@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMcosWord = sizeof(std::uint32_t);
 constexpr std::size_t kMcosHeaderWords = 10;  // Version, number of names, eight offsets.
-constexpr std::size_t kFirstCell = 2;         // After the table and an empty one.
+constexpr std::size_t kFirstCell = 2;         // After the table and an empty cell.
 
 std::optional<std::vector<std::uint32_t>> WordsBetween(std::string_view bytes, std::size_t begin, std::size_t end,
                                                        bool is_swapped) {
@@ -98,7 +98,7 @@ bool Mcos::TakeProperties(const Words& words, std::size_t end_of_cells, std::vec
       if ((is_cell && value >= end_of_cells - kFirstCell) || (is_name && value >= names_.size())) return false;
       block.push_back({name, static_cast<McosProperty::Kind>(kind), is_cell ? value + kFirstCell : value});
     }
-    at += at % 2;  // Blocks are of eight bytes each.
+    at += at % 2;  // Blocks are aligned to eight bytes.
   }
   return true;
 }

@@ -8,30 +8,30 @@
 #include <string_view>
 #include <vector>
 
-/// The table of objects that a MAT-file of MATLAB's keeps in its subsystem. The MathWorks do not describe it; what is
-/// known comes from files, so whatever does not fit makes the whole table unreadable.
+/// The table of objects that MATLAB stores in the subsystem of a MAT-file. The MathWorks do not document it, and the
+/// known structure was derived from files. Therefore any inconsistency makes the whole table unreadable.
 namespace pendulum {
 
-/// A property that was not left at its default.
+/// A property that differs from its default.
 struct McosProperty {
   enum class Kind { kEnumeration = 0, kCell = 1, kNumber = 2 };
   std::size_t name = 0;
   Kind kind = Kind::kCell;
-  std::size_t value = 0;  // kCell: the place among all cells, kEnumeration: a name, kNumber: that.
+  std::size_t value = 0;  // kCell: index among all cells; kEnumeration: a name; kNumber: the value itself.
 };
 
-/// The table in cell 0. Names, classes and objects are numbered from 1 on; 0 is none.
+/// The table in cell 0. Names, classes and objects are numbered from 1; 0 means none.
 class Mcos {
  public:
-  /// `cells` is the number of cells beside which the table stands. None where it contradicts itself.
+  /// `cells` is the number of cells including the table. std::nullopt if it is inconsistent.
   static std::optional<Mcos> Read(std::string_view bytes, std::size_t cells);
 
-  std::size_t classes() const { return classes_.size(); }  // One more than there are.
-  std::size_t objects() const { return objects_.size(); }  // One more than there are.
-  std::string ClassName(std::size_t class_id) const;       // With its packages: tsdata.timemetadata.
-  /// 0 for what is no object.
+  std::size_t classes() const { return classes_.size(); }  // One more than their number.
+  std::size_t objects() const { return objects_.size(); }  // One more than their number.
+  std::string ClassName(std::size_t class_id) const;       // Including packages: tsdata.timemetadata.
+  /// 0 if `object` is not an object.
   std::size_t ClassOf(std::size_t object) const;
-  /// By its name; nullptr where it is at its default.
+  /// Finds a property by its name; nullptr if it has its default.
   const McosProperty* Find(std::size_t object, std::string_view name) const;
   const std::string& Name(std::size_t name) const { return names_[name]; }
 
@@ -53,7 +53,7 @@ class Mcos {
   std::vector<std::string> names_;
   std::vector<Class> classes_;
   std::vector<Object> objects_;
-  std::vector<Properties> saved_, normal_;  // Of objects of classes with a function saveobj, and of the others.
+  std::vector<Properties> saved_, normal_;  // Of objects whose classes have a function saveobj, and of the others.
 };
 
 }  // namespace pendulum

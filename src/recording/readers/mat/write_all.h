@@ -9,7 +9,7 @@
 
 namespace pendulum {
 
-/// False where they cannot all be written, and errno says why.
+/// Writes all bytes. Returns false, with errno set, on failure.
 inline bool WriteAll(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());

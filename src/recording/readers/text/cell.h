@@ -15,7 +15,7 @@ struct Cells {
   bool may_have_gaps = false;
   bool is_gap = false;  // A cell of this row is empty.
 
-  /// A field that is quoted, empty or at fault.
+  /// Reads a field that is quoted, empty or faulty.
   Result<void> Read(const Line& line, std::string_view field, const Column& column, double& number) {
     const std::string_view text = Unquote(field);
     if (numbers.Parse(text, number)) return {};
@@ -30,7 +30,7 @@ struct Cells {
     return line.Fault(Trim(field).data(), "column " + column.name + " " + numbers.WhyNot(text));
   }
 
-  /// Whether the row had an empty cell; the next has none yet.
+  /// Whether the row had an empty cell. Resets this for the next row.
   bool TakeGap() { return std::exchange(is_gap, false); }
 };
 

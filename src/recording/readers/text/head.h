@@ -14,13 +14,13 @@
 #include "recording/readers/text/tracker.h"
 #include "recording/readers/text/vernier.h"
 
-/// What the first lines of a file tell: whether there is a header, what separates fields, how many there are.
+/// The structure of a file from its first lines: header, separator, number of fields.
 namespace pendulum::csv {
 
-/// True for a line without anything in it, and for what a spreadsheet leaves of an empty row.
+/// True for an empty line, and for an empty row written by a spreadsheet.
 inline bool IsEmptyRow(std::string_view line) { return line.find_first_not_of(" \t,;") == std::string_view::npos; }
 
-/// What a line such as `sep=;`, which a spreadsheet writes for itself, says of the separator.
+/// The separator from a line such as `sep=;`, which spreadsheets write for themselves.
 inline std::optional<char> SeparatorLine(std::string_view line) {
   constexpr std::string_view kKey = "sep=";
   line.remove_prefix(line.starts_with('"') ? 1 : 0);
@@ -28,7 +28,7 @@ inline std::optional<char> SeparatorLine(std::string_view line) {
   return line[kKey.size()];
 }
 
-/// One of the first lines, which are kept until it is known what they are.
+/// One of the first lines, kept until their meaning is known.
 struct HeadLine {
   std::string text;
   std::size_t number;
@@ -41,22 +41,22 @@ inline bool HasHostStamps(const std::vector<HeadLine>& head) {
   });
 }
 
-/// What the device sent of a line.
+/// The part of a line that the device sent.
 inline std::string_view DevicePart(std::string_view line, bool has_host) {
   const auto stamp = has_host ? FindHostStamp(line) : std::nullopt;
   return stamp ? stamp->rest : line;
 }
 
-/// What the first lines say of the rows below them.
+/// The result of examining the first lines.
 struct Head {
-  std::vector<TableColumn> columns;  // None without a header.
-  std::size_t names_line = 0;        // Of these lines that with the names.
-  std::size_t first_row = 0;         // Of these lines the first that is a row.
-  bool may_have_gaps = false;        // Cells may be empty: the programs pad columns of different lengths.
+  std::vector<TableColumn> columns;  // Empty without a header.
+  std::size_t names_line = 0;        // Index of the line with the names.
+  std::size_t first_row = 0;         // Index of the first line that is a row.
+  bool may_have_gaps = false;        // Cells may be empty: these programs pad columns of different lengths.
 };
 
-/// How many lines must be seen before it is known what they are: a header and a row, or two rows of which the first may
-/// be cut off; a third where a label may stand above the header.
+/// The number of lines needed to determine their meaning: a header and a row, or two rows of which the first may be cut
+/// off. A third is needed if a line of labels may precede the header.
 inline std::size_t HeadLines(const HeadLine& first) {
   if (IsVernier(first.text)) return kVernierUnits + 2;
   const std::vector<Name> names = SplitHeader(first.text, Separator(first.text));
@@ -83,9 +83,9 @@ inline Head LookAtVernier(const std::vector<HeadLine>& head, Layout& layout) {
   return found;
 }
 
-/// The names of an ordinary header, or of one of the programs that write it in a way of their own.
+/// The columns of an ordinary header, or of a program with its own way of writing it.
 inline Head HeadOfNames(const std::vector<Name>& names) {
-  // Phyphox quotes names and pads with NaN; nobody quotes the time by hand.
+  // Phyphox quotes names and pads with NaN. Nobody quotes the time by hand.
   Head found;
   for (const Name& name : names) found.columns.push_back({std::string(name.text), std::string(name.text), "", name.at});
   found.first_row = 1;
@@ -94,7 +94,7 @@ inline Head HeadOfNames(const std::vector<Name>& names) {
   return found;
 }
 
-/// Fills separator, width and has_header from the first lines. `separator` is what the file itself says, or '\0'.
+/// Sets separator, width and has_header from the first lines. `separator` is the one the file declares, or '\0'.
 inline Head LookAtHead(const std::vector<HeadLine>& head, bool has_host, char separator, Layout& layout) {
   if (IsVernier(head.front().text)) return LookAtVernier(head, layout);
   const std::string_view first = DevicePart(head.front().text, has_host);
@@ -111,7 +111,7 @@ inline Head LookAtHead(const std::vector<HeadLine>& head, bool has_host, char se
   std::vector<Name> names = SplitHeader(first, layout.separator);
   layout.has_header = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
   if (layout.has_header) {
-    // Blanks stand in the name of a single column too; the row below it tells.
+    // The name of a single column may contain blanks; the row below decides.
     const bool is_one_name = layout.separator == ' ' && head.size() > 1 && CountFields(second, ' ') == 1;
     if (is_one_name) names = {{Unquote(first), Trim(first).data()}};
     layout.width = names.size();

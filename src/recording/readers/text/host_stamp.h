@@ -9,15 +9,15 @@
 
 #include "recording/readers/columns/csv.h"
 
-/// The stamp that a serial monitor puts before each line: "14:03:22.123 -> ".
+/// The time stamp that a serial monitor puts before each line: "14:03:22.123 -> ".
 namespace pendulum::csv {
 
 struct HostStamp {
-  std::optional<double> second_of_day;  // None when only the end of a stamp is left.
-  std::string_view rest;                // What the device sent.
+  std::optional<double> second_of_day;  // std::nullopt if only the end of a stamp remains.
+  std::string_view rest;                // The text from the device.
 };
 
-/// The stamp of a line, if there is one or the end of one.
+/// The stamp of a line, or its end, if there is one.
 inline std::optional<HostStamp> FindHostStamp(std::string_view line) {
   constexpr std::string_view kArrow = "->";
   const std::size_t arrow = line.find(kArrow);
@@ -35,7 +35,7 @@ inline std::optional<HostStamp> FindHostStamp(std::string_view line) {
     if (!ParseNumber(texts.at(i), parts.at(i))) return found;
   }
   if (parts[0] < 24 && parts[1] < 60 && parts[2] < 61) {
-    // In whole milliseconds where the stamp has them, so that 22.1 s after the minute is what one would write.
+    // Rounded to microseconds, so that 22.1 s after the minute is exactly the decimal number.
     constexpr double kFine = 1e6;
     found.second_of_day = std::round(((parts[0] * 60 + parts[1]) * 60 + parts[2]) * kFine) / kFine;
   }

@@ -14,11 +14,11 @@ namespace pendulum::csv {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
-constexpr std::size_t kLongestSeconds = 15;      // Digits: more are nanoseconds.
+constexpr std::size_t kLongestSeconds = 15;      // Digits: longer numbers are nanoseconds.
 
-/// The parts of a name between slashes and dots, in small letters.
+/// The parts of a name between slashes and dots, in lower case.
 struct Path {
-  std::string before;  // All but the last part.
+  std::string before;  // All except the last part.
   std::string last;    // Without an index: `position` of `position[0]`, `position_0` and `position0`.
   std::string index;
 };
@@ -45,7 +45,7 @@ std::size_t FindLast(const std::vector<TableColumn>& columns, std::initializer_l
   return found == columns.end() ? kNoColumn : found - columns.begin();
 }
 
-/// Text of the field with that index, empty where there is none.
+/// Text of the field with that index; empty if there is none.
 std::string_view FieldOf(std::string_view row, char separator, std::size_t index) {
   FieldCutter fields(row, separator);
   for (std::size_t i = 0; !fields.done(); ++i) {
@@ -55,12 +55,13 @@ std::string_view FieldOf(std::string_view row, char separator, std::size_t index
   return {};
 }
 
-/// Whole numbers of fewer digits than nanoseconds since 1970 may be of any unit, which is then for the user to say.
+/// Whether the unit of a stamp is certain. Whole numbers with fewer digits than nanoseconds since 1970 may have any
+/// unit, which the user must give.
 bool TellsItsUnit(std::string_view stamp) {
   return stamp.find('.') != std::string_view::npos || stamp.size() > kLongestSeconds;
 }
 
-/// The stamp of the message's header before that of its arrival.
+/// Finds the columns of stamps. The stamp in the message's header is preferred to that of its arrival.
 void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, char separator, RosTable& table) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Path path = PathOf(columns[i].written);
@@ -83,14 +84,14 @@ void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, c
   }
 }
 
-/// What the names of messages mean that tell no unit.
+/// The meaning of names of messages without a unit.
 std::string MeaningOf(const std::string& written) {
   const Path path = PathOf(written);
   const std::string parent = PathOf(path.before).last;
   const bool is_axis = IsOneOf(path.last, {"x", "y", "z"});
   if (path.last == "position") return written + "_rad";
   if (path.last == "velocity" || (is_axis && parent == "angular_velocity")) return written + "_rad_s";
-  // What the sensor feels, with gravity in it (REP 145), which the word "linear" elsewhere says it has not.
+  // The sensor measures it including gravity (REP 145), although "linear" elsewhere means without gravity.
   if (is_axis && parent == "linear_acceleration") return "specific_force_" + path.last + "_m_s2";
   return written;
 }
@@ -103,7 +104,7 @@ std::size_t FindJoint(const std::vector<TableColumn>& columns, std::string_view 
   return IsName(FieldOf(row, separator, joint)) ? joint : kNoColumn;
 }
 
-/// A rate beside the angle of the same joint is its derivative more often than another sensor's.
+/// Hides a rate beside the angle of the same joint: it is more often the derivative than the reading of another sensor.
 void HideRates(std::vector<TableColumn>& columns) {
   for (TableColumn& column : columns) {
     const Path rate = PathOf(column.written);
@@ -116,7 +117,7 @@ void HideRates(std::vector<TableColumn>& columns) {
   }
 }
 
-/// Nanoseconds of a decimal number of seconds; none where it is no such number.
+/// Converts a decimal number of seconds to nanoseconds; std::nullopt if it is not such a number.
 std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nanoseconds) {
   constexpr std::size_t kDigits = 9;
   const std::size_t point = text.find('.');
@@ -137,7 +138,8 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
   return seconds * kSecond + (text.starts_with('-') ? -fraction : fraction);
 }
 
-/// The column that the user says is the time is one of stamps unless its unit is said, or is for the user to say.
+/// The column that the user names as the time contains stamps, unless the user gives its unit or its unit is not
+/// certain.
 void TakeNamedTime(const std::vector<TableColumn>& columns, std::string_view row, char separator,
                    const ReadOptions& options, RosTable& table) {
   const TimeFlag flag = TimeFlagOf(columns, options.time_column);
@@ -177,7 +179,7 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
   }
   TakeNamedTime(columns, row, separator, options, table);
   if (table.seconds != kNoColumn) columns[table.seconds].meaning = "time_s";
-  const bool is_joint = table.joint != kNoColumn;  // Then the user may name one, and none of its columns.
+  const bool is_joint = table.joint != kNoColumn;  // The user may then name a joint but no column.
   const std::string asked = is_joint ? ChoiceOf(columns, options.value_column).column : options.value_column;
   if (asked.empty() && options.unit.empty()) HideRates(columns);
   return table;
@@ -191,7 +193,7 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
     const auto [stop, error] = std::from_chars(nanoseconds.data(), end, beyond);
     if (error != std::errc() || stop != end || beyond < 0 || beyond >= kSecond) return false;
   }
-  if (!stamp) {  // As a program writes it that holds stamps as doubles: 1.6e+09.
+  if (!stamp) {  // Written by a program that stores stamps as doubles: 1.6e+09.
     constexpr double kMost = 9e9;
     double number = 0;
     if (!ParseNumber(seconds, number) || std::abs(number) > kMost) return false;
@@ -200,7 +202,7 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
   std::int64_t now = 0;
   if (__builtin_add_overflow(*stamp, beyond, &now)) return false;
   if (!first_) first_ = now;
-  // Stamps of one recording are near each other, unless they are no stamps.
+  // Stamps of one recording are near each other; otherwise they are not stamps.
   std::int64_t since = 0;
   if (__builtin_sub_overflow(now, *first_, &since)) return false;
   time = static_cast<double>(since) / kSecond;

@@ -10,31 +10,31 @@
 
 #include "recording/readers/columns/table.h"
 
-/// Tables that come from ROS: rostopic echo -p, bags made CSV, PlotJuggler. Names are paths, times are stamps since
-/// 1970, angles are rad and rates rad/s (REP 103), and a row may be of one joint among several.
+/// Tables from ROS: rostopic echo -p, bags converted to CSV, PlotJuggler. Names are paths, times are stamps since 1970,
+/// angles are in rad and rates in rad/s (REP 103). A row may belong to one of several joints.
 namespace pendulum::csv {
 
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 struct RosTable {
   std::size_t seconds = kNoColumn;      // Column of stamps: seconds, or nanoseconds since 1970.
-  std::size_t nanoseconds = kNoColumn;  // Column of what a stamp has beyond whole seconds.
-  bool is_nanoseconds = false;    // A whole number in the first of these columns is in nanoseconds, however small:
-                                  // those of `%time`, which rostopic writes.
-  std::size_t joint = kNoColumn;  // Column of names, where each row is one joint's.
+  std::size_t nanoseconds = kNoColumn;  // Column of the part of a stamp below one second.
+  bool is_nanoseconds = false;          // A whole number in the first of these columns is always in nanoseconds, as in
+                                        // `%time` of rostopic.
+  std::size_t joint = kNoColumn;        // Column of joint names, if each row belongs to one joint.
 };
 
-/// Looks for such a table, whose columns get a meaning: of a joint's angle and rate the angle is its quantity, unless
-/// the user asks for another. `row` is the first row.
+/// Detects such a table and gives its columns a meaning. With an angle and a rate of a joint, the angle is the quantity
+/// unless the user requests another. `row` is the first row.
 std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_view row, char separator,
                                 const ReadOptions& options);
 
-/// Stamps in seconds since the first of them, exactly: a double holds those since 1970 to no better than 256 ns.
+/// Converts stamps to seconds since the first stamp, exactly. A double could store stamps since 1970 only to 256 ns.
 class StampClock {
  public:
   explicit StampClock(bool is_whole_nanoseconds = false) : is_whole_nanoseconds_(is_whole_nanoseconds) {}
 
-  /// False for what is no stamp. A whole number of 16 digits or more is in nanoseconds.
+  /// Returns false if the text is not a stamp. A whole number of 16 digits or more is in nanoseconds.
   bool Read(std::string_view seconds, std::string_view nanoseconds, double& time);
 
  private:

@@ -51,7 +51,7 @@ Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& ce
                                           " names up to here; name one joint a row");
 }
 
-/// The time of a row, in seconds since that of the first where it is a stamp.
+/// Reads the time of a row. If it is a stamp, the time is in seconds since the first stamp.
 Result<void> RosRows::ReadStamp(const Line& line, Cells& cells, double& time) {
   const std::size_t index = layout_.time->index;
   const std::string_view field = fields_[index];

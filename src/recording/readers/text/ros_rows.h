@@ -12,29 +12,29 @@
 
 namespace pendulum::csv {
 
-/// Reads the rows of a table of ROS.
+/// Reads the rows of a ROS table.
 class RosRows {
  public:
-  /// `columns` and `layout` must outlive this object; the columns may still be chosen.
+  /// `columns` and `layout` must outlive this object; columns may be chosen later.
   RosRows(const RosTable& table, const std::vector<TableColumn>& columns, const Layout& layout)
       : table_(table), columns_(columns), layout_(layout), stamps_(table.is_nanoseconds) {}
 
   bool has_joints() const { return table_.joint != kNoColumn; }
 
-  /// What the user asks for, without the joint.
+  /// The user's options without the joint.
   ReadOptions TakeJoint(const ReadOptions& options);
 
-  /// kDataLoss: both coordinates of a point, where each row is one joint's.
+  /// kDataLoss: both coordinates of a point in a table with one joint per row.
   Result<void> CheckSecond(const Line& line) const;
 
   struct Sample {
     double time = 0, value = 0, second = 0;
   };
 
-  /// The sample of a row, none where it has a gap or goes to its joint.
+  /// The sample of a row; std::nullopt if it has a gap or was stored with its joint.
   Result<std::optional<Sample>> Read(const Line& line, Cells& cells);
 
-  /// The rows of the joint that is chosen, and what its quantity is called. `line` is that of the names.
+  /// The rows of the chosen joint. `line` is that of the names.
   Result<JointRows*> ChooseJoint(const Line& line);
   std::string NameOf(const JointRows& rows) const;
 
@@ -45,9 +45,9 @@ class RosRows {
   const std::vector<TableColumn>& columns_;
   const Layout& layout_;
   StampClock stamps_;
-  std::string joint_;  // Asked for; empty: none.
+  std::string joint_;  // The requested joint; empty: none.
   JointTable joints_;
-  std::vector<std::string_view> fields_;  // Of the row.
+  std::vector<std::string_view> fields_;  // Fields of the current row.
 };
 
 }  // namespace pendulum::csv

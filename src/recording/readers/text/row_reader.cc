@@ -68,23 +68,23 @@ class Reader {
   std::vector<csv::HeadLine> lines_of_head_;
   csv::Head head_;
   bool is_head_only_ = false;
-  char separator_ = '\0';  // What the line `sep=` says.
+  char separator_ = '\0';  // From the line `sep=`.
   bool has_host_ = false;  // Lines begin with the stamp of a serial monitor.
   bool has_layout_ = false;
   Layout layout_;
   std::size_t time_index_ = kNoColumn, second_index_ = kNoColumn;
-  Line line_;  // The row being read; before there are rows, the header.
+  Line line_;  // The current row; before the first row, the header.
   csv::Cells cells_;
   std::optional<csv::RosRows> ros_;
-  std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Since the last row without a gap, and before it.
-  std::optional<Status> cut_;                      // The fault of a row that may be cut off, should another row follow.
+  std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // After the last row without a gap, and before it.
+  std::optional<Status> cut_;                      // The error of a possibly cut-off row; used if another row follows.
   Line cut_line_;
   std::string cut_text_;
-  bool is_short_ = false;      // The row just read has too few fields.
-  double midnights_ = 0;       // s, to add to the host's time of day.
+  bool is_short_ = false;      // The current row has too few fields.
+  double midnights_ = 0;       // s, added to the host's time of day.
   double last_host_time_ = 0;  // s, with midnights.
   Eigen::Index rows_ = 0;
-  RawSamples samples_;  // Until Finish, time and value have room for more than rows_.
+  RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
 };
 
 Result<Recording> Reader::Read() {
@@ -128,9 +128,9 @@ Check Reader::ReadLine() {
   return lines_of_head_.size() < csv::HeadLines(lines_of_head_.front()) ? Check() : BeginRows();
 }
 
-// ---- What the columns are ----------------------------------------------------------------------------------------
+// ---- Columns -----------------------------------------------------------------------------------------------------
 
-/// Finds what the columns are called, and the line that says so.
+/// Finds the names of the columns and the line that contains them.
 Check Reader::LookAtHead() {
   const std::vector<csv::HeadLine>& lines = lines_of_head_;
   has_layout_ = true;
@@ -143,7 +143,7 @@ Check Reader::LookAtHead() {
   return {};
 }
 
-/// Looks at the first lines, then reads those of them that are rows.
+/// Examines the first lines, then reads those that are rows.
 Check Reader::BeginRows() {
   if (Check looked = LookAtHead(); !looked || is_head_only_) return looked;
   if (Check chosen = ChooseColumns(); !chosen) return chosen;
@@ -175,7 +175,7 @@ Check Reader::ChooseColumns() {
 
 // ---- Rows --------------------------------------------------------------------------------------------------------
 
-/// Reads a row; the first of a paste without header and the last of a file may be cut off.
+/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off.
 Check Reader::TakeRow() {
   if (cut_) return tl::unexpected(*cut_);
   is_short_ = false;
@@ -244,7 +244,7 @@ const csv::Column& Reader::LastColumn() const {
   return *last;
 }
 
-/// The host's stamp in seconds since the midnight before the first row, where it is the time.
+/// If the host's stamp is the time: its value in seconds since the midnight before the first row.
 Check Reader::TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time) {
   constexpr double kDay = 86400;
   if (!is_host_time()) return {};
@@ -299,7 +299,7 @@ Check Reader::ReadRosRow() {
   return {};
 }
 
-/// The rows of one joint, where each row is of one.
+/// Takes the rows of one joint if each row belongs to one joint.
 Check Reader::TakeJoint() {
   if (!ros_ || !ros_->has_joints()) return {};
   const csv::HeadLine& header = lines_of_head_[head_.names_line];
@@ -330,7 +330,7 @@ Check Reader::CheckEnd() {
   return last.Fault(last.text.data(), sentence, StatusCode::kFailedPrecondition);
 }
 
-/// Of a paste without header the first stamp may have lost its leading digits and read as a number all the same.
+/// In a paste without a header, the first stamp may have lost its leading digits and still parse as a number.
 void Reader::LeaveOutCutStamp() {
   if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples || !csv::IsCutStamp(samples_.time)) return;
   WarnOfIncompleteRow({lines_.name(), lines_of_head_.front().text, lines_of_head_.front().number});
@@ -344,7 +344,7 @@ void Reader::LeaveOutCutStamp() {
   }
 }
 
-/// A last value without a line end may have lost digits and read as a number all the same.
+/// A last value without a line end may have lost digits and still parse as a number.
 void Reader::LeaveOutCutValue() {
   const Eigen::Index last = rows_ - 1;
   if (lines_.is_terminated() || last < kMinimumSamples || samples_.lines.LineOf(last) != lines_.number()) return;
@@ -355,7 +355,7 @@ void Reader::LeaveOutCutValue() {
   --rows_;
 }
 
-/// Cells that are empty before the first row and after the last are those of other columns that are longer.
+/// Empty cells before the first row and after the last are not counted: other columns are longer.
 void Reader::WarnOfEmptyCells() {
   if (inner_gap_rows_ == 0) return;
   samples_.warnings.push_back(csv::EmptyCells(lines_.name(), inner_gap_rows_, layout_.value.name));

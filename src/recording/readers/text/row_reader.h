@@ -10,10 +10,10 @@
 
 namespace pendulum {
 
-/// Reads a recording from rows of text: ReadRecording for all that is text. One pass, one block in memory.
+/// Implements ReadRecording for text. One pass, one block in memory.
 Result<Recording> ReadRows(LineReader lines, const ReadOptions& options);
 
-/// The columns that a text's first lines name, none without a header. kDataLoss: as ReadRows, as far as these lines go.
+/// The columns named in the first lines of a text; empty without a header. kDataLoss: as ReadRows, for these lines.
 Result<std::vector<csv::TableColumn>> ReadColumnNames(LineReader lines);
 
 }  // namespace pendulum

@@ -9,12 +9,12 @@
 
 #include "recording/readers/columns/runs.h"
 
-/// A line of labels above the names: Tracker writes the name of the track there, of several tracks ("#multi:") each
-/// above its first column; Capstone and SPARKvue write runs.
+/// A line of labels above the names. Tracker writes the name of the track there; with several tracks ("#multi:") each
+/// name is above the track's first column. Capstone and SPARKvue write runs.
 namespace pendulum::csv {
 
-/// Tracker's `t` is in seconds, and its lengths are in metres unless the film was scaled otherwise; `r` is that of the
-/// vector (x, y). Angles and rates are in the unit that was chosen there, which it does not write.
+/// Tracker's `t` is in seconds. Its lengths are in metres unless the film was scaled otherwise. `r` is the length of
+/// the vector (x, y). Angles and rates are in the unit chosen in Tracker, which it does not write.
 inline std::string TrackerMeaning(const std::string& name) {
   const std::string canonical = CanonicalName(name);
   if (canonical == "t") return "time_s";
@@ -33,8 +33,8 @@ inline bool HasNumber(std::string_view row, char separator) {
   return false;
 }
 
-/// The columns of names that have a line of labels above them, none if these are no such lines: in `second` stand names
-/// only, one of them a time, and in `third` numbers.
+/// The columns if the names have a line of labels above them; empty otherwise. `second` must contain only names, one of
+/// them a time, and `third` must contain numbers.
 inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::string_view second, std::string_view third,
                                                 char separator) {
   const std::vector<Name> names = SplitHeader(second, separator);

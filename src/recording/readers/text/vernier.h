@@ -8,15 +8,15 @@
 
 #include "recording/readers/columns/runs.h"
 
-/// The text that Logger Pro exports: "Vernier Format 2", source and date, name of the data set, a line each of long
-/// names, short names and units between tabs, a blank line, rows.
+/// The text that Logger Pro exports: "Vernier Format 2", source and date, name of the data set, one line each of long
+/// names, short names and units separated by tabs, a blank line, rows.
 namespace pendulum::csv {
 
-inline constexpr std::size_t kVernierNames = 3, kVernierUnits = 5;  // Lines after the first.
+inline constexpr std::size_t kVernierNames = 3, kVernierUnits = 5;  // Line numbers after the first.
 
 inline bool IsVernier(std::string_view line) { return Trim(line).starts_with("Vernier Format"); }
 
-/// `names` and `units` are those lines.
+/// `names` and `units` are these two lines.
 inline std::vector<TableColumn> VernierColumns(std::string_view names, std::string_view units) {
   std::vector<TableColumn> columns;
   FieldCutter unit(units, '\t');

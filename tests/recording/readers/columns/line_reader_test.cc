@@ -71,7 +71,7 @@ TEST_F(LineReaderTest, KnowsWhetherTheLastLineWasEnded) {
   EXPECT_FALSE(reader.is_empty());
 }
 
-/// Lines of every length about the end of a block, which is a little longer than the longest line.
+/// Lines of various lengths around the end of a block, which is slightly longer than the longest line.
 TEST_F(LineReaderTest, GivesTheSameLinesOfAFileInBlocks) {
   for (const std::size_t first : {LineReader::kLongestLine - 2, LineReader::kLongestLine}) {
     std::string text = std::string(first, 'a') + "\n";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Logger Pro, Graphical Analysis, Capstone and SPARKvue export: several runs side by side, and Vernier's own text.
+// Exports of Logger Pro, Graphical Analysis, Capstone and SPARKvue: several runs side by side, and Vernier's text
+// format.
 #include "recording/readers/columns/runs.h"
 
 #include <string>

@@ -21,14 +21,14 @@ namespace {
 
 using std::chrono::milliseconds, std::chrono::steady_clock;
 
-/// Why there is no answer.
+/// The failure of work that must fail.
 ChildFailure WhyNone(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
   const auto answer = InChild(work, limits);
   EXPECT_FALSE(answer.has_value());
   return answer ? ChildFailure::kNotStarted : answer.error();
 }
 
-/// Descriptors of this process.
+/// The open descriptors of this process.
 std::string Descriptors() {
   std::vector<std::string> numbers;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -45,7 +45,7 @@ std::size_t CountOfDescriptors() {
   return static_cast<std::size_t>(std::ranges::count(list, ' '));
 }
 
-/// True when there is no child that was not waited for.
+/// True if all children have been waited for.
 bool HasNoChild() { return ::waitpid(-1, nullptr, WNOHANG) < 0; }
 
 TEST(InChild, GivesWhatTheWorkGives) {
@@ -121,7 +121,7 @@ TEST(InChild, EndsWorkThatTakesTooMuchMemory) {
 TEST(InChild, HasNoDescriptorOfThisProcess) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
-  const std::string with_folder = "0 1 2 3 4 ";  // Standard ones, the answer's, and that of the folder of descriptors.
+  const std::string with_folder = "0 1 2 3 4 ";  // Standard ones, the answer's, the directory's.
   EXPECT_EQ(InChild(Descriptors, {}), with_folder);
   ::close(pipe[0]);
   ::close(pipe[1]);
@@ -136,7 +136,7 @@ TEST(InChild, LeavesNoDescriptorBehind) {
   EXPECT_EQ(CountOfDescriptors(), before);
 }
 
-/// The pipe of a short work would not end while the process of the long one has its other end too.
+/// Otherwise the pipe of a short task would stay open while the process of a long task has its other end too.
 TEST(InChild, ThreadsDoNotWaitForEachOther) {
   const auto begin = steady_clock::now();
   std::thread other([] {

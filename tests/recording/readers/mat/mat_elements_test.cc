@@ -10,8 +10,8 @@
 
 #include "tests/recording/mat_files.h"
 
-// Bytes by hand are those of "MAT-File Format" (The MathWorks), chapter 1: a tag of type and size, data in a raster of
-// eight bytes. Those of matio are an independent writer's.
+// Bytes written by hand follow "MAT-File Format" (The MathWorks), chapter 1: a tag with type and size, data aligned to
+// eight bytes. matio is an independent writer.
 namespace pendulum::mat_elements_test {
 namespace {
 
@@ -19,7 +19,7 @@ using namespace std::string_view_literals;
 using testing::ElementsAre;
 using Kind = MatValue::Kind;
 
-/// The matrices of a file as matio writes it, without numbers being packed.
+/// The first matrix of a file written by matio without compression.
 MatValue ValueOfMatio(matvar_t* variable) {
   const std::string bytes = MatOf({variable}, MAT_FT_MAT5, false);
   const auto matrix = MatElements(std::string_view(bytes).substr(128), false).Next(kMatrixElement);
@@ -31,9 +31,9 @@ MatValue ValueOfMatio(matvar_t* variable) {
 
 TEST(MatElements, AreTakenOneByOne) {
   const std::string_view bytes =
-      "\1\0\0\0\3\0\0\0abc\0\0\0\0\0"  // of three bytes, with five to fill up
-      "\1\0\2\0xy\0\0"                 // of two in one word with its size
-      "\2\0\0\0\0\0\0\0"sv;            // of none
+      "\1\0\0\0\3\0\0\0abc\0\0\0\0\0"  // three bytes and five of padding
+      "\1\0\2\0xy\0\0"                 // two bytes in one word with their size
+      "\2\0\0\0\0\0\0\0"sv;            // no bytes
   MatElements elements(bytes, false);
   EXPECT_EQ(elements.Next()->bytes, "abc");
   EXPECT_EQ(elements.at(), 16);
@@ -58,7 +58,7 @@ TEST(MatElements, ThatDoNotFitAreNone) {
                            "ab"sv,
                            false)
                    .Next());
-  EXPECT_FALSE(MatElements("\1\0\5\0abcd"sv, false).Next());  // five bytes in four
+  EXPECT_FALSE(MatElements("\1\0\5\0abcd"sv, false).Next());  // five bytes announced, four present
   EXPECT_FALSE(MatElements("\1\0\2\0xy\0\0"sv, false).Next(2));
 }
 
@@ -118,7 +118,7 @@ TEST(Unpacked, OfDamageIsNone) {
   const std::string packed = Packed("some letters");
   for (std::size_t size = 0; size < packed.size(); ++size) EXPECT_FALSE(Unpacked(packed.substr(0, size), 1000)) << size;
   std::string changed = packed;
-  changed.back() ^= 1;  // its checksum
+  changed.back() ^= 1;  // part of its checksum
   EXPECT_FALSE(Unpacked(changed, 1000));
 }
 

@@ -16,7 +16,7 @@
 namespace pendulum::mat_hdf5_test {
 namespace {
 
-/// Where bytes stand as a file, which is there as long as this is.
+/// Stores bytes in a file that exists as long as this object.
 class Written {
  public:
   explicit Written(const std::string& bytes)

@@ -27,7 +27,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// The values of ExpectTheRows.
+/// The times and values that ExpectTheRows expects.
 std::vector<double> Times(double unit = 1) {
   std::vector<double> times;
   for (int i = 0; i < 8; ++i) times.push_back(i / 100.0 * unit);
@@ -42,7 +42,7 @@ std::vector<double> Both() {
   return both;
 }
 
-constexpr std::size_t kClassAt = 144;  // Of the first variable, behind header and two tags.
+constexpr std::size_t kClassAt = 144;  // Of the first variable, after header and two tags.
 
 ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
 
@@ -67,7 +67,7 @@ TEST_P(OfEveryVersion, AMatrixWhoseFirstColumnIncreasesHasItsTimeThere) {
   ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 8, Both())}, GetParam())));
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Unit("deg")), kDegree);
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Value("run(:,2)", "deg")), kDegree);
-  std::vector<double> rows;  // As the block "To File" writes them.
+  std::vector<double> rows;  // As written by the block "To File".
   for (int i = 0; i < 8; ++i) rows.insert(rows.end(), {i / 100.0, 100.0 + i});
   ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 2, rows)}, GetParam())));
 }
@@ -161,7 +161,7 @@ TEST(ReadMat, SaysThatATimeIsTakenAsSeconds) {
         Structure(signals, {{"values", Matrix("values", 8, Values())}, {"label", Text("label", "a_rad")}});
     return Structure("out", {{"time", Matrix("time", 8, Times(1000))}, {signals, inner}});
   };
-  EXPECT_EQ(codes({structure("signals")}), "");  // as Simulink writes it: seconds, which may be whole
+  EXPECT_EQ(codes({structure("signals")}), "");  // written by Simulink: seconds, which may be whole
   EXPECT_THAT(WrongFlag(MatOf({structure("mine")}), TimeAndValue("", "out.mine.values")), HasSubstr("whole numbers"));
 }
 
@@ -196,7 +196,7 @@ matvar_t* CellArray(const char* name) {
   return Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes, &cell, 0);
 }
 
-/// With one number, in the first row.
+/// A sparse vector with one number, in the first row.
 matvar_t* Sparse(const char* name) {
   double value = 1;
   mat_uint32_t row = 0, begins[] = {0, 1};
@@ -230,7 +230,7 @@ TEST_P(OfEveryVersion, CellsBesideAColumnAreNotInTheWay) {
                             Unit("rad")));
 }
 
-/// A variable of class mxOPAQUE, by hand as MATLAB writes a timeseries; its elements are tag, size and bytes.
+/// A variable of class mxOPAQUE, built as MATLAB writes a timeseries. Its elements are tag, size and bytes.
 std::string Timeseries(const std::string& name) {
   const auto number = [](std::uint32_t value) {
     std::string bytes;
@@ -245,7 +245,8 @@ std::string Timeseries(const std::string& name) {
   const std::string numbers = element(kUint32, number(kUint32Class) + number(0)) +
                               element(kInt32, number(2) + number(1)) + element(kInt8, "") +
                               element(kUint32, number(0xDD000000) + number(2));
-  const std::string called = name.size() > 4 ? element(kInt8, name)  // of up to four letters size and type are one word
+  const std::string called = name.size() > 4 ? element(kInt8, name)  // up to four letters share a word with size and
+                                                                     // type
                                              : number(static_cast<std::uint32_t>(name.size() << 16 | kInt8)) + name +
                                                    std::string(4 - name.size(), '\0');
   return element(kMatrix, element(kUint32, number(kOpaqueClass) + number(0)) + called + element(kInt8, "MCOS") +
@@ -259,7 +260,7 @@ TEST(ReadMat, SaysHowToSaveATimeseries) {
   for (const std::string name : {"ts", "pendulum"}) {
     const std::string fault = "run.csv: variable \"" + name +
                               "\" is a timeseries that is damaged, or from a version of MATLAB that is not known" +
-                              advice;  // as there are no objects in the file
+                              advice;  // the file contains no objects
     EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), fault);
     EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), fault);
   }
@@ -288,7 +289,7 @@ TEST(ReadMat, UnpacksNoMoreThanItMay) {
   EXPECT_EQ(FaultOf(bytes, options),
             "run.csv: this MAT-file unpacks to more than 1600000 bytes, too many for a recording; save only the times "
             "and the angles, or export them as CSV");
-  options.most_unpacked_bytes = 1'601'000;  // and their names
+  options.most_unpacked_bytes = 1'601'000;  // leaves room for their names
   EXPECT_TRUE(ParseRecording(bytes, "run.csv", options).has_value());
 }
 
@@ -329,17 +330,17 @@ TEST(ReadMat, SaysWhyThereIsNoCopyForMatio) {
   const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
   const char* const before = std::getenv("TMPDIR");
   const std::string folder = before == nullptr ? "" : before;
-  ::setenv("TMPDIR", "/proc", 1);  // where nobody makes a file
+  ::setenv("TMPDIR", "/proc", 1);  // no file can be created there
   EXPECT_EQ(FaultOf(bytes, {}, StatusCode::kTryAgain),
             "run.csv: there can be no copy of this MAT-file in \"/proc\" (No such file or directory); make room there, "
             "or name another folder in TMPDIR");
   before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", folder.c_str(), 1);
 }
 
-// ---- Files that would have others read --------------------------------------------------------------------------
+// ---- Files that refer to other files ----------------------------------------------------------------------------
 
-/// A file of version 7.3, made by HDF5, whose counts are the bytes of another file: by external storage, or by a link
-/// to a variable there. Its path has many slashes before it, which leave room for another.
+/// A file of version 7.3, made by HDF5, whose counts are the bytes of another file, by external storage or by a link to
+/// a variable there. Its path is preceded by many slashes, which leave room for another path.
 std::string WithOtherFile(const std::string& corpus_file, const std::string& other) {
   const std::string exe = "/proc/self/exe";  // Its first bytes are 0x7F 'E' 'L' 'F' (elf(5)).
   std::ifstream stream("tests/fuzz/corpus/mat/" + corpus_file, std::ios::binary);

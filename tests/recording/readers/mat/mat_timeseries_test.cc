@@ -26,7 +26,7 @@ using objects::Series;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// The rows of ExpectTheRows, in radians.
+// The rows that ExpectTheRows expects, in radians.
 Series Angle() {
   Series series;
   series.data_unit = "rad";
@@ -84,7 +84,7 @@ TEST_P(OfEveryWay, TimesAreListedOrUniformInTheirUnit) {
       EXPECT_TRUE(recording.warnings.empty()) << unit;
     }
   };
-  // One second in each (BIPM, SI brochure, tables 7 and 8).
+  // One second in each unit (BIPM, SI brochure, tables 7 and 8).
   expect(1, "seconds");
   expect(1e3, "milliseconds");
   expect(1e6, "microseconds");
@@ -232,14 +232,14 @@ TEST_P(OfEveryWay, ANameThatOthersHaveIsNotTaken) {
   File file;
   const Classes classes(file);
   const std::size_t object = objects::AddSeries(file, classes, series);
-  file.AddVariable("cells", objects::Cells({objects::Cells({file.Reference({object})})}));  // no reference, but numbers
+  file.AddVariable("cells", objects::Cells({objects::Cells({file.Reference({object})})}));  // numbers, not a reference
   file.AddVariable("run", objects::Struct({{"t", objects::Numbers({8, 1}, {0, 1.5, 3, 4.5, 6, 7.5, 9, 10.5})},
                                            {"angle_deg", objects::Numbers({8, 1}, {8, 7, 6, 5, 4, 3, 2, 1})}}));
   EXPECT_DOUBLE_EQ(RecordingOf(BytesOf(file), Value("run.angle_deg")).time[1], 1.5);
   ExpectTheRows(RecordingOf(BytesOf(file), Value("timeseries 1.Data")));
 }
 
-// Of an array of structures that has an object in it, the numbers are read as of one that has none.
+// Numbers in an array of structures are read in the same way if the array also contains an object.
 TEST(AddTimeseries, LeavesNumbersBesideOtherObjects) {
   File file;
   const std::size_t label = file.AddObject(file.AddClass("", "string"), {{"any", objects::Nothing()}});
@@ -285,7 +285,7 @@ TEST(AddTimeseries, WithAByteChangedGivesTheSameNumbersOrNone) {
       (table.columns[1].values == values ? same : other) += 1;
     }
     EXPECT_GT(same, 0);
-    EXPECT_EQ(other, 64);  // the bytes of the eight numbers themselves
+    EXPECT_EQ(other, 64);  // changes of the bytes of the eight numbers
   }
 }
 

@@ -80,7 +80,7 @@ TEST(AddReferences, NamesPlacesAsMatlabDoes) {
 TEST(MatValue, IsEmptyWhereASizeIsNone) {
   EXPECT_TRUE((MatValue{Kind::kNumbers, {0, 0}, {}, {}, {}, {}}.IsEmpty()));
   EXPECT_FALSE((MatValue{Kind::kNumbers, {1, 1}, {0}, {}, {}, {}}.IsEmpty()));
-  EXPECT_FALSE(MatValue{}.IsEmpty());  // nobody knows
+  EXPECT_FALSE(MatValue{}.IsEmpty());  // unknown
 }
 
 }  // namespace

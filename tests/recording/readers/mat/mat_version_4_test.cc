@@ -25,9 +25,9 @@ std::string Bytes(std::uint64_t number, std::size_t size, bool is_big) {
   return bytes;
 }
 
-/// A column by hand, as "MAT-File Format" (The MathWorks) has it: type, rows, columns, imaginary part, length of the
-/// name with its zero, the name, the numbers. Type P0 is doubles for P = 0 and 16-bit integers for P = 3; 1000 more
-/// means the other order of bytes.
+/// A column built as "MAT-File Format" (The MathWorks) describes it: type, rows, columns, imaginary part, length of the
+/// name with its zero, the name, the numbers. Type P0 means doubles for P = 0 and 16-bit integers for P = 3; adding
+/// 1000 means the other byte order.
 std::string Column(const std::string& name, const std::vector<double>& values, bool is_big, bool is_short = false) {
   std::string bytes;
   for (const std::uint64_t word : {std::uint64_t{is_big ? 1000U : 0U} + (is_short ? 30 : 0), values.size(),
@@ -42,7 +42,7 @@ std::string Column(const std::string& name, const std::vector<double>& values, b
   return bytes;
 }
 
-// Those of ExpectTheRows.
+// The times and values that ExpectTheRows expects.
 std::vector<double> Times() { return {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07}; }
 std::vector<double> Values() { return {100, 101, 102, 103, 104, 105, 106, 107}; }
 

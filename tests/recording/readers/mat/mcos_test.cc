@@ -18,8 +18,8 @@ namespace {
 
 using testing::ElementsAre;
 
-// Files that MATLAB 2009a wrote, with which SciPy tests its reader; each function handle is an object there that keeps
-// the variables that it knows: those of `parabola = @(x) a*x.^2 + b*x + c` are told by the file itself.
+// Files written by MATLAB 2009a, with which SciPy tests its reader. Each function handle in them is an object that
+// stores the variables it uses. The file also contains those of `parabola = @(x) a*x.^2 + b*x + c` as plain variables.
 std::string FileOfMatlab(const std::string& name) {
   const std::string path = "/usr/lib/python3/dist-packages/scipy/io/matlab/tests/data/" + name;
   std::ifstream stream(path, std::ios::binary);
@@ -35,7 +35,7 @@ TEST(Mcos, OfMatlabsOwnFilesHasItsObjectsAndTheirProperties) {
     EXPECT_EQ(objects.classes(), 2);
     EXPECT_EQ(objects.objects(), 1 + handles) << name;
     EXPECT_EQ(objects.ClassName(1), "function_handle_workspace");
-    EXPECT_EQ(subsystem.cells, 3 + handles);  // the table, an empty one, defaults
+    EXPECT_EQ(subsystem.cells, 3 + handles);  // the table, an empty cell, defaults
     for (int object = 1; object <= handles; ++object) {
       EXPECT_EQ(objects.ClassOf(object), 1);
       const McosProperty* const any = objects.Find(object, "any");
@@ -52,7 +52,7 @@ TEST(Mcos, OfMatlabsOwnFilesHasTheValuesOfProperties) {
   ASSERT_TRUE(subsystem.objects);
   const MatValue value = subsystem.cell(subsystem.objects->Find(2, "any")->value);
   ASSERT_EQ(value.parts.size(), 2);
-  // The variables a, b, c are in the file itself, too, as SciPy's loadmat says: -3.9, 52 and 0.
+  // The file also contains the variables a, b, c; SciPy's loadmat reads -3.9, 52 and 0.
   const MatValue& variables = value.parts[1];
   EXPECT_THAT(variables.names, ElementsAre("a", "b", "c"));
   EXPECT_THAT(variables.Field("a")->numbers, ElementsAre(-3.9));
@@ -63,7 +63,7 @@ TEST(Mcos, OfMatlabsOwnFilesHasTheValuesOfProperties) {
 
 // ---- Damage ------------------------------------------------------------------------------------------------------
 
-/// A table with an object of each sort.
+/// A table with an object of each kind.
 objects::File Several() {
   objects::File file;
   const std::size_t inner = file.AddClass("tsdata", "timemetadata"), outer = file.AddClass("", "timeseries");
@@ -79,7 +79,7 @@ std::string TableOf(const objects::File& file, bool is_big) {
   return bytes;
 }
 
-constexpr std::size_t kCells = 7;  // Of Several: the table, none, two values, two of version 4, the defaults.
+constexpr std::size_t kCells = 7;  // In Several: table, empty, two values, two of version 4, defaults.
 
 TEST(Mcos, OfEitherOrderOfBytesIsRead) {
   for (const bool is_big : {false, true}) {
@@ -100,7 +100,7 @@ TEST(Mcos, OfEitherOrderOfBytesIsRead) {
 
 TEST(Mcos, ThatContradictsItselfIsNone) {
   const std::string whole = TableOf(Several(), false);
-  EXPECT_FALSE(Mcos::Read(whole, kCells - 1));  // a value has no cell
+  EXPECT_FALSE(Mcos::Read(whole, kCells - 1));  // one value has no cell
   EXPECT_FALSE(Mcos::Read("", kCells));
   const auto changed = [&](std::size_t word, std::uint32_t number) {
     return Mcos::Read(std::string(whole).replace(4 * word, 4, objects::Bytes(number, 4, false)), kCells);
@@ -108,7 +108,7 @@ TEST(Mcos, ThatContradictsItselfIsNone) {
   EXPECT_TRUE(changed(0, 3));
   EXPECT_FALSE(changed(0, 1));
   EXPECT_FALSE(changed(0, 5));
-  EXPECT_FALSE(changed(1, 4));  // names, of which there are more
+  EXPECT_FALSE(changed(1, 4));  // there are more names
   EXPECT_FALSE(changed(1, 4000));
   for (std::size_t offset = 2; offset < 7; ++offset) {
     EXPECT_FALSE(changed(offset, 36)) << offset;

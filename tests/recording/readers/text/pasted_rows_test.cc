@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is pasted from a serial monitor, and rows that were cut off.
+// Text pasted from a serial monitor, and rows that are cut off.
 #include <string>
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using testing::StartsWith;
 TEST(PastedRows, ReadAPasteOfASerialMonitor) {
   const std::string text = ":03:22.113 -> -10,99\n" + Rows("14:03:22.123 -> {t},{v}") + "14:03:22.203 -> 80";
   const Recording recording = RecordingOf(text, TimeAndValue("1:ms", "", "counts"));
-  ASSERT_EQ(recording.size(), 9);  // The cut stamp is the host's; the device's row behind it is whole.
+  ASSERT_EQ(recording.size(), 9);  // Only the host's stamp is cut; the device's row is whole.
   EXPECT_EQ(recording.value[0], 99);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "incomplete_row");
@@ -90,7 +90,7 @@ TEST(PastedRows, LeaveOutALastValueThatLostDigits) {
   EXPECT_EQ(recording.size(), 9);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].message, "run.csv:11: the row \"90,10\" is cut off; it was left out");
-  EXPECT_EQ(RecordingOf(text + "90,10\n").size(), 10);  // Its line end says that it is whole.
+  EXPECT_EQ(RecordingOf(text + "90,10\n").size(), 10);  // The line end shows that it is whole.
   EXPECT_EQ(RecordingOf(text + "90,105").size(), 10);
 }
 

@@ -40,15 +40,15 @@ TEST(StampClock, RefusesWhatIsNoStamp) {
   for (const char* const text : {"", "x", "1.2.3", "1e300", "99999999999999999999", "1.5x"}) {
     EXPECT_FALSE(clock.Read(text, "", time)) << text;
   }
-  // Beyond what 64 bits hold: they begin at -2^63, and 2^63 - 1 ns have no room for five more.
+  // Outside 64 bits: they begin at -2^63, and adding five to 2^63 - 1 ns overflows.
   EXPECT_FALSE(clock.Read("-9223372036854775808.0", "", time));
   EXPECT_FALSE(clock.Read("9223372036854775807", "5", time));
   for (const char* const text : {"x", "-1", "1000000000"}) EXPECT_FALSE(clock.Read("1700000000", text, time)) << text;
 }
 
-// ---- A row a message ---------------------------------------------------------------------------------------------
+// ---- One row per message -----------------------------------------------------------------------------------------
 
-/// Eight stamps 10 ms apart, which cross a full second.
+/// Eight stamps at intervals of 10 ms that cross a full second.
 std::string Stamped(const std::string& header, const std::string& pattern) {
   std::string text = header + "\n";
   for (int i = 0; i < 8; ++i) {
@@ -111,7 +111,7 @@ TEST(Ros, OfAJointTakesTheAngleUnlessTheRateIsAskedFor) {
   EXPECT_EQ(RecordingOf(text, Unit("rad_s")).quantity, Quantity::kRate);
 }
 
-/// REP 145: what drivers publish under this name is the specific force, with gravity in it.
+/// REP 145: drivers publish under this name the specific force, which includes gravity.
 TEST(Ros, AccelerationsOfAnImuShowGravity) {
   const Recording recording = RecordingOf(Stamped("%time,field.linear_acceleration.x", "{s}{9},{v}"));
   ExpectTheRows(recording);
@@ -157,7 +157,7 @@ TEST(Ros, SaysWhereAStampIsNone) {
       "run.csv:2:1: column \"%time\" holds \"now\", which is no stamp of ROS; correct the field or delete the row");
 }
 
-// ---- A row a joint -----------------------------------------------------------------------------------------------
+// ---- One row per joint -------------------------------------------------------------------------------------------
 
 const std::string kJoints = "header.stamp.sec,header.stamp.nanosec,name,position,velocity,effort";
 

@@ -13,18 +13,18 @@
 
 namespace pendulum {
 
-/// The lines of a text and the SHA-256 of its bytes, with no more than a block of a file in memory at a time. A byte
-/// order mark before the first line is skipped. What could not be CSV text is refused before it is read further:
-/// kDataLoss for a NUL byte (path:line:column) and for a line longer than kLongestLine.
+/// Reads the lines of a text and computes the SHA-256 of its bytes. At most one block of a file is in memory at a time.
+/// A byte order mark before the first line is skipped. kDataLoss for data that cannot be CSV text: a NUL byte
+/// (path:line:column), or a line longer than kLongestLine.
 class LineReader {
  public:
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  ///< Bytes.
 
-  /// The lines of a text in memory, which must outlive this object; `name` stands for the path in messages.
+  /// The lines of a text in memory, which must outlive this object. `name` replaces the path in messages.
   LineReader(std::string_view text, std::string name);
 
-  /// The lines of a file from where it stands, behind those bytes of it that were read already: `begin`, less than
-  /// kLongestLine of them.
+  /// The lines of a file from its current position. `begin` holds the bytes already read from it, fewer than
+  /// kLongestLine.
   explicit LineReader(InputFile file, std::string_view begin = {});
 
   LineReader(LineReader&& other) noexcept;
@@ -33,23 +33,24 @@ class LineReader {
   LineReader& operator=(LineReader&&) = delete;
   ~LineReader();
 
-  /// Goes to the next line; false when there is none. kDataLoss: as above, or the file cannot be read.
+  /// Advances to the next line; false if there is none. kDataLoss: as above, or the file cannot be read.
   Result<bool> Next() {
     if (GoOn()) return true;
     return NextBlock();
   }
 
-  std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), until Next.
+  std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), valid until Next.
   std::size_t number() const { return number_; }         ///< Of the line, 1-based; 0 before the first.
-  bool is_terminated() const { return is_terminated_; }  ///< False for a last line that has no line end.
+  bool is_terminated() const { return is_terminated_; }  ///< False for a last line without a line end.
   bool is_empty() const { return is_empty_; }
   const std::string& name() const { return name_; }
 
-  /// SHA-256 of all bytes, once Next has given false; lower-case hexadecimal. kInternal: OpenSSL cannot compute it.
+  /// SHA-256 of all bytes, lower-case hexadecimal; call after Next has returned false. kInternal: OpenSSL cannot
+  /// compute it.
   Result<std::string> Sha256() { return digest_.Text(); }
 
  private:
-  /// A line of the longest kind with its end just fits, so that a longer one fills it.
+  /// Room for the longest permitted line with its end. A longer line fills the block.
   using Block = std::array<char, kLongestLine + 2>;
 
   bool GoOn();
@@ -61,10 +62,10 @@ class LineReader {
   tl::unexpected<Status> TooLong() const;
 
   std::string name_;
-  std::unique_ptr<InputFile> file_;  // Null when all bytes are in memory.
-  std::unique_ptr<Block> block_;     // Null when all bytes were in memory from the start.
-  const char* at_ = nullptr;         // Of the bytes in memory, the first that is not yet in a line.
-  const char* end_ = nullptr;        // Their end.
+  std::unique_ptr<InputFile> file_;  // Null once all bytes are in memory.
+  std::unique_ptr<Block> block_;     // Null if all bytes were in memory from the start.
+  const char* at_ = nullptr;         // First byte in memory after the current line.
+  const char* end_ = nullptr;        // End of the bytes in memory.
   Sha256Digest digest_;
   std::string_view line_;
   std::size_t number_ = 0;

@@ -9,17 +9,19 @@
 
 namespace pendulum {
 
-/// What the user says about a file in addition to its contents.
+/// Information from the user that the file itself does not give.
 struct ReadOptions {
-  /// Name or 1-based number, both also with :s, :ms or :us; "none": those of the sample rate; empty: the header's.
+  /// Name or 1-based number, optionally with :s, :ms or :us; "none": use the sample rate; empty: the header's.
   std::string time_column;
   std::string value_column;   ///< Name or 1-based number; empty: the header's.
-  std::string unit;           ///< Of the values, as a suffix of the header: rad, m_s2 ...; empty: the header's.
-  double sample_rate_hz = 0;  ///< Of a file without times, Hz; 0: its times, or its `# sample_rate_hz`.
-  std::optional<Calibration> calibration;  ///< Of counts or volts; none: the file's own, if it has one.
-  std::optional<double> resolution;        ///< Spacing of the values, in the file's unit; 0: none; absent: the file's.
-  std::optional<SensorRange> range;        ///< What the sensor can show, in the file's unit; absent: the file's own.
-  /// Of a member of a zip file, or of all columns of a MAT-file, which may be a thousand times as large as the file.
+  std::string unit;           ///< Of the values, as a suffix in the header: rad, m_s2 ...; empty: the header's.
+  double sample_rate_hz = 0;  ///< For a file without times, Hz; 0: use its times, or its `# sample_rate_hz`.
+  std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
+  std::optional<double> resolution;        ///< Spacing of values, in the file's unit; 0: continuous; std::nullopt: the
+                                           ///< file's.
+  std::optional<SensorRange> range;        ///< The sensor's range, in the file's unit; std::nullopt: the file's own.
+  /// Limit for a member of a zip file and for all columns of a MAT-file, which may be a thousand times larger than the
+  /// file.
   std::size_t most_unpacked_bytes = std::size_t{1} << 29;
 };
 
