@@ -26,7 +26,8 @@ const AmplitudeTrend* TrendWithin(const RunAlone& run, const std::string& name) 
   return is_there ? &*trend : nullptr;
 }
 
-/// Mean of amplitude² over the windows, weighted by what they tell of the parameter: there slope and value are apart.
+/// Mean of amplitude² over the windows. The weight of a window is its information about the parameter; with these
+/// weights the errors of slope and value are uncorrelated.
 double MeanSquare(const RunAlone& run, const std::string& name) {
   double sum = 0, weights = 0;
   for (const AmplitudeRow& row : run.constancy->windows) {
@@ -38,10 +39,10 @@ double MeanSquare(const RunAlone& run, const std::string& name) {
   return sum / weights;
 }
 
-/// Numbers that a line a + slope x, x = amplitude², is to explain, each divided by its error.
+/// The data of a line a + slope · x, x = amplitude²; each number is divided by its standard error.
 struct Line {
   std::vector<double> value, constant, slope;
-  std::size_t estimates = 0;  // of whole recordings; they come first
+  std::size_t estimates = 0;  // number of estimates of whole recordings, which come first
 
   void Add(double y, double by_constant, double by_slope, double error) {
     value.push_back(y / error);
@@ -59,7 +60,7 @@ struct Line {
   }
 };
 
-/// amplitude² of each recording, and of those that tell the parameter its range and mean.
+/// amplitude² of each recording. Range and mean are over the recordings that determine the parameter.
 struct Squares {
   std::vector<double> of_run;
   double lowest = kUnbounded, highest = 0, mean = 0;
@@ -83,7 +84,7 @@ Squares SquaresOf(const std::vector<RunAlone>& runs, const SharedParameter& para
   return squares;
 }
 
-/// About mean amplitude² and value, so that no digits are lost.
+/// Centers amplitude² and value at their means to avoid loss of digits.
 Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter, const Squares& squares) {
   Line line;
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -100,11 +101,11 @@ Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
   return line;
 }
 
-/// The least squares of a line, and of a constant alone.
+/// Least-squares fits of a line and of a constant alone.
 struct LineFit {
   double slope = 0, slope_variance = 0;
-  VectorXd left;                // by the line
-  double left_by_constant = 0;  // sum of squares
+  VectorXd left;                // residuals of the line
+  double left_by_constant = 0;  // sum of squared residuals of the constant
 };
 
 LineFit Solve(const Line& line) {
@@ -131,8 +132,8 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
   return std::sqrt(sum / kPlaces);
 }
 
-/// By least squares of numbers with independent errors. What is left tells by how much the errors are too small, if
-/// they are: the F test of the slope is against that, or against the errors themselves where less is left.
+/// Least squares of numbers with independent errors. The residuals may show that the errors are too small. The F test
+/// of the slope then uses the residual variance; if the residuals are smaller than the errors, it uses the errors.
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes) {

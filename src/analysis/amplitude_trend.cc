@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 constexpr std::size_t kMostWindows = 8;
 constexpr std::size_t kFewestWindows = 3;
 
-/// The friction torque with the smallest relative standard error; nullptr: none has one.
+/// The friction parameter with the smallest relative standard error; nullptr: no friction has a standard error.
 const ParameterEstimate* BestFriction(const FitReport& fit) {
   const ParameterEstimate* best = nullptr;
   const auto relative = [](const ParameterEstimate& p) { return *p.std_error / std::abs(p.estimate); };
@@ -31,21 +31,21 @@ const ParameterEstimate* BestFriction(const FitReport& fit) {
   return best;
 }
 
-/// W windows' fits and what their residuals together say of the noise.
+/// Fits of W windows, and the noise estimated from all their residuals together.
 struct Windows {
   std::vector<PartFit> parts;
   std::vector<LinearFit> linear;
-  std::vector<Index> tested;  // T parameters of which each window has an estimate of its own
+  std::vector<Index> tested;  // T parameters that each window estimates separately
   NoiseModel noise;
   Autocorrelation memory;
-  ReadingTerms terms;  // of all readings used
+  ReadingTerms terms;  // score and information of all used readings
 
   ReadingTerms TermsIn(const PartFit& part) const {
     return {terms.score.segment(part.first, part.part.size()), terms.information.segment(part.first, part.part.size())};
   }
 };
 
-/// Where a window's linear fit has parameter k.
+/// The row of parameter k in a window's linear fit.
 Index RowOf(const LinearFit& linear, Index k) { return std::ranges::find(linear.free, k) - linear.free.begin(); }
 
 /// One σ for all windows.
@@ -59,7 +59,8 @@ double PooledSigma(const std::vector<PartFit>& parts) {
   return std::sqrt(sum / freedom);
 }
 
-/// The memory that the windows' residuals show: those of the whole fit have that of its misfit too.
+/// Autocorrelation of the windows' residuals. The residuals of the whole fit would include the autocorrelation of its
+/// misfit.
 Autocorrelation PooledMemory(const Recording& used, const Windows& windows, const VectorXd& readings,
                              const std::stop_token& stop) {
   const Index first = windows.parts.front().first;
@@ -78,12 +79,12 @@ Autocorrelation PooledMemory(const Recording& used, const Windows& windows, cons
                   windows.noise.From(first), readings.segment(first, count), jacobian, stop);
 }
 
-/// How a window's estimate of parameter k answers to what it holds at the whole fit's estimates.
+/// Derivative of a window's estimate of parameter k with respect to the parameters held at the whole fit's estimates.
 VectorXd Response(const Windows& windows, std::size_t w, Index k, const std::vector<Index>& held, double elapsed) {
   const LinearFit& linear = windows.linear[w];
   MatrixXd columns = linear.jacobian(Eigen::all, held);
   for (std::size_t h = 0; h < held.size(); ++h) {
-    // A drift has moved the zero up to the window already.
+    // The drift before the window has already moved the zero.
     if (IsDrift(windows.parts[w].fit.parameters[static_cast<std::size_t>(held[h])].info.name))
       columns.col(static_cast<Index>(h)) += elapsed * linear.jacobian.col(held[h] - 1);
   }
@@ -91,7 +92,7 @@ VectorXd Response(const Windows& windows, std::size_t w, Index k, const std::vec
   return -columns.transpose() * information.asDiagonal() * linear.influence.col(RowOf(linear, k));
 }
 
-/// The parameters that all windows hold at estimates of the whole fit, and their columns there.
+/// The parameters that all windows hold at the whole fit's estimates, and their columns in that fit.
 std::pair<std::vector<Index>, std::vector<Index>> HeldEstimates(const FitReport& fit, const LinearFit& whole,
                                                                 const std::vector<Index>& tested) {
   std::pair<std::vector<Index>, std::vector<Index>> held;
@@ -105,8 +106,8 @@ std::pair<std::vector<Index>, std::vector<Index>> HeldEstimates(const FitReport&
   return held;
 }
 
-/// How the windows' estimates of parameter k follow all readings: N x W, through the window itself and through what all
-/// windows hold at the whole fit's estimates.
+/// Influence of all readings on the windows' estimates of parameter k: N x W. A reading acts through its own window and
+/// through the parameters held at the whole fit's estimates.
 MatrixXd InfluenceOn(Index k, const Recording& used, const FitReport& fit, const LinearFit& whole,
                      const Windows& windows) {
   const auto [held, columns] = HeldEstimates(fit, whole, windows.tested);
@@ -121,7 +122,7 @@ MatrixXd InfluenceOn(Index k, const Recording& used, const FitReport& fit, const
   return influence;
 }
 
-/// What the parameters of the windows took from the residuals' variance.
+/// Correction for the variance that the parameters of the windows took from the residuals.
 double WindowInflation(const Recording& used, const Windows& windows) {
   double lost = 0;
   Index free = 0, samples = 0;
@@ -136,8 +137,8 @@ double WindowInflation(const Recording& used, const Windows& windows) {
   return Inflation(windows.noise, samples, free, lost);
 }
 
-/// The trend of the values with amplitude², by least squares weighted with 1 / variance; its error is exact for their
-/// covariance.
+/// The trend of the values with amplitude², by least squares with weights 1 / variance. Its standard error uses the
+/// full covariance of the values.
 AmplitudeTrend TrendOf(const ParameterEstimate& parameter, const VectorXd& value, const MatrixXd& covariance,
                        const VectorXd& square) {
   const VectorXd weight = covariance.diagonal().cwiseInverse();
@@ -154,7 +155,7 @@ AmplitudeTrend TrendOf(const ParameterEstimate& parameter, const VectorXd& value
   return trend;
 }
 
-/// Fits the windows; the reason why not, or nothing.
+/// Fits the windows. Returns the reason for a failure, otherwise an empty string.
 std::string FitWindows(const Parts& parts, const std::vector<double>& ends, const FitReport& fit, Windows& windows) {
   std::vector<std::string_view> held;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -174,7 +175,7 @@ std::string FitWindows(const Parts& parts, const std::vector<double>& ends, cons
   return "";
 }
 
-/// What all windows' readings say under one noise.
+/// Linearizes all windows with one common noise.
 bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOptions& options, const Parts& parts,
                       Windows& windows) {
   windows.noise = parts.NoiseOf(fit);
@@ -192,7 +193,7 @@ bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOpti
   return true;
 }
 
-/// A window before its estimates; the amplitude is the mean over it.
+/// A window's row without estimates; the amplitude is the mean over the window.
 AmplitudeRow RowOf(const PartFit& window, const Parts& parts) {
   constexpr int kPlaces = 13;
   AmplitudeRow row;
@@ -206,7 +207,7 @@ AmplitudeRow RowOf(const PartFit& window, const Parts& parts) {
   return row;
 }
 
-/// The windows' estimates of parameter k, as their readings alone would have them.
+/// The windows' estimates of parameter k without bounds.
 VectorXd EstimatesOf(Index k, const Windows& windows) {
   VectorXd value(static_cast<Index>(windows.parts.size()));
   for (std::size_t w = 0; w < windows.parts.size(); ++w) {
@@ -217,7 +218,7 @@ VectorXd EstimatesOf(Index k, const Windows& windows) {
   return value;
 }
 
-/// Puts the windows' estimates and their trends into the result. `whole` is under the windows' noise.
+/// Adds the windows' estimates and their trends to the result. `whole` is linearized with the windows' noise.
 void AddTrends(const Recording& used, const FitReport& fit, const LinearFit& whole, const Windows& windows,
                const Parts& parts, Constancy& result) {
   VectorXd square(static_cast<Index>(windows.parts.size()));

@@ -22,17 +22,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What a formula says of one quantity.
+/// One quantity that a formula gives.
 struct FormulaRow {
   std::string quantity, method;
-  std::string parameter;  ///< The fit's counterpart, a parameter or "damping_ratio".
-  std::string amplitude;  ///< What finite amplitude does to it, where it does.
+  std::string parameter;  ///< The fit's counterpart: a parameter or "damping_ratio".
+  std::string amplitude;  ///< Effect of finite amplitude, if there is one.
 };
 
-/// Formulas that are applied together, K of them; in units of G.
+/// K formulas that are applied together; in units of G.
 struct FormulaGroup {
   std::vector<FormulaRow> rows;
-  std::string assumption;  // beside the model's
+  std::string assumption;  // in addition to the model's assumptions
   VectorXd value, error;   // K
   MatrixXd gradient;       // K x 2 M
   FormulaValues apply;     // to another recording
@@ -52,7 +52,7 @@ VectorXd LinearValues(const LogDecrement& linear) {
                          linear.corrected_inertia.value);
 }
 
-/// The textbook's formulas, over the same turning points wherever they are applied.
+/// The textbook's formulas; they use the same turning points for every recording.
 FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
   const LogDecrement& linear = *forms.linear;
   FormulaGroup group;
@@ -76,7 +76,9 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
     const std::optional<std::size_t> from = table ? PeakAt(*table, first) : std::nullopt;
     if (!from) return std::nullopt;
     std::optional<LogDecrement> there = ApplyLogDecrement(*table, gravity, *from, periods);
-    if (!there) there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // the last turn may be at the end
+    if (!there)
+      there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // the last turning point may be at the
+                                                                       // end
     if (!there) return std::nullopt;
     return LinearValues(*there);
   };
@@ -115,14 +117,14 @@ FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity, cons
   return group;
 }
 
-/// The fit as the check needs it: estimates, and how they follow the readings.
+/// The fit's estimates and their dependence on the readings.
 class FitSide {
  public:
   FitSide(const FitReport& fit, const FittedMotion& motion) : fit_(fit), motion_(motion) {}
 
   struct Value {
     double value = 0;
-    std::optional<double> std_error;  ///< 0 for what was held.
+    std::optional<double> std_error;  ///< 0 if the parameter was fixed.
     double scale = 1;                 ///< The report's unit per unit of the closed form.
     std::string unit, reason;
     VectorXd weights;  ///< P: derivatives with respect to the parameters.
@@ -142,7 +144,7 @@ class FitSide {
     return std::nullopt;
   }
 
-  /// Standard deviation of a closed form less the fit, where noise of that size and memory moves both: `influence` (N)
+  /// Standard deviation of (closed form - fit), if noise of this size and autocorrelation changes both. `influence` (N)
   /// and `weights` (P) are in the report's units.
   std::optional<double> DifferenceDeviation(const VectorXd& influence, const VectorXd& weights, double noise,
                                             const Autocorrelation& memory) {
@@ -153,7 +155,7 @@ class FitSide {
   }
 
  private:
-  /// ζ = b / (2 sqrt(I)) in units of G; b and I may be in others, whose ratio counts.
+  /// ζ = b / (2 sqrt(I)) in units of G. The weights are relative derivatives, so b and I may have other units.
   std::optional<Value> DampingRatio() const {
     const auto found = std::ranges::find(fit_.derived, kDampingRatio, &DerivedQuantity::name);
     const ParameterEstimate* inertia = fit_.Find(kInertia.name);
@@ -169,7 +171,7 @@ class FitSide {
     return value;
   }
 
-  /// (JᵀJ)⁻¹ Jᵀ over the parameters that have an error, columns scaled alike.
+  /// (JᵀJ)⁻¹ Jᵀ over the parameters that have a standard error, with columns scaled to equal size.
   bool Linearize() {
     if (solver_.size() > 0) return true;
     MatrixXd jacobian;
@@ -194,7 +196,7 @@ class FitSide {
   MatrixXd solver_;  // P x N
 };
 
-/// z and verdict, where there is a standard deviation of the difference.
+/// Sets z and the verdict if the difference has a standard deviation.
 void Judge(double deviation, ClosedFormRow& row) {
   if (!(deviation > 0)) return;
   row.z = (row.closed_form - row.fit) / deviation;
@@ -240,8 +242,9 @@ class Checker {
   }
 
  private:
-  /// Hausman's, while the residuals are white and it is no small difference of large numbers. Residuals of a wrong law
-  /// remember it and are no noise: then it is that of neighbouring samples, or the closed form's own if that is larger.
+  /// Hausman's deviation, if the residuals are white and the difference of variances is not small. The residuals of a
+  /// wrong law are autocorrelated misfit, not noise. In that case it uses the noise between neighbouring samples, or
+  /// the closed form's own error if that is larger.
   std::optional<double> Deviation(const ClosedFormRow& row, const FitSide::Value& fitted, const VectorXd& gradient) {
     constexpr double kSmallDifference = 0.25;
     if (!fitted.std_error) return std::nullopt;
@@ -261,9 +264,9 @@ class Checker {
     return {group.assumption, formula.amplitude, DescribeMisfit()};
   }
 
-  /// What the readings have that the fitted law has not.
+  /// Names the property of the readings that the fitted law lacks.
   std::string DescribeMisfit() const {
-    constexpr double kFarMore = 3;  // than the errors of the turning points
+    constexpr double kFarMore = 3;  // than the standard errors of the turning points
     if (!forms_.wrong_law.empty()) return "the friction law (" + forms_.wrong_law + ")";
     std::string misfit = "what the recording has beyond the fitted motion";
     const double scatter = forms_.decrement ? forms_.decrement->chi_square / forms_.decrement->freedom : 0;
@@ -283,7 +286,8 @@ std::string Percent(double ratio) {
   return NumberText(std::abs(100 * (ratio - 1)), 2) + (ratio > 1 ? " % larger" : " % smaller");
 }
 
-/// Rows of the rig's own inertia and of a point mass. The clock's error is the fit's alone: I goes with its square.
+/// Adds rows for the rig's own inertia and for a point mass. Only the fit depends on the clock's error: I is
+/// proportional to the square of the clock's scale.
 void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, std::vector<ClosedFormRow>& rows) {
   const ParameterEstimate* fitted = fit.Find(kInertia.name);
   if (fitted == nullptr) return;
@@ -311,11 +315,11 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
   }
 }
 
-/// Whether a point mass would do for this rig, in words; empty where it has none.
+/// Says whether a point mass is a good enough model of this rig; empty without such a row.
 std::string DescribePointMass(const std::vector<ClosedFormRow>& rows) {
   const auto row = std::ranges::find(rows, "inertia_point_mass", &ClosedFormRow::quantity);
   if (row == rows.end()) return "";
-  constexpr double kWouldDo = 0.01;  // where the rig gives no errors
+  constexpr double kWouldDo = 0.01;  // used if the rig gives no standard errors
   const double ratio = row->closed_form / row->fit;
   const bool would_do = row->agrees.value_or(std::abs(ratio - 1) < kWouldDo);
   return std::string("; a point mass would ") + (would_do ? "do" : "not do") + ": its inertia is " + Percent(ratio) +
@@ -341,8 +345,8 @@ TextbookOverlay MakeOverlay(const Recording& used, const LogDecrement& linear, c
   return overlay;
 }
 
-/// With parameters of the linear formulas the linear model may be nearer than the nonlinear one: they hold the longer
-/// period of large swings.
+/// With parameters from the linear formulas the linear model may be nearer than the nonlinear one: the parameters
+/// absorb the longer period of large swings.
 std::string DescribeOverlay(const TextbookOverlay& overlay, const LogDecrement& linear, const std::string& unit) {
   const auto rms = [&](double value) { return NumberText(value, 2) + " " + unit; };
   std::string text = "With the linear formulas' inertia and damping the linear model leaves " +

@@ -13,15 +13,15 @@ namespace {
 
 using Eigen::Index;
 
-/// Noise below this many counts, with memory, is neither Gaussian nor independent: no likelihood is known for it.
+/// Autocorrelated noise below this many counts is neither Gaussian nor independent: its likelihood is unknown.
 constexpr double kSmallestSigma = 0.5;
 
-/// What is at the bound 0 leaves a simpler law; at another bound it has been used.
+/// A parameter at the bound 0 leaves a simpler law and is not counted; a parameter at another bound is counted.
 bool Counts(const ParameterEstimate& parameter) {
   return !parameter.fixed && !(parameter.at_bound && parameter.estimate == 0);
 }
 
-/// How far a parameter may move from its estimate within its bounds and the user's.
+/// Range of steps from a parameter's estimate within its bounds and the user's.
 std::pair<double, double> Room(const ParameterEstimate& parameter, const FitOptions& options) {
   double lower = parameter.info.lower;
   double upper = parameter.info.upper;
@@ -32,7 +32,7 @@ std::pair<double, double> Room(const ParameterEstimate& parameter, const FitOpti
   return {std::min(lower - parameter.estimate, 0.0), std::max(upper - parameter.estimate, 0.0)};
 }
 
-/// Residuals as small as the trajectory's own error are numbers', not a sensor's.
+/// Residuals as small as the trajectory's numerical error are rounding, not a sensor's noise.
 bool IsRounding(const FitReport& best) { return best.statistics.rms_residual <= best.trace_error; }
 
 bool IsNormal(const FitReport& best) {

@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 
 // ---- Where to cut --------------------------------------------------------------------------------------------------
 
-/// The first instant that is surely after the release [s, file's clock].
+/// The first instant that is certainly after the release [s, file's clock].
 double BeginOfMotion(const Recording& used, const FitReport& fit) {
   constexpr double kSurely = 4;  // standard errors
   const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
@@ -33,9 +33,9 @@ double BeginOfMotion(const Recording& used, const FitReport& fit) {
   return release->estimate + kSurely * release->std_error.value_or(0);
 }
 
-/// Where the motion begins and each turning point after it [s, file's clock]: M + 1 ends of M half swings.
+/// The beginning of the motion and each turning point after it [s, file's clock]: M + 1 ends of M half swings.
 std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
-  constexpr double kFirst = 0.5;  // of a half swing; what comes earlier is the start itself
+  constexpr double kFirst = 0.5;  // of a half swing: an earlier turning point is the start itself
   const Result<Recording> moving = SelectWindow(used, begin, std::numeric_limits<double>::quiet_NaN());
   const auto turns = moving ? FindExtrema(*moving) : tl::unexpected(moving.error());
   std::vector<double> ends = {begin};
@@ -67,7 +67,7 @@ void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& s
   result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
-/// Why there is no test; empty when there is.
+/// Returns why there is no test; empty if there is one.
 std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
                           const FitOptions& options, Constancy& result) {
   if (ends.size() - 1 < 2 * kFewestHalfSwings) return TooShort(ends, "halves", 2 * kFewestHalfSwings);
@@ -100,7 +100,7 @@ std::string Estimate(double value, double error) {
   return NumberText(value, digits) + " ± " + NumberText(error, 2);
 }
 
-/// What differs between the halves: the parameter that does so most.
+/// Names the parameter that differs most between the halves.
 std::string DescribeHalves(const Constancy& result) {
   const auto row =
       std::ranges::max_element(result.halves, {}, [](const HalvesRow& candidate) { return std::abs(candidate.z); });

@@ -17,10 +17,10 @@
 namespace pendulum {
 namespace {
 
-/// One parameter of one recording: what is true, and what the fit said. Units of the report.
+/// One parameter of one recording: the true value and the fit's result, in units of the report.
 struct ParameterOutcome {
   double truth = 0;
-  std::string unit;             ///< Of the report, if there is one.
+  std::string unit;             ///< Unit in the report, if there is one.
   std::optional<double> bound;  ///< Cramér-Rao
   std::optional<double> estimate, std_error;
   bool has_interval = false;
@@ -33,7 +33,7 @@ struct RunOutcome {
   bool converged = false;
 };
 
-/// How many units of the report are one unit of G-relative values.
+/// Factor from G-relative units to the report's unit.
 double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
   return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
 }
@@ -47,7 +47,7 @@ void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) 
                     outcome.truth <= parameter.upper95.value_or(kUnbounded);
 }
 
-/// What came out of one recording, or set of them, for the parameters that are counted.
+/// The outcome of one recording, or of a set, for the counted parameters.
 RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>& truth,
                      const std::vector<std::optional<double>>& bounds, const FitReport* report) {
   const std::vector<ParameterInfo> infos = ParametersOf(scenario.run);
@@ -58,7 +58,7 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>
     const double unit = ReportUnit(scenario, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
-    // A bound takes for unknown what the fit holds.
+    // A Cramér-Rao bound treats fixed parameters as unknown.
     if (bounds[i] && scenario.fit.fixed.empty()) parameter.bound = unit * *bounds[i];
     const ParameterEstimate* found = outcome.converged ? report->Find(infos[i].name) : nullptr;
     if (found != nullptr) AddEstimate(*found, parameter);
@@ -67,7 +67,7 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>
   return outcome;
 }
 
-/// The truth of recording k of a set: another release, or start.
+/// The true values of recording k of a set: another release angle, or another start.
 SyntheticOptions RunOfSet(const CoverageScenario& scenario, std::uint64_t seed, int k, int runs) {
   constexpr double kSmallest = 0.7, kLargest = 1.3;
   const double factor = kSmallest + (kLargest - kSmallest) * k / (runs - 1);
@@ -108,7 +108,8 @@ Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) 
   return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
 }
 
-/// All recordings, in the order of their seeds whoever fits them: each on one thread, for there are many.
+/// Results of all recordings in the order of their seeds, independent of the thread. Each fit uses one thread, because
+/// there are many fits.
 std::vector<Result<RunOutcome>> RunAll(CoverageScenario scenario, const CoverageOptions& options) {
   scenario.fit.threads = 1;
   std::vector<Result<RunOutcome>> outcomes(static_cast<std::size_t>(options.count));
@@ -125,7 +126,7 @@ std::vector<Result<RunOutcome>> RunAll(CoverageScenario scenario, const Coverage
   return outcomes;
 }
 
-/// Running mean; absent without numbers.
+/// Running mean; absent without values.
 class Mean {
  public:
   void Add(double x) {
@@ -140,7 +141,7 @@ class Mean {
   int count_ = 0;
 };
 
-/// Sums over the recordings for parameter i.
+/// Statistics of parameter i over the recordings.
 void Summarize(const std::vector<RunOutcome>& outcomes, std::size_t i, CoverageRow& row) {
   Mean square, normalized_square, std_error, square_with_std_error;
   for (const RunOutcome& outcome : outcomes) {
@@ -188,7 +189,7 @@ CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutco
 
 }  // namespace
 
-/// Each end errs at most 2.5 % of the time (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
+/// Each end is wrong in at most 2.5 % of the cases (C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404).
 BinomialInterval BinomialInterval95(int successes, int trials) {
   constexpr double kTail = 0.025;
   return {BinomialLowerLimit(successes, trials, kTail), BinomialUpperLimit(successes, trials, kTail)};

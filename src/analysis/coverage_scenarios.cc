@@ -16,14 +16,15 @@
 namespace pendulum {
 namespace {
 
-// The rig of datasets/textbook_rig.json and its sensor: G = (M + m/2) g l, I_O and b as published, and dry friction.
+// The rig of datasets/textbook_rig.json and its sensor: G = (M + m/2) g l, I_O and b as published; dry friction is
+// added.
 constexpr double kGravityTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
 constexpr double kInertiaTruth = 0.079;                               // kg m²
 constexpr double kViscousTruth = 0.003;                               // N m s/rad
 constexpr double kCoulombTruth = 0.004;                               // N m
 constexpr double kCount = 0.1985 * kRadFromDeg;                       // rad
 
-/// Held at 0.423 rad for 1.9 s, then 18 s of swing; the noise is given in counts, the sensor shows whole counts.
+/// Held at 0.423 rad for 1.9 s, then 18 s of swing. The noise is given in counts; the sensor returns whole counts.
 CoverageScenario OnCounts(std::string name, std::string description, double noise) {
   CoverageScenario scenario{std::move(name), std::move(description), {}, {}, {}};
   SyntheticOptions& run = scenario.run;
@@ -38,14 +39,15 @@ CoverageScenario OnCounts(std::string name, std::string description, double nois
   return scenario;
 }
 
-/// The same from a sensor without counts.
+/// The same with a sensor without counts.
 CoverageScenario Fine(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.run.resolution = 0;
   return scenario;
 }
 
-/// Noise so small that intervals come from the posterior: right on average over σ, and too wide where there is none.
+/// Noise so small that intervals come from the posterior. They have the right coverage on average over σ, and are too
+/// wide without noise.
 CoverageScenario AlmostNoNoise(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.rule.highest = 1;
@@ -58,7 +60,7 @@ CoverageScenario ToRest() {
   return scenario;
 }
 
-/// Short enough that it is not at rest at the end, which is another scenario's matter.
+/// A duration of 10 s ends before the pendulum comes to rest; another scenario covers rest.
 CoverageScenario SmallSwing() {
   CoverageScenario scenario = OnCounts("small_swing", "a swing of 5 deg, 10 s; noise of 0.25 count on counts", 0.25);
   scenario.run.release_angle = 5 * kRadFromDeg;
@@ -75,7 +77,7 @@ CoverageScenario Moving() {
   return scenario;
 }
 
-/// The hold at 24.9 deg is within the range, the first five or so turning points on the other side are not.
+/// The hold at 24.9 deg is within the range. About the first five turning points on the other side are outside it.
 CoverageScenario Saturated() {
   CoverageScenario scenario =
       OnCounts("saturated", "readings below -18 deg are cut off; noise of 0.25 count on counts", 0.25);
@@ -85,8 +87,8 @@ CoverageScenario Saturated() {
   return scenario;
 }
 
-/// An encoder of 2400 counts a turn, in motion when the recording begins, with a row for each change of its count. Its
-/// edges err by a twentieth of a count, its stamps by as much at half the largest rate.
+/// An encoder of 2400 counts per turn, in motion when the recording begins, with one row per count. Its edges have
+/// errors of a twentieth of a count; its time stamps have an equal error at half the largest rate.
 CoverageScenario OnTicks(std::string name, std::string description) {
   CoverageScenario scenario = Moving();
   scenario.name = std::move(name);
@@ -100,7 +102,7 @@ CoverageScenario OnTicks(std::string name, std::string description) {
   return scenario;
 }
 
-/// So few counts that turning points and rest are slow against a count.
+/// So few counts that the motion near turning points and rest is slow compared with a count.
 CoverageScenario OnFewTicks(std::string name, std::string description) {
   CoverageScenario scenario = OnTicks(std::move(name), std::move(description));
   scenario.run.initial_angle = 0.08;
@@ -111,37 +113,38 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
   return scenario;
 }
 
-/// The same encoder with play: its counts change behind their edges.
+/// The same encoder with play: its counts change after their edges.
 CoverageScenario Lagging(CoverageScenario scenario) {
   scenario.run.edge_lag = 0.35 * scenario.run.resolution;
   return scenario;
 }
 
-/// Known to have no lag, as readings at even times are taken to.
+/// Fixes the lag at 0, which is also assumed for readings at even times.
 CoverageScenario WithoutLag(CoverageScenario scenario) {
   scenario.fit.fixed = {{std::string(kEdgeLag.name), 0}};
   return scenario;
 }
 
-/// The same encoder at even times, whose errors last while a count does: for comparison, not for its intervals.
+/// The same encoder sampled at even times. An error lasts as long as a count, so this scenario is for comparison and
+/// not for its intervals.
 CoverageScenario Sampled(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenOfEvents;
   scenario.run.time_noise = 0;
-  scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior of so many samples takes seconds
+  scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior with so many samples takes seconds
   scenario.rule.lowest = 0;
   scenario.rule.highest = 1;
   return scenario;
 }
 
-/// In motion when the recording begins, seen by another sensor whose readings have that noise. What of the sensor is
-/// drawn for each recording, as it is known beforehand, ScenarioRun has.
+/// A moving start, measured by another sensor with noise `noise`. ScenarioRun draws the sensor's parameters for each
+/// recording, within their prior uncertainty.
 CoverageScenario Seen(std::string name, std::string description, Quantity quantity, SensorKind kind,
                       std::vector<double> parameters, double noise) {
   CoverageScenario scenario = Moving();
   scenario.name = std::move(name);
   scenario.description = std::move(description);
   SyntheticOptions& run = scenario.run;
-  run.initial_angle = 0.5;  // on the side that the fit takes for positive where the sensor tells none
+  run.initial_angle = 0.5;  // a sensor without sign: the fit assumes this side is positive
   run.initial_rate = -1.5;
   run.quantity = quantity;
   run.sensor.kind = kind;
@@ -152,7 +155,7 @@ CoverageScenario Seen(std::string name, std::string description, Quantity quanti
   return scenario;
 }
 
-/// Known of a sensor beforehand to so much, as the fit takes it for granted: draws about it.
+/// Draws the sensor's parameters with the prior uncertainty that the fit assumes.
 void DrawSensor(const CoverageScenario& scenario, std::mt19937_64& generator, SyntheticOptions& run) {
   boost::random::normal_distribution<double> draw;
   std::vector<double>& p = run.sensor_parameters;
@@ -180,7 +183,7 @@ CoverageScenario HeavyTails() {
   return scenario;
 }
 
-/// `parameter` of SyntheticOptions is 0, its bound.
+/// Sets `parameter` of SyntheticOptions to 0, its bound.
 CoverageScenario Without(std::size_t parameter, std::string name, std::string description) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), 0.5);
   scenario.run.parameters[parameter] = 0;
@@ -190,7 +193,8 @@ CoverageScenario Without(std::size_t parameter, std::string name, std::string de
 }  // namespace
 
 std::vector<CoverageScenario> CoverageScenarios() {
-  constexpr double kStrongLowest = 0.91;  // of the coverage at a correlation of 0.9, where few samples are independent
+  constexpr double kStrongLowest = 0.91;  // lower limit of the coverage at a correlation of 0.9, where few samples are
+                                          // independent
   return {
       OnCounts("white_2.5", "white noise of 2.5 counts on counts", 2.5),
       OnCounts("white_0.5", "white noise of 0.5 count on counts", 0.5),
@@ -216,7 +220,7 @@ std::vector<CoverageScenario> CoverageScenarios() {
            Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.25}, 0.05),
       Seen("acceleration_along", "the same along the rod", Quantity::kAcceleration, SensorKind::kAcceleration,
            {0, 1, kPi / 2, 0.25}, 0.05),
-      // In metres, which simulated lengths are in.
+      // In metres, the unit of simulated lengths.
       Seen("pixels_x", "the horizontal coordinate of a point, 400 pixels of 1 mm from the pivot; noise of 0.5 pixel",
            Quantity::kPosition, SensorKind::kCoordinate, {0, 0.64, 0.4}, 0.0005),
       Seen("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc, {0, 0.64, 0.12, 0.4},
@@ -252,9 +256,9 @@ Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& n
   return found;
 }
 
-/// A truth of its own for every seed, uniformly about the scenario's: the counts' phase is never the same.
+/// Each seed draws its true values uniformly about the scenario's, so the phase of the counts varies.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed) {
-  // Not the stream of the noise, which begins with the seed itself.
+  // Uses another stream than the noise, which starts from the seed itself.
   std::mt19937_64 generator(~seed);
   boost::random::uniform_real_distribution<double> draw(-0.5, 0.5);
   SyntheticOptions run = scenario.run;

@@ -32,7 +32,7 @@ std::optional<Sensitivities> SensitivitiesAt(const SyntheticOptions& truth, cons
   data.latest_release = data.time.back();
   std::vector<double> parameters = TrueParameters(truth);
   const bool events = truth.rows == RowTiming::kEvents;
-  if (events) parameters.pop_back();  // the lag, which moves no other derivative
+  if (events) parameters.pop_back();  // the lag, which does not change other derivatives
   if (truth.start == StartKind::kRelease) parameters[truth.parameters.size() + 1] -= time[0];
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(truth.model, truth.start, data);
   cost->set_tolerance(kTolerance);
@@ -44,7 +44,7 @@ std::optional<Sensitivities> SensitivitiesAt(const SyntheticOptions& truth, cons
   return at;
 }
 
-/// Of the parameters and log σ, (P + 1) x (P + 1), from white Gaussian noise.
+/// Information of the parameters and log σ, (P + 1) x (P + 1), from white Gaussian noise.
 Eigen::MatrixXd WhiteInformation(const SyntheticOptions& truth, const Sensitivities& at) {
   const Index size = at.jacobian.cols();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size + 1, size + 1);
@@ -60,16 +60,16 @@ Eigen::MatrixXd WhiteInformation(const SyntheticOptions& truth, const Sensitivit
   return information;
 }
 
-/// Jᵀ R^-1 J from the innovations of each of J's columns, R the covariance of AR(1) noise and white noise of variance
-/// q²/12: on levels the bound of the best linear estimate, as near as the quantization noise is white (Widrow & Kollár,
-/// Quantization Noise, 2008). The size of Gaussian noise tells nothing of its mean: log σ would be a block of its own.
+/// Jᵀ R^-1 J from the innovations of each of J's columns. R is the covariance of AR(1) noise and white noise of
+/// variance q²/12. On levels it is the bound of the best linear estimate, if the quantization noise is white (Widrow &
+/// Kollár, Quantization Noise, 2008). The size of Gaussian noise is independent of its mean, so log σ is left out.
 Eigen::MatrixXd CorrelatedInformation(const SyntheticOptions& truth, const Sensitivities& at) {
   const double correlation = truth.noise_correlation;
   const double stationary = truth.noise * truth.noise;
   const double white = truth.resolution * truth.resolution / 12;
   Eigen::MatrixXd whitened(at.jacobian.rows(), at.jacobian.cols());
   Eigen::RowVectorXd predicted = Eigen::RowVectorXd::Zero(at.jacobian.cols());
-  double variance = stationary;  // of the prediction of the AR(1) part
+  double variance = stationary;  // variance of the prediction of the AR(1) part
   for (Index i = 0; i < whitened.rows(); ++i) {
     const Eigen::RowVectorXd innovation = at.jacobian.row(i) - predicted;
     const double gain = variance / (variance + white);
@@ -86,7 +86,7 @@ Eigen::MatrixXd StudentInformation(const SyntheticOptions& truth, const Sensitiv
   return weight * (at.jacobian.transpose() * at.jacobian);
 }
 
-/// Of events: edges and their stamps have normal errors. The first row is none.
+/// Information in events: edges and their time stamps have normal errors. The first row is not an event.
 Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitivities& at, const Eigen::VectorXd& time) {
   const Eigen::ArrayXd late = truth.time_noise * RatesOf(time, at.readings).array();
   Eigen::VectorXd weight = (truth.noise * truth.noise + late.square()).inverse();
@@ -94,7 +94,7 @@ Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitiviti
   return at.jacobian.transpose() * weight.asDiagonal() * at.jacobian;
 }
 
-/// The information of the parameters, then possibly of the noise's size; none where it is not known in closed form.
+/// The information of the parameters, and in some cases of the noise's size; std::nullopt without a closed form.
 std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
                                            const Eigen::VectorXd& time) {
   if (truth.rows == RowTiming::kEvenOfEvents) return std::nullopt;
@@ -109,8 +109,8 @@ std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const 
                       : WhiteInformation(truth, at);
 }
 
-/// Square roots of the diagonal of the inverse; empty where there is none. What no reading depends on stands apart, and
-/// the others keep their bounds.
+/// Square roots of the diagonal of the inverse; empty without an inverse. A parameter that no reading depends on is
+/// removed first, so the others keep their bounds.
 std::vector<std::optional<double>> BoundsOf(const Eigen::MatrixXd& information) {
   std::vector<std::optional<double>> bounds(static_cast<std::size_t>(information.rows()));
   std::vector<Index> told;
@@ -139,7 +139,9 @@ std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run) {
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
   const std::size_t count = TrueParameters(truth).size();
   std::vector<std::optional<double>> bounds(count);
-  if (truth.sensor.kind != SensorKind::kDirect) return bounds;  // they would have to know what is known beforehand
+  if (truth.sensor.kind != SensorKind::kDirect)
+    return bounds;  // these bounds would need the prior knowledge of the
+                    // sensor
   const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
   const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at, time) : std::nullopt;
   if (!information) return bounds;

@@ -25,7 +25,7 @@ Recording WithReadings(const Recording& used, const VectorXd& time, const Vector
   return recording;
 }
 
-/// The readings on the levels that the recording's own lie on, within the sensor's range.
+/// Rounds readings to the levels of the recording's own readings, within the sensor's range.
 VectorXd OnLevels(const Recording& used, VectorXd readings) {
   const double q = used.resolution;
   for (double& reading : readings) {

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// The names of inertia and friction; those of the start are every model's.
+/// Names of inertia and friction, without those of the start, which every model has.
 std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   std::set<std::string, std::less<>> names;
   const Result<MotionModel> found = FindMotionModel(model);
@@ -22,14 +22,15 @@ std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   return names;
 }
 
-/// The model that finds the window: of most parameters, and none that a recording may leave without meaning.
+/// The model that determines the window: the one with most parameters, without any that may have no meaning in a
+/// recording.
 std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t richest = 0;
   std::size_t most = 0;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
     if (!model || model->gravity != Gravity::kSine) continue;
-    // What a recording may leave without meaning is the last choice.
+    // A model with a parameter that may have no meaning is the last choice.
     const std::size_t size = OrderOf(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
     if (size <= most) continue;
     most = size;
@@ -49,7 +50,7 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
   return fit;
 }
 
-/// What is no pendulum's swing, or swings about several zeros, is so for any model.
+/// Two warnings hold for every model: the recording is not a pendulum's swing, or its zero jumps.
 void ShareVerdict(const FitReport& lead, FitReport& fit) {
   const auto said = std::ranges::find_if(lead.warnings, [](const Warning& warning) {
     return warning.code == "not_a_pendulum" || warning.code == "zero_jumps";
@@ -60,7 +61,7 @@ void ShareVerdict(const FitReport& lead, FitReport& fit) {
   WithdrawErrors(said->code == "zero_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
-/// The fits of one run of FitModels.
+/// The fits of one call of FitModels.
 class SharedFits {
  public:
   SharedFits(SwingFit lead, std::size_t lead_index, FitOptions options, const std::vector<std::string>& models)
@@ -84,7 +85,7 @@ class SharedFits {
     ShareVerdict(lead, result_.fits[i]);
   }
 
-  /// Likelihoods are compared within a family only: that of the smallest residuals.
+  /// Likelihoods can be compared only within one noise family: that of the fit with the smallest residuals.
   void ShareNoise(std::size_t lead_index) {
     const auto best = std::ranges::min_element(result_.fits, {}, [](const FitReport& fit) {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
@@ -111,8 +112,8 @@ class SharedFits {
   FittedModels result_;
 };
 
-/// A swing whose frequency is looked for among aliases is looked for by every model; those that took another family of
-/// noise than the one of the smallest residuals are fitted anew.
+/// Each model searches aliased frequencies itself. Models with another noise family than the model with the smallest
+/// residuals are fitted again.
 Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
                              const std::vector<std::string>& models) {
   std::vector<Result<SwingFit>> fits;

@@ -25,9 +25,9 @@ double Tail(double statistic, double dof) {
   return ChiSquareTail(std::max(statistic, 0.0), dof);
 }
 
-// ---- What each recording alone says ---------------------------------------------------------------------------------
+// ---- Estimates of each recording alone ------------------------------------------------------------------------------
 
-/// Of S parameters.
+/// Estimates of S parameters from one recording.
 struct Told {
   std::size_t run = 0;
   std::vector<std::string> names;  // S
@@ -35,8 +35,8 @@ struct Told {
   MatrixXd covariance;             // S x S
 };
 
-/// By how much 95 % reach farther than for a normal distribution: where residuals remember, errors are of few effective
-/// samples and rough, which is what Student's t is for. A parameter at its bound has the largest of the others.
+/// How far a 95 % interval reaches compared with a normal distribution. Autocorrelated residuals have few effective
+/// samples and rough errors, therefore Student's t. A parameter at its bound gets the largest value of the others.
 VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
   constexpr double kNormal = 1.959963984540054;
   double largest = kNormal;
@@ -48,8 +48,8 @@ VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
   return reach;
 }
 
-/// Takes out of estimates and covariance what was known beforehand, which the recordings have in common. False where
-/// nothing is left.
+/// Removes the priors, which all recordings share, from the estimates and their covariance. Returns false if no
+/// information remains.
 bool RemovePriors(const ParameterPriors& priors, Told& told) {
   if (priors.empty()) return true;
   const Index size = told.value.size();
@@ -70,7 +70,7 @@ bool RemovePriors(const ParameterPriors& priors, Told& told) {
   return true;
 }
 
-/// Whether clocks or calibrations with errors are not the same for all: then they let recordings differ.
+/// Whether clocks or calibrations with errors differ between recordings and so cause differences.
 bool HaveOwnSources(const std::vector<RunAlone>& runs) {
   const auto clock = [](const RunAlone& run) { return std::pair(run.used.clock_scale, run.used.clock_scale_std_dev); };
   const auto calibration = [](const RunAlone& run) {
@@ -81,7 +81,7 @@ bool HaveOwnSources(const std::vector<RunAlone>& runs) {
   });
 }
 
-/// The systematic covariance of the named parameters, without the rig's, which is all recordings'.
+/// The systematic covariance of the named parameters, without the rig's part, which all recordings share.
 MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names) {
   const auto size = static_cast<Index>(names.size());
   MatrixXd covariance = MatrixXd::Zero(size, size);
@@ -105,7 +105,7 @@ MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names
   return covariance;
 }
 
-/// All free parameters of a recording as its fit reports them, unless a bound has to do with them.
+/// All free parameters of a recording as reported by its fit; std::nullopt if a parameter is at a bound.
 std::optional<Told> TellAllFree(const RunAlone& run) {
   const FitReport& fit = run.fit;
   if (std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; })) {
@@ -121,10 +121,10 @@ std::optional<Told> TellAllFree(const RunAlone& run) {
   return RemovePriors(run.options.priors, told) ? std::optional(told) : std::nullopt;
 }
 
-/// The named parameters with all errors that let recordings differ.
+/// The named parameters with all errors that can make recordings differ.
 std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names, bool own_sources) {
   const FitReport& fit = run.fit;
-  // Beside another minimum nearly as good the estimate has no normal distribution.
+  // With another local minimum of similar quality the estimate is not normally distributed.
   if (fit.termination != Termination::kConverged || fit.Warns("another_minimum")) return std::nullopt;
   const std::optional<Told> all = TellAllFree(run);
   if (!all) return std::nullopt;
@@ -141,7 +141,7 @@ std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>&
   return sound ? std::optional(told) : std::nullopt;
 }
 
-/// Those recordings that tell all of the named parameters alone.
+/// The recordings that determine all of the named parameters alone.
 std::vector<Told> TellAlone(const std::vector<RunAlone>& runs, const std::vector<std::string>& names) {
   std::vector<Told> told;
   if (names.empty()) return told;
@@ -155,9 +155,9 @@ std::vector<Told> TellAlone(const std::vector<RunAlone>& runs, const std::vector
   return told;
 }
 
-// ---- Do they agree? -------------------------------------------------------------------------------------------------
+// ---- Agreement ------------------------------------------------------------------------------------------------------
 
-/// Weighted mean of several recordings, in units of typical errors.
+/// Weighted mean of several recordings, scaled by typical errors.
 struct Pool {
   MatrixXd precision;  // S x S
   VectorXd mean;       // S
@@ -183,15 +183,15 @@ Pool PoolOf(const std::vector<Told>& told, const std::vector<std::size_t>& membe
   return pool;
 }
 
-/// A typical error of each parameter.
+/// The mean standard error of each parameter.
 VectorXd ScaleOf(const std::vector<Told>& told) {
   VectorXd scale = VectorXd::Zero(told.front().value.size());
   for (const Told& one : told) scale += one.covariance.diagonal().cwiseSqrt() / static_cast<double>(told.size());
   return scale;
 }
 
-/// Leaves out one recording after the other, each time the one whose absence leaves least to explain, until the others
-/// agree; no more than leave a majority, for else nobody knows who is right.
+/// Removes recordings one by one until the others agree; each time the one whose removal leaves the smallest statistic.
+/// A majority must remain; without a majority no recording can be called wrong.
 std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd& scale) {
   std::vector<std::size_t> members(told.size());
   std::iota(members.begin(), members.end(), 0);
@@ -217,7 +217,7 @@ std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd&
   return {};
 }
 
-/// p of the distance of one recording's parameter j from the others, by these others' own scatter.
+/// p of the distance of one recording's parameter j from the others, judged by the scatter of these others.
 double DistanceFromScatter(const std::vector<Told>& told, std::size_t k, Index j) {
   VectorXd value(static_cast<Index>(told.size()) - 1), error(value.size());
   for (Index i = 0; i < value.size(); ++i) {
@@ -232,8 +232,8 @@ double DistanceFromScatter(const std::vector<Told>& told, std::size_t k, Index j
   return 2 * StudentTail(t, static_cast<double>(value.size() - 1));
 }
 
-/// Where no majority agrees: recordings far from the others by these others' own scatter, of which there must be
-/// enough.
+/// Without an agreeing majority: recordings that are far from the others compared with the others' own scatter. This
+/// needs at least kFewest recordings.
 std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
   constexpr std::size_t kFewest = 4;
   std::vector<std::size_t> far;
@@ -250,7 +250,7 @@ std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
   return far;
 }
 
-/// The recordings that disagree with the others, or are far from their scatter, in their order; often none.
+/// The recordings that disagree with the others or are far from their scatter, in order; often none.
 std::vector<int> Disagreeing(const std::vector<Told>& told, const VectorXd& scale) {
   std::vector<std::size_t> out = LeaveOut(told, scale);
   if (out.empty()) out = FarFromScatter(told);
@@ -323,7 +323,7 @@ std::string WhyNotTested(const FitReport& example, const std::vector<std::string
   return "fewer than two recordings tell all shared parameters alone";
 }
 
-/// The test of all shared parameters together.
+/// Tests all shared parameters together.
 void TestTogether(const std::vector<Told>& told, const VectorXd& scale, Homogeneity& result) {
   std::vector<std::size_t> all(told.size());
   std::iota(all.begin(), all.end(), 0);

@@ -27,12 +27,12 @@ std::string NamesOf(const Homogeneity& result, bool (*is_meant)(const SharedPara
   return NameList(names);
 }
 
-/// What recordings disagree on: parameters whose own test says so; all where only all together say it.
+/// The parameters whose own test shows disagreement; all of them if only the joint test shows it.
 std::string DifferingNames(const Homogeneity& result) {
   return NamesOf(result, std::ranges::any_of(result.parameters, Differs) ? Differs : IsAny);
 }
 
-/// Parameters that differ by themselves where all together agree.
+/// Parameters that differ although the joint test shows agreement.
 std::string DescribeExceptions(const Homogeneity& result) {
   std::string text;
   for (const SharedParameter& parameter : result.parameters) {
@@ -42,7 +42,7 @@ std::string DescribeExceptions(const Homogeneity& result) {
   return text;
 }
 
-/// What all that do not disagree say of a parameter: weighted mean and its variance.
+/// Weighted mean and variance of a parameter over the recordings that do not disagree.
 struct Others {
   double mean = 0, variance = 0;
 };
@@ -88,7 +88,7 @@ std::string DescribeOutlier(const Homogeneity& result, const std::vector<RunAlon
   return text + PercentText(change) + (change > 0 ? " larger" : " smaller");
 }
 
-/// Without advice where the law may be what differs.
+/// Gives no advice if the law may be the cause.
 std::string DescribeOutliers(const Homogeneity& result, const std::vector<RunAlone>& runs, bool lacks_fit) {
   std::string text;
   for (const int run : result.disagreeing) {
@@ -98,7 +98,7 @@ std::string DescribeOutliers(const Homogeneity& result, const std::vector<RunAlo
   return text + "; fit the others without " + (result.disagreeing.size() == 1 ? "it" : "them");
 }
 
-/// What amplitude explains, where it does.
+/// Describes the differences that amplitude explains, if any.
 std::string DescribeAmplitude(const Homogeneity& result) {
   std::string text;
   for (const AmplitudeDependence& dependence : result.amplitude_dependence) {
@@ -113,7 +113,7 @@ std::string DescribeAmplitude(const Homogeneity& result) {
   return text.empty() ? text : text + "; another law may explain that (--model all)";
 }
 
-/// Inertias that no one rig has: their standard deviation over their mean; 0 where one rig may have them.
+/// Relative standard deviation of inertia if the recordings cannot come from one rig; otherwise 0.
 double OtherRigs(const Homogeneity& result) {
   constexpr double kOneRig = 0.05;
   const auto inertia = std::ranges::find(result.parameters, kInertia.name, &SharedParameter::name);
@@ -122,8 +122,8 @@ double OtherRigs(const Homogeneity& result) {
   return share > kOneRig ? share : 0;
 }
 
-/// The parameter that scatters most against its errors, and what the rig's constants then may be; no more than the
-/// first where another law has been said to be wanted.
+/// Names the parameter with the largest scatter relative to its errors, and the resulting constants of the rig. If
+/// another law was already recommended, only the first sentence.
 std::string DescribeScatter(const Homogeneity& result, bool wants_law) {
   const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
   const RandomEffects& scatter = most->scatter;

@@ -17,11 +17,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// What K parts of a recording say of one parameter.
+/// Estimates of one parameter from K parts of a recording.
 struct Estimates {
   std::string_view name;
   VectorXd value, std_error;  // K
-  double p_of_trend = 1;      // With amplitude.
+  double p_of_trend = 1;      // p of the trend with amplitude.
   std::string_view parts = "windows";
 };
 
@@ -37,7 +37,7 @@ Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>
   return estimates;
 }
 
-/// Of each parameter the windows' estimates, and the halves' where windows have none.
+/// The windows' estimates of each parameter; the halves' if windows have none.
 std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   std::vector<Estimates> all;
   for (const AmplitudeTrend& trend : constancy.trends) all.push_back(OfWindows(trend, constancy.windows));
@@ -49,7 +49,7 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
-/// Adds a variance of the parameter that nothing else shares.
+/// Adds a variance of this parameter that is independent of all others.
 void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
   parameter.systematic_std_error = std::hypot(parameter.systematic_std_error.value_or(0), std_dev);
   const auto place = std::ranges::find(fit.systematic_names, parameter.info.name);

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Index;
 
-/// What is compared: joint fits, or, where the recordings do not share their parameters, the fits to each alone.
+/// The compared fits: joint fits, or separate fits if the recordings do not share their parameters.
 struct Compared {
   const JointModels& joint;
   bool apart = false;
@@ -35,7 +35,7 @@ struct Compared {
   }
 };
 
-/// The fits to all recordings alone as one.
+/// Combines the separate fits to all recordings into one report.
 FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters) {
   FitReport whole;
   whole.model = joint.joint[m].whole.model;
@@ -73,7 +73,8 @@ Compared JointFits(const JointModels& joint) {
   return compared;
 }
 
-/// Whether the recordings disagree by the law that describes each of them best: then a joint fit lacks more than a law.
+/// Chooses separate fits if the recordings disagree under the law that describes each of them best. A joint fit then
+/// lacks more than a law.
 Compared WhatToCompare(const JointModels& joint) {
   Compared alone = FitsAlone(joint);
   const FitReport* const best = BestFit(alone.wholes);
@@ -82,8 +83,8 @@ Compared WhatToCompare(const JointModels& joint) {
   return disagree ? alone : JointFits(joint);
 }
 
-/// What residuals of recording k are divided by, so that those of all are of one unit: nothing, or the least σ of any
-/// model, the same for all of them.
+/// Divisor of recording k's residuals that gives all recordings the same unit. It is 1 if they have one unit; otherwise
+/// the least σ of any model, the same for all models.
 double UnitOf(const JointModels& joint, std::size_t k) {
   if (joint.HaveOneUnit()) return 1;
   double least = kUnbounded;
@@ -107,7 +108,7 @@ ComparisonRow DescribeRow(const Compared& compared, std::size_t m) {
   return row;
 }
 
-/// The strictest that any recording asks for.
+/// The strictest likelihood that any recording requires.
 Likelihood ChooseJointly(const Compared& compared, std::size_t best) {
   Likelihood chosen = Likelihood::kIndependent;
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
@@ -116,7 +117,7 @@ Likelihood ChooseJointly(const Compared& compared, std::size_t best) {
   return chosen;
 }
 
-/// The recording whose residuals ask for that likelihood, for words.
+/// A recording whose residuals require that likelihood, for the sentence.
 const FitReport& Speaker(const Compared& compared, std::size_t best, Likelihood likelihood) {
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     const FitReport& fit = compared.Fit(k, best);
@@ -125,12 +126,13 @@ const FitReport& Speaker(const Compared& compared, std::size_t best, Likelihood 
   return compared.Fit(0, best);
 }
 
-// ---- Likelihood of residuals that remember --------------------------------------------------------------------------
+// ---- Likelihood of autocorrelated residuals -------------------------------------------------------------------------
 
-/// Recordings' likelihoods about the joint estimates, as parabolas over all parameters that are free.
+/// Log-likelihoods of recordings about the joint estimates, as parabolas over all free parameters.
 class SharedShift {
  public:
-  /// δ of the run's F free parameters: information (F x F) and where it is largest, within [lowest, highest].
+  /// Adds a run's parabola in δ of its F free parameters: information (F x F), and the maximum at `shift` within
+  /// [lowest, highest].
   void Add(const std::vector<std::string>& names, const Eigen::MatrixXd& information, const Eigen::VectorXd& shift,
            const Eigen::VectorXd& lowest, const Eigen::VectorXd& highest, const std::vector<std::string>& shared) {
     std::vector<Index> at;
@@ -155,7 +157,7 @@ class SharedShift {
     roots_.push_back({std::move(at), root, root * shift});
   }
 
-  /// By how much the sum of log-likelihoods stays below the sum of what each recording alone would have.
+  /// Difference between the sum of separate maxima of the log-likelihoods and the maximum of their sum.
   double Loss() const {
     const auto columns = static_cast<Index>(lowest_.size());
     Index rows = 0;
@@ -183,12 +185,12 @@ class SharedShift {
   };
   std::vector<Root> roots_;
   std::vector<std::string> shared_names_;
-  std::vector<Index> places_;  // of these names
+  std::vector<Index> places_;  // columns of these names
   std::vector<double> lowest_, highest_;
 };
 
-/// The likelihood of a recording about its estimates, wherever they may move to, with a memory of the kind and order
-/// that its residuals by the best model have; what it tells of them is added to what all tell.
+/// The likelihood of a recording, linearized about its estimates. The autocorrelation has the kind and order of the
+/// residuals of the best model. Its information about the parameters is added to `together`.
 std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std::size_t k, std::size_t m,
                                                   std::size_t best, const FitOptions& options, SharedShift& together) {
   const FitReport& fit = compared.Fit(k, m);
@@ -244,7 +246,7 @@ void SetLikelihoods(const Compared& compared, std::size_t best, const FitOptions
 
 // ---- Prediction -----------------------------------------------------------------------------------------------------
 
-/// Predictions of several recordings as one.
+/// Combines predictions of several recordings.
 class PooledPrediction {
  public:
   void Add(const Prediction& one, double unit, const std::string& label) {
@@ -290,7 +292,7 @@ void SetPredictions(const Compared& compared, const FitOptions& options, Compari
   }
 }
 
-/// rms of residuals over their σ where units differ.
+/// Sets the rms of residuals over their σ if units differ.
 void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
   const JointModels& joint = compared.joint;
   for (std::size_t m = 0; m < joint.models.size(); ++m) {

@@ -8,7 +8,7 @@
 namespace pendulum {
 namespace {
 
-/// A joint fit that cannot be made, with as many runs as there are recordings.
+/// Report of an impossible joint fit, with one run per recording.
 JointFit FailedFit(const std::vector<RunModels>& runs, std::size_t m, const std::string& reason) {
   JointFit fit;
   fit.whole.model = runs.front().alone.fits[m].model;
@@ -42,7 +42,7 @@ Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const
   return TestHomogeneity(alone, shared);
 }
 
-/// What the comparison of the recordings adds to how the joint fit ended.
+/// Adds the result of the homogeneity test to the termination reason of the joint fit.
 void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
   if (homogeneity.agrees()) return;
   if (whole.termination != Termination::kConverged) whole.reason += "; " + homogeneity.verdict;

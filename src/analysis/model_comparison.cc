@@ -75,7 +75,7 @@ Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, 
     return comparison;
   }
   comparison.likelihood = ChooseLikelihood(*best, fitted.used.resolution);
-  // Never a weaker penalty than that of AIC: ln n >= 2.
+  // With ln n >= 2 the penalty is never weaker than that of AIC.
   comparison.effective_samples = std::max(best->statistics.effective_samples, std::exp(2.0));
   comparison.criterion = DescribeLikelihood(comparison.likelihood, *best);
   SetLikelihoods(fitted, *best, options, comparison);

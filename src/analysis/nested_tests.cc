@@ -22,10 +22,10 @@ namespace {
 
 using Eigen::Index;
 
-/// Of twice log L: where two searches of one optimum end.
+/// Difference in 2 log L between two searches that find the same optimum.
 constexpr double kRounding = 1e-3;
 
-/// What is left of columns when `explained` explains what it can.
+/// Residual of the columns after a least-squares fit of `explained`.
 Eigen::MatrixXd LeftBy(const Eigen::MatrixXd& explained, const Eigen::MatrixXd& columns) {
   if (explained.cols() == 0) return columns;
   Eigen::MatrixXd basis = explained;
@@ -45,11 +45,11 @@ bool IsIn(const std::vector<std::string>& names, std::string_view name) {
 
 double SigmaOf(const FitReport& fit) { return fit.noise.sigma > 0 ? fit.noise.sigma : 1.0; }
 
-/// Correlation of the estimates of two shared parameters of a fit, those at a bound among them, were there no bounds.
+/// Correlation of the estimates of two shared parameters of a fit, without bounds; parameters at a bound are included.
 double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitOptions& options,
                      const std::vector<ParameterInfo>& two) {
   Eigen::MatrixXd shared;
-  std::vector<Index> rows;  // of the two
+  std::vector<Index> rows;  // rows of the two parameters
   for (const ComparedRun& run : compared.runs) {
     const FitReport& fit = *run.fits[index];
     const FittedMotion motion(run.used, fit, options.rig, options.stop);
@@ -74,7 +74,7 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
   return std::isfinite(correlation) ? correlation : 0;
 }
 
-/// The richer law where it is the simpler one, at that value of the parameter which then has no meaning.
+/// The richer law set to the simpler one, with the given value of the parameter that has no meaning there.
 FitReport AtNull(const FitReport& simpler, FitReport richer, std::string_view unidentified, double value) {
   const OrderedPair order = OrderOf(richer.model);
   for (ParameterEstimate& parameter : richer.parameters) {
@@ -95,8 +95,8 @@ double LargestRate(const ComparedRun& run, const FitReport& fit, const FitOption
   return half_range * 2 * kPi / FittedMotion(run.used, fit, options.rig).small_angle_period();
 }
 
-/// Derivatives of one recording's readings at the null: by what the simpler law has free, shared and own, and by the
-/// added term.
+/// Derivatives of one recording's readings at the null: by the free parameters of the simpler law, shared and own, and
+/// by the added term.
 struct NullColumns {
   Eigen::MatrixXd shared, own;
   Eigen::VectorXd term;
@@ -124,8 +124,8 @@ std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vect
   return columns;
 }
 
-/// The test of a term whose rate has no meaning in the simpler law, over 24 rates from 1/50 to twice the largest. What
-/// is a recording's own is taken out of its columns first.
+/// Tests a term whose rate has no meaning in the simpler law, over 24 rates from 1/50 of the largest rate to twice that
+/// rate. The parameters of each single recording are first removed from its columns.
 void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::size_t richer, const Nesting& nesting,
                       const FitOptions& options, NestedTest& test) {
   constexpr int kRates = 24;
@@ -156,7 +156,8 @@ void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::si
   test.null = "simulated, for " + test.simpler + " has no " + std::string(rate);
 }
 
-/// Whether the user has said something of a parameter that the simpler law lacks: then it is no special case.
+/// Whether the user restricted a parameter that the simpler law lacks. The simpler law is then no special case of the
+/// richer one.
 bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
   return std::ranges::any_of(nesting.added, [&](const ParameterInfo& info) {
     return options.fixed.contains(info.name) || options.bounds.contains(info.name) ||
@@ -199,7 +200,7 @@ std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vect
       const MotionModel& richer = compared.runs.front().fits[r]->model;
       const std::optional<Nesting> nesting = FindNesting(simpler, richer);
       if (!nesting) continue;
-      // Two steps at once, of which one is tested alone, have no distribution that is known or soon simulated.
+      // Two added terms, one of which is tested alone, have no known distribution and would take long to simulate.
       if (!nesting->unidentified.empty() && RichestWithin(richer)->name != simpler.name) continue;
       NestedTest test;
       test.simpler = rows[s].model;

@@ -28,10 +28,11 @@ bool IsStart(std::string_view name) {
 
 bool IsZero(std::string_view name) { return name == kZeroAngle.name || name == kRateBias.name; }
 
-/// A part begins where the whole fit ended: tens are enough, and more would be spent on what is no swing.
+/// A part starts at the whole fit's estimates and needs tens of trajectories. More would be spent only on parts that
+/// are not a free swing.
 constexpr int kMostTraces = 200;
 
-/// What was asked of the whole, without what belongs to its start alone and what both halves would share.
+/// The options of the whole fit, without those of its start and without values that both halves would share.
 FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   options = OptionsLike(fit, std::move(options));
   options.start = StartKind::kMoving;
@@ -46,15 +47,15 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   return options;
 }
 
-/// The noise of a fit whose sensor has this range.
+/// The noise of a fit with this range of the sensor.
 NoiseModel NoiseBetween(const FitReport& fit, double low, double high) {
   const NoiseEstimate& noise = fit.noise;
   return {noise.family, noise.sigma,       noise.resolution, low,         high,
           noise.edge,   noise.stamp_ratio, noise.lag,        noise.spread};
 }
 
-/// Whether a fit that did not converge ended within a standard error, as friction does that comes and goes at its
-/// bound: near enough for a last step on the linear motion.
+/// Whether a fit without convergence ended within a standard error of the optimum, so that one linearized step is
+/// enough. Friction that moves on and off its bound causes such fits.
 bool IsNear(const PartFit& part, const NoiseModel& noise, const FitOptions& options) {
   constexpr double kMostUnexplained = 0.12;
   constexpr double kNear = 1;
@@ -69,7 +70,7 @@ bool IsNear(const PartFit& part, const NoiseModel& noise, const FitOptions& opti
   return gradient.dot(linear->inverse * gradient) < kNear * kNear;
 }
 
-/// The covariance of all that is free, with the residuals' own variance and memory (MODEL.md eq. (29)).
+/// The covariance of all free parameters, with the residuals' own variance and autocorrelation (MODEL.md eq. (29)).
 MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearFit& linear, const NoiseModel& noise,
                       const ReadingTerms& terms, const std::stop_token& stop) {
   const VectorXd time = part.clock_scale * part.time;
@@ -122,7 +123,7 @@ std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& 
     const auto k = static_cast<Index>(i);
     if (const auto prior = priors.find(parameter.info.name); prior != priors.end())
       information(k, k) += 1 / (prior->second.std_dev * prior->second.std_dev);
-    // Parts are compared with the sensor held: its parameters may rest on what is known beforehand alone.
+    // Comparisons of parts hold the sensor's parameters fixed, because these may rest on priors alone.
     if (parameter.fixed || IsSensorParameter(parameter.info.name) || (with_bounds && parameter.at_bound)) continue;
     linear.free.push_back(k);
     free.push_back(static_cast<int>(i));
@@ -168,10 +169,10 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
     const std::string_view name = parameter.info.name;
     if (IsStart(name)) continue;
     double value = parameter.estimate;
-    // What drifts is told at the first sample.
+    // The value of a drifting zero refers to the first sample.
     if (const ParameterEstimate& last = fit_.parameters.back(); IsZero(name) && IsDrift(last.info.name))
       value += last.estimate * instant;
-    // What both parts would share of the sensor would make them agree.
+    // Sensor parameters shared by both parts would make the parts agree.
     const bool hold = parameter.fixed || IsSensorParameter(name) || std::ranges::find(held, name) != held.end();
     (hold ? options.fixed : options.initial).insert_or_assign(std::string(name), value);
   }
@@ -197,7 +198,7 @@ double Parts::Amplitude(double time) const {
   if (!motion_) return 0;
   const double angle = motion_->Angle(Instant(time));
   const double rate = motion_->Rate(Instant(time));
-  const double kinetic = inertia_ * rate * rate;  // twice, in units of G
+  const double kinetic = inertia_ * rate * rate;  // twice the kinetic energy, in units of G
   if (fit_.model.gravity == Gravity::kLinear) return std::sqrt(kinetic + angle * angle);
   return std::acos(std::clamp(std::cos(angle) - 0.5 * kinetic, -1.0, 1.0));
 }
@@ -238,12 +239,12 @@ Autocorrelation MemoryOf(const VectorXd& time, const VectorXd& value, const Nois
 
 double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {
   const auto count = static_cast<double>(samples);
-  const double known = noise.IsPlain() ? static_cast<double>(free) : 0;  // to σ
+  const double known = noise.IsPlain() ? static_cast<double>(free) : 0;  // already corrected in σ
   return (count - known) / std::max(count - lost, 1.0);
 }
 
-/// A step to where the likelihood would be greatest without the bounds: what a bound cut off has no normal
-/// distribution, and what is left beside it depends on it.
+/// One step to the maximum of the likelihood without bounds. An estimate cut off at a bound is not normally
+/// distributed, and the other estimates depend on it.
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                                    const std::optional<Rig>& rig, const std::stop_token& stop) {
   const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);

@@ -24,7 +24,8 @@ struct TurningPoint {
   double angle = 0;  ///< rad
 };
 
-/// From the release, or the first one of a moving start, until `end` [s]. Swings begin at rate 0, exactly.
+/// Turning points from the release, or from the first one of a moving start, until `end` [s]. Swings begin at a rate of
+/// exactly 0.
 std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end) {
   const bool released = run.start == StartKind::kRelease;
   const Start<double> start{run.start, released ? run.release_time : run.start_time,
@@ -43,7 +44,7 @@ std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end)
   return turns;
 }
 
-/// The largest |θ| without friction [rad]; none for a pendulum that goes over the top.
+/// The largest |θ| without friction [rad]; std::nullopt if the pendulum goes over the top.
 std::optional<double> Amplitude(const SyntheticOptions& run) {
   if (run.start == StartKind::kRelease) return std::abs(run.release_angle);
   const double rate = std::sqrt(run.parameters[0]) * run.initial_rate;  // in units of ω0
@@ -53,7 +54,7 @@ std::optional<double> Amplitude(const SyntheticOptions& run) {
   return 2 * std::asin(half_sine);
 }
 
-/// The same start, at the same phase of a larger or smaller swing. Both amplitudes positive.
+/// Scales the swing from one amplitude to another, at the same phase. Both amplitudes are positive.
 SyntheticOptions WithAmplitude(SyntheticOptions run, double from, double to) {
   if (run.start == StartKind::kRelease) {
     run.release_angle = std::copysign(to, run.release_angle);
@@ -68,7 +69,7 @@ SyntheticOptions WithAmplitude(SyntheticOptions run, double from, double to) {
   return run;
 }
 
-/// A case to be looked at: its row without results, and its recording.
+/// One case of the plan: a row without results, and its recording.
 struct Case {
   PlanRow row;
   SyntheticOptions run;
@@ -86,7 +87,7 @@ void AddAmplitudes(const SyntheticOptions& base, std::vector<Case>& cases) {
   }
 }
 
-/// Multiples of a number that the options have.
+/// Adds cases with multiples of one of the options.
 void AddMultiples(const SyntheticOptions& base, std::string_view name, std::string_view unit,
                   double SyntheticOptions::*number, std::span<const double> factors, std::vector<Case>& cases) {
   for (const double factor : factors) {
@@ -111,7 +112,7 @@ std::vector<Case> Cases(const SyntheticOptions& base) {
 /// The standard deviation of a reading's rounding (Widrow & Kollár, Quantization Noise, 2008).
 double NoiseOfLevels(double resolution) { return resolution / std::sqrt(12.0); }
 
-/// Readings without noise repeat their rounding error throughout a hold, which thus is one reading.
+/// Noise-free readings repeat their rounding error throughout a hold, so the hold counts as one reading.
 std::vector<std::optional<double>> StdErrors(SyntheticOptions run, const Eigen::VectorXd& time) {
   if (run.noise > 0) return CramerRaoBounds(run, time);
   run.noise = NoiseOfLevels(run.resolution);
@@ -139,7 +140,8 @@ bool BiasExceedsError(const SyntheticOptions& run, const Eigen::VectorXd& time) 
   return error && std::abs(*bias) > *error / run.parameters.front();
 }
 
-/// Halves the amplitude from the largest until the bias no longer exceeds the error, then bisects that octave.
+/// Halves the amplitude from the largest one until the bias no longer exceeds the error, then bisects within that
+/// factor of 2.
 std::optional<double> AmplitudeOfEqualBias(const SyntheticOptions& base, const Eigen::VectorXd& time) {
   constexpr double kSmallest = 1e-6;  // rad
   constexpr double kAccuracy = 1e-4;  // relative
@@ -167,7 +169,7 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
   if (turns.size() < 3) return std::nullopt;
   const std::size_t periods = (turns.size() - 1) / 2;
   const TurningPoint &first = turns.front(), &last = turns[2 * periods];
-  if (std::abs(first.angle) >= kPi) return std::nullopt;  // once over the top, the angle counts from elsewhere
+  if (std::abs(first.angle) >= kPi) return std::nullopt;  // after an escape the angle counts from another turn
   const auto n = static_cast<double>(periods);
   const double damped_frequency = 2 * kPi * n / (last.time - first.time);
   const double decrement = std::log(first.angle / last.angle) / n;

@@ -19,15 +19,15 @@ namespace {
 
 using Eigen::Index;
 
-/// What is the same whichever part is left out. Times are true s from the first sample.
+/// Data that is the same for every left-out part. Times are true s from the first sample.
 struct Task {
   const Recording& used;
-  FitOptions options;        // of the fits to what is left
+  FitOptions options;        // options of the fits to the rest
   Eigen::VectorXd instants;  // N
-  double begin;              // of the motion
+  double begin;              // begin of the motion
   double end;
-  double period;     // of small swings
-  NoiseModel noise;  // tells which readings are censored
+  double period;     // period of small swings
+  NoiseModel noise;  // determines which readings are censored
 };
 
 /// Samples [first, last).
@@ -42,7 +42,7 @@ Part PartBetween(const Task& task, double from, double to) {
   return {sample(from), to < task.end ? sample(to) : task.used.size()};
 }
 
-/// The estimates of the whole fit as start values: what is left has a gap, across which turning points are none.
+/// Uses the estimates of the whole fit as start values. The rest has a gap, so its turning points would be wrong.
 StartValues StartAtEstimates(const FitProblem& problem, const FitReport& fit) {
   StartValues start = problem.start;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {
@@ -97,9 +97,8 @@ Recording Without(const Recording& used, const Part& part) {
   return rest;
 }
 
-/// Variance of a reading about the trajectory. Gaussian σ is that of the readings as they are, rounded or not;
-/// quantized σ is that before rounding. The scale of a robust family is no standard deviation, and outliers are among
-/// what is predicted.
+/// Variance of a reading about the trajectory. A Gaussian σ includes the rounding of the readings; a quantized σ does
+/// not. The scale of a robust family is not a standard deviation, and outliers are among the predicted readings.
 double ReadingVariance(const FitReport& fit) {
   const NoiseEstimate& noise = fit.noise;
   const double square = noise.sigma * noise.sigma;
@@ -115,7 +114,7 @@ double ReadingVariance(const FitReport& fit) {
   return fit.statistics.rms_residual * fit.statistics.rms_residual * samples / std::max(samples - free, 1.0);
 }
 
-/// J C Jᵀ of each row of the N x P derivatives; what is fixed or at a bound has no part in it.
+/// J C Jᵀ for each row of the N x P derivatives; fixed parameters and those at a bound are left out.
 Eigen::VectorXd TrajectoryVariance(const FitReport& fit, const Eigen::MatrixXd& jacobian) {
   std::vector<Index> free;
   for (const std::string& name : fit.covariance_names) free.push_back(fit.Find(name) - fit.parameters.data());
@@ -123,7 +122,7 @@ Eigen::VectorXd TrajectoryVariance(const FitReport& fit, const Eigen::MatrixXd& 
   return (rows * fit.covariance).cwiseProduct(rows).rowwise().sum().cwiseMax(0.0);
 }
 
-/// Sums over what was predicted.
+/// Sums over the predicted readings.
 struct Sums {
   double squares = 0, standardized = 0;
   Index samples = 0;
@@ -142,7 +141,7 @@ void AddPart(const Task& task, const Part& part, const Eigen::VectorXd& predicte
   }
 }
 
-/// Fits all but a part and adds what that foretells of it. An error says why it cannot.
+/// Fits all samples outside a part and adds the prediction of the part. An error gives the reason for a failure.
 Result<void> PredictPart(const Task& task, const Part& part, Sums& sums) {
   if (part.first == part.last) return {};
   const Recording rest = Without(task.used, part);
@@ -187,7 +186,7 @@ Prediction PredictionOf(const Sums& sums) {
   return prediction;
 }
 
-/// Each part in turn is left out and predicted.
+/// Leaves out and predicts each part in turn.
 Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
   Sums sums;
   for (const Part& part : parts) {
@@ -199,10 +198,10 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
 
 }  // namespace
 
-/// A prediction y* has the standard deviation sqrt(s² + J C Jᵀ): s that of a reading about the trajectory of the fit to
-/// the rest, C that fit's covariance, J = ∂y*/∂p. The first period is never left out, for without it the start would be
-/// foretold backwards in time, where a motion that dissipates runs away. The fits to the rest have the kind of start
-/// and the noise of `fit`, and begin at its estimates.
+/// A prediction y* has the standard deviation sqrt(s² + J C Jᵀ): s is that of a reading about the trajectory of the fit
+/// to the rest, C is that fit's covariance, J = ∂y*/∂p. The first period is never left out: the start would be
+/// extrapolated backwards in time, where a dissipative motion diverges. The fits to the rest have the kind of start and
+/// the noise of `fit`, and begin at its estimates.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
   if (!task) return Nothing(task.error().message);
@@ -216,8 +215,8 @@ Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitO
   return PredictParts(*task, parts);
 }
 
-/// Its errors are those of a few parameters: even of the right model `standardized` scatters more about 1 than where
-/// stretches between others are predicted.
+/// The prediction errors come from a few parameters. Even for the right model `standardized` scatters more about 1 than
+/// in cross-validation, where blocks lie between fitted ones.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
   if (!task) return Nothing(task.error().message);

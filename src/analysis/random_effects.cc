@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Runs with variances of their own and one between them.
+/// Runs with a variance each and a common variance between them.
 struct Scatter {
   VectorXd value, variance;                     // K
-  std::optional<double> center = std::nullopt;  // Of all runs, where it is known.
+  std::optional<double> center = std::nullopt;  // Center of all runs, if it is known.
 
   VectorXd Weights(double between) const { return (variance.array() + between).inverse(); }
 
@@ -29,16 +29,16 @@ struct Scatter {
     return weights.dot(value) / weights.sum();
   }
 
-  /// Σ w (value - mean)², which falls as the variance between runs grows.
+  /// Σ w (value - mean)²; it decreases as the variance between runs grows.
   double Statistic(double between) const {
     return Weights(between).dot((value.array() - Mean(between)).square().matrix());
   }
 
-  /// The variance between runs at which the statistic is so large; 0 where it is never so large.
+  /// The variance between runs at which the statistic has this value; 0 if it never gets so large.
   double BetweenAt(double statistic) const {
     if (!(Statistic(0) > statistic)) return 0;
     double highest = (value.array() - center.value_or(value.mean())).square().sum() / statistic;
-    while (Statistic(highest) >= statistic) highest *= 2;  // rounding, where errors are next to nothing
+    while (Statistic(highest) >= statistic) highest *= 2;  // rounding, if errors are nearly 0
     std::uintmax_t most_steps = 200;
     const auto [low, high] =
         boost::math::tools::toms748_solve([&](double between) { return Statistic(between) - statistic; }, 0.0, highest,

@@ -11,7 +11,7 @@
 namespace pendulum {
 namespace {
 
-/// A level's edge, and what of the normal distribution is needed there.
+/// Edge of a level, with values of the normal distribution there.
 struct Edge {
   explicit Edge(double at)
       : z(at),
@@ -34,12 +34,12 @@ double Probability(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-/// Level k comes with probability p_k = Φ(b_k) - Φ(a_k), a_k and b_k its edges less x over σ, and the information is
-/// Σ_k ∇p_k ∇p_kᵀ / p_k, summed exactly.
+/// Level k has the probability p_k = Φ(b_k) - Φ(a_k); a_k and b_k are (edge - x) / σ of its two edges. The information
+/// is Σ_k ∇p_k ∇p_kᵀ / p_k, summed exactly.
 Eigen::Matrix2d ReadingInformation(double x, double sigma, double resolution, const std::optional<SensorRange>& range) {
   if (resolution == 0) return Eigen::Vector2d(1 / (sigma * sigma), 2).asDiagonal();
-  constexpr double kReach = 9;        // standard deviations; beyond them a level tells less than 1e-16 of the whole
-  constexpr double kRounding = 1e-6;  // as in SensorReading: a range of a whole number of levels has them all
+  constexpr double kReach = 9;        // standard deviations; levels beyond them have less than 1e-16 of the information
+  constexpr double kRounding = 1e-6;  // as in SensorReading: a range of a whole number of levels includes all of them
   const double low = range ? range->low : 0.0;
   const double first = range ? 0.0 : -kInfinity;
   const double last = range ? std::floor((range->high - low) / resolution + kRounding) : kInfinity;

@@ -12,16 +12,16 @@
 namespace pendulum {
 namespace {
 
-/// A smaller difference of log-likelihood or BIC is none: terms that came out as 0.
+/// Smaller differences of log-likelihood or BIC count as equal: the added terms came out as 0.
 constexpr double kSame = 1e-3;
 
-/// The rows of one comparison, by their place.
+/// The rows of one comparison, addressed by index.
 class Judge {
  public:
   Judge(const std::vector<FitReport>& fits, const Comparison& comparison) : fits_(fits), rows_(comparison.rows) {}
 
-  /// Where more than noise is left, a smaller BIC may be a better disguise of what is missing: a law that does not
-  /// predict as well as it fits must predict better than each with fewer terms.
+  /// If more than noise is left, a smaller BIC may only hide what is missing. A law that predicts worse than it fits
+  /// must predict better than every law with fewer terms.
   bool IsRefuted(std::size_t i) const {
     constexpr double kAsWell = 1.25, kBetter = 0.95;
     const ComparisonRow& row = rows_[i];
@@ -46,7 +46,7 @@ class Judge {
     return rows_[i].bic && !IsRefuted(i) && *rows_[i].bic <= SmallestBic() + kWithinBic;
   }
 
-  /// The model of the smallest AICc of those not refuted, where it is not near; empty elsewhere.
+  /// The model with the smallest AICc among those not refuted, if its BIC is not near the smallest; otherwise empty.
   std::string ByAicc() const {
     std::size_t best = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -56,7 +56,7 @@ class Judge {
     return best == rows_.size() || IsNear(best) ? "" : rows_[best].model;
   }
 
-  /// Models of a smaller BIC that predict no better.
+  /// Models with a smaller BIC that do not predict better.
   std::vector<std::string> Refuted(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -68,7 +68,7 @@ class Judge {
 
   std::size_t Terms(std::size_t i) const { return PhysicalParameters(fits_[i].model).size(); }
 
-  /// The recommended row; their number when there is none.
+  /// Index of the recommended row; the number of rows if there is none.
   std::size_t Simplest() const {
     std::size_t chosen = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -80,7 +80,7 @@ class Judge {
     return chosen;
   }
 
-  /// The row next in BIC that is not near; their number when there is none.
+  /// Index of the row with the next BIC that is not near; the number of rows if there is none.
   std::size_t RunnerUp() const {
     std::size_t next = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -94,11 +94,11 @@ class Judge {
     return std::abs(rows_[i].log_likelihood.value_or(0) - rows_[k].log_likelihood.value_or(kUnbounded)) < kSame;
   }
 
-  /// Models as near as the chosen one.
+  /// Models whose BIC is as near as that of the chosen one.
   std::vector<std::string> Undecided(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      // A law whose further terms came out as 0 is the chosen one.
+      // A law whose added terms came out as 0 is the same as the chosen one.
       if (i == chosen || !IsNear(i) || IsSame(i, chosen)) continue;
       names.push_back(rows_[i].model);
     }
@@ -114,7 +114,8 @@ std::string BicText(double difference) {
   return difference < 100 ? NumberText(difference, 2) : std::to_string(std::lround(difference));
 }
 
-/// ", and predicts the last 40 % 2 times as well", "equally well" within a tenth; empty unless both predicted.
+/// ", and predicts the last 40 % 2 times as well", or "equally well" within a factor of 1.1; empty unless both laws
+/// have predictions.
 std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& other) {
   constexpr double kDiffers = 1.1;
   if (chosen.forward.samples == 0 || other.forward.samples == 0) return "";
@@ -125,7 +126,7 @@ std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& oth
                    : ", although it predicts the last 40 % " + times + " times worse";
 }
 
-/// What the fit itself has against its law.
+/// Describes doubts of the fit about its own law.
 std::string Doubts(const ComparisonRow& row, const FitReport& fit) {
   if (row.lack_of_fit) {
     return "; but more than noise is left (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +

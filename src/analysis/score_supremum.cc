@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// What of the shapes the nuisance does not explain, with columns of length 1.
+/// The part of the shapes that the nuisance does not explain, with columns of length 1.
 Eigen::MatrixXd Unexplained(const Eigen::MatrixXd& nuisance, const Eigen::MatrixXd& shapes) {
   constexpr double kExplained = 1e-6;
   Eigen::MatrixXd left = shapes;

@@ -59,7 +59,7 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
                               .getInt64();
 }
 
-/// Keeps the largest at the front of a heap whose top is the smallest.
+/// Keeps the largest ones in a heap whose front is the smallest of them.
 void Keep(MovedParameter moved, std::vector<MovedParameter>& most) {
   const auto more = [](const MovedParameter& a, const MovedParameter& b) { return a.errors > b.errors; };
   most.push_back(std::move(moved));
@@ -79,7 +79,7 @@ void CompareParameter(const SQLite::Statement& row, StoreComparison& comparison)
     ++comparison.identical;
     return;
   }
-  if (sqlite::Text(row, 3) != sqlite::Text(row, 8)) {  // with a rig, and without
+  if (sqlite::Text(row, 3) != sqlite::Text(row, 8)) {  // one with a rig, the other without
     ++comparison.without_error;
     return;
   }

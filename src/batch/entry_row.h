@@ -8,7 +8,7 @@
 
 namespace pendulum {
 
-/// The entry of a row whose first columns are position, id, path, rig, calibration, from_s, to_s, models, columns.
+/// The entry of a row that begins with the columns position, id, path, rig, calibration, from_s, to_s, models, columns.
 inline ManifestEntry EntryOf(const SQLite::Statement& row) {
   const auto number = [&](int column) {
     return row.getColumn(column).isNull() ? std::nullopt : std::optional(row.getColumn(column).getDouble());

@@ -25,7 +25,7 @@ constexpr const char* kRuns = R"sql(
 SELECT id, path, rig, calibration, from_s, to_s, models, columns, exit_code, reason, result
   FROM runs WHERE exit_code IS NOT NULL ORDER BY position, id)sql";
 
-/// What the manifest says of a run, columns that were left out apart.
+/// The manifest's data of a run, without missing columns.
 Json ManifestJson(const SQLite::Statement& row) {
   Json json = {{"path", sqlite::Text(row, 1)}};
   constexpr std::array<std::pair<int, const char*>, 3> kTexts = {{{2, "rig"}, {3, "calibration"}, {6, "models"}}};
@@ -46,25 +46,25 @@ std::string JsonLine(const SQLite::Statement& row) {
   return line + "null,\"error\":" + JsonText(error) + "}\n";
 }
 
-/// Statistics of table fits, which need no word of explanation beside their names.
+/// Statistics of table fits whose names need no explanation.
 constexpr std::array<const char*, 18> kStatistics = {
     "status",       "reason",     "used_samples", "effective_samples", "residual_unit",
     "rms_residual", "sigma",      "noise_model",  "lag1_correlation",  "log_likelihood",
     "aic",          "aicc",       "bic",          "durbin_watson",     "ljung_box_p",
     "runs_p",       "iterations", "evaluations"};
 
-/// Members of table quantities; the first stands under the quantity's own name.
+/// Members of table quantities; the column of the first one has only the quantity's name.
 constexpr std::array<const char*, 6> kMembers = {"estimate", "std_error", "lower95", "upper95", "systematic_std_error",
                                                  "unit"};
 
-/// A value of a row as a field: text as it is, numbers as the shortest text that reads back.
+/// A value of a row as a field: text unchanged, numbers as the shortest text that reads back exactly.
 std::string FieldOf(const SQLite::Column& value) {
   if (value.isNull()) return "";
   if (value.isFloat()) return NumberText(value.getDouble());
   return CsvField(value.getString());
 }
 
-/// Columns before those of the manifest: id, path, rig, calibration.
+/// Columns before the manifest's other columns: id, path, rig, calibration.
 constexpr int kOfTheRun = 4;
 
 /// The CSV table of a store.
@@ -96,7 +96,7 @@ class CsvTable {
     return line + "\n";
   }
 
-  /// Rows of all fits.
+  /// Writes one row per fit.
   Result<void> Rows(const TakeText& take) {
     std::string query = "SELECT fits.run, id, path, rig, calibration, columns, fits.model, recommended = fits.model";
     for (const char* name : kStatistics) query += std::string(", fits.") + name;
@@ -157,7 +157,7 @@ std::string CsvField(std::string_view text) {
   if (text.find_first_of("\",;\t\r\n") == std::string_view::npos && !text.starts_with(' ') && !text.ends_with(' ')) {
     return std::string(text);
   }
-  std::string field(2 * text.size() + 2, '\0');  // as csv_write asks for
+  std::string field(2 * text.size() + 2, '\0');  // the size that csv_write requires
   field.resize(csv_write(field.data(), field.size(), text.data(), text.size()));
   return field;
 }

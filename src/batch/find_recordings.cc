@@ -24,7 +24,7 @@ bool IsLike(const std::string& name, const std::string& part) {
   return ::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0;
 }
 
-/// What is in a folder, in the order of names; nothing in one that is not there.
+/// The entries of a folder, in the order of names; empty if the folder does not exist.
 Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::directory_entry> entries;
@@ -38,9 +38,9 @@ Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
-/// Puts what `parts` stand for in `folder` behind `found`, in the order of names.
+/// Appends the paths that match `parts` in `folder` to `found`, in the order of names.
 Result<void> Find(const fs::path& folder, std::span<const std::string> parts, std::vector<std::string>& found) {
-  if (parts.front() == kAnyFolders) {  // no folder at all
+  if (parts.front() == kAnyFolders) {  // matches zero folders, too
     if (auto done = Find(folder, parts.subspan(1), found); !done) return done;
   }
   const auto entries = EntriesOf(folder);
@@ -60,7 +60,7 @@ Result<void> Find(const fs::path& folder, std::span<const std::string> parts, st
   return {};
 }
 
-/// Cuts a path into the folder before its first pattern, followed as it is, and the parts from there on.
+/// Splits a path into the folder before its first pattern, which is used as it is, and the remaining parts.
 std::pair<fs::path, std::vector<std::string>> Cut(const fs::path& path) {
   fs::path folder;
   std::vector<std::string> parts;
@@ -96,7 +96,7 @@ Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
   }
   if (!done) return tl::unexpected(done.error());
   std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());  // two ** may meet in one file
+  found.erase(std::unique(found.begin(), found.end()), found.end());  // several ** may match the same file
   if (!found.empty()) return found;
   return Error(StatusCode::kNotFound, pattern + ": " + what + "; check the path");
 }

@@ -25,10 +25,10 @@ using fit_store::FitOf;
 using fit_store::kBatches;
 using fit_store::kListedColumns;
 
-/// How many runs of a list are at most read at once.
+/// Largest number of runs read for one list.
 constexpr int kMostListed = 1000;
 
-/// How long an answer is known to those who ask again.
+/// How long an answer is kept for repeated requests.
 constexpr const char* kForgetAnswers =
     "DELETE FROM answers WHERE created < strftime('%Y-%m-%dT%H:%M:%SZ', 'now', '-1 day')";
 
@@ -36,7 +36,7 @@ tl::unexpected<Status> Unknown(const std::string& what, const std::string& id) {
   return Error(StatusCode::kNotFound, "there is no " + what + " " + id + "; it may have been deleted");
 }
 
-/// Hashes that take their time, made before the store is held.
+/// Hashes take long, so they are computed before the store is locked.
 struct FileHashes {
   std::string data, rig, calibration;
 };
@@ -60,11 +60,11 @@ struct FitStore::State {
   State(StoreLock held, Store writing, Store reading)
       : lock(std::move(held)), writer(std::move(writing)), reader(std::move(reading)) {}
 
-  /// Does the work in the transaction that is open, all or nothing of it, and returns once that is on the disk.
+  /// Runs `work` in the open transaction, completely or not at all, and returns when it is on the disk.
   template <typename Work>
   Result<void> Write(const Work& work);
 
-  /// Does the work without hindering those who write.
+  /// Runs `work` without blocking writers.
   template <typename Work>
   auto Read(const Work& work) -> decltype(work(std::declval<SQLite::Database&>())) {
     const std::scoped_lock held(read_mutex);
@@ -75,7 +75,7 @@ struct FitStore::State {
   Result<void> AddRun(const FitOrder& order, const FileHashes& hashes, const std::optional<std::int64_t>& batch);
   void KeepAnswer(const std::optional<RequestKey>& key, const std::string& location, const std::string& created);
 
-  /// What is committed together.
+  /// Writes that share one commit.
   struct Round {
     bool has_committer = false, is_over = false;
     Result<void> done;
@@ -84,12 +84,12 @@ struct FitStore::State {
   Result<void> TryCommit();
   void EndRound(Result<void> done, std::shared_ptr<Round> next);
 
-  StoreLock lock;          // first, so that it is held as long as the file is open
-  std::mutex write_mutex;  // of all below up to the reader
+  StoreLock lock;          // first member, so it is held as long as the file is open
+  std::mutex write_mutex;  // for the members below up to the reader
   Store writer;
   std::shared_ptr<Round> round = std::make_shared<Round>();
   std::condition_variable over;
-  std::mutex read_mutex;  // of the reader
+  std::mutex read_mutex;  // for the reader
   Store reader;
 };
 
@@ -105,17 +105,17 @@ Result<void> FitStore::State::Write(const Work& work) {
     return {};
   });
   if (done) return WaitUntilCommitted(held);
-  // A disk that is full may have undone what others wait for, too.
+  // A full disk may have rolled back the writes of waiting threads, too.
   if (::sqlite3_get_autocommit(writer.database().getHandle()) != 0) EndRound(done, std::make_shared<Round>());
   return done;
 }
 
-/// The first of those who wait commits for all whose work is done until it comes to that.
+/// The first waiting thread commits for all threads whose work is done by then.
 Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& held) {
   const std::shared_ptr<Round> mine = round;
-  auto next = std::make_shared<Round>();  // while nobody waits for this one yet
+  auto next = std::make_shared<Round>();  // allocated while no thread waits for it
   if (!std::exchange(mine->has_committer, true)) {
-    constexpr std::chrono::microseconds kGathering{300};  // short beside a commit and beside a fit
+    constexpr std::chrono::microseconds kGathering{300};  // short compared with a commit and with a fit
     over.wait_for(held, kGathering, [&] { return mine->is_over; });
     if (!mine->is_over) EndRound(TryCommit(), std::move(next));
   }
@@ -123,7 +123,7 @@ Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& h
   return mine->done;
 }
 
-/// Whatever goes wrong, those who wait are told.
+/// Waiting threads get the error even after an exception.
 Result<void> FitStore::State::TryCommit() {
   try {
     return writer.Commit();
@@ -172,7 +172,7 @@ void FitStore::State::KeepAnswer(const std::optional<RequestKey>& key, const std
 
 FitStore::FitStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-/// One file is left, which can be copied as it is, unless somebody reads it.
+/// Leaves one file that can be copied, unless another process is reading it.
 FitStore::~FitStore() {
   state_->writer.Rollback();
   { const Store closing = std::move(state_->reader); }

@@ -10,7 +10,7 @@
 #include "batch/sqlite.h"
 #include "pendulum/batch/fit_store.h"
 
-/// What a FitStore asks of its tables (store_schema.h); what SQLite throws is for sqlite::Guard.
+/// Queries of a FitStore on its tables (store_schema.h). Exceptions of SQLite are handled by sqlite::Guard.
 namespace pendulum::fit_store {
 
 inline constexpr const char* kListedColumns =
@@ -26,7 +26,7 @@ inline constexpr const char* kBatches = R"sql(
 SELECT batches.batch, batches.id, batches.created, count(run), count(exit_code), count(reason)
   FROM batches LEFT JOIN requests USING(batch) LEFT JOIN runs USING(run) )sql";
 
-/// The texts that a filter asks for, by the names that they have in ConditionsOf.
+/// The text values of a filter with their parameter names in ConditionsOf.
 inline std::vector<std::pair<std::string, std::string>> TextConditions(const FitFilter& filter) {
   std::vector<std::pair<std::string, std::string>> texts = {{":batch", filter.batch},
                                                             {":name", filter.name},
@@ -37,7 +37,7 @@ inline std::vector<std::pair<std::string, std::string>> TextConditions(const Fit
   return texts;
 }
 
-/// Those of a filter that are asked for, so that indices serve where they can; instr knows no wildcards.
+/// Only the conditions that a filter sets, so that SQLite can use indices; instr has no wildcards.
 inline std::string ConditionsOf(const FitFilter& filter) {
   std::string conditions = "WHERE true";
   if (filter.before) conditions += " AND run < :before";
@@ -98,7 +98,7 @@ inline std::vector<ListedModel> ModelsOf(SQLite::Database& database, std::int64_
   return models;
 }
 
-/// The number of a file with these bytes, which is kept once.
+/// The number of the file with these bytes; equal files are stored once.
 inline std::int64_t KeepFile(SQLite::Database& database, const std::string& bytes, const std::string& sha256) {
   SQLite::Statement find(database, "SELECT file FROM files WHERE sha256 = ?");
   if (sqlite::Bind(find, sha256).executeStep()) return find.getColumn(0).getInt64();
@@ -116,7 +116,7 @@ inline std::string FileBytes(SQLite::Database& database, std::int64_t file) {
   return {static_cast<const char*>(bytes.getBlob()), static_cast<std::size_t>(bytes.getBytes())};
 }
 
-/// Deletes runs, given by a condition on table requests, with all that hangs on them and the files that no other has.
+/// Deletes the runs that satisfy a condition on table requests, their rows, and files that no other run uses.
 inline void DeleteRuns(SQLite::Database& database, const std::string& condition) {
   database.exec("CREATE TEMP TABLE leaving AS SELECT run, data, rig, calibration FROM requests WHERE " + condition);
   for (const char* table : {"quantities", "fits", "requests", "runs"}) {

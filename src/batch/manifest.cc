@@ -24,13 +24,13 @@
 namespace pendulum {
 namespace {
 
-/// A row of fields, and the line it began on.
+/// The fields of a row, and the line where it begins.
 struct Row {
   std::vector<std::string> fields;
   std::size_t line = 0;
 };
 
-/// Rows of CSV text, by libcsv, which is given one line at a time so that a row knows its line.
+/// Rows of CSV text from libcsv, which gets one line at a time so that the line of a row is known.
 class CsvRows {
  public:
   explicit CsvRows(InputFile file) : lines_(std::move(file)) {
@@ -45,7 +45,7 @@ class CsvRows {
 
   const std::string& name() const { return lines_.name(); }
 
-  /// The next row that is not blank; false at the end.
+  /// Reads the next row that is not blank; false at the end.
   Result<bool> Next(Row& row) {
     row_.fields.clear();
     complete_ = false;
@@ -70,7 +70,7 @@ class CsvRows {
   }
 
  private:
-  /// The first separator outside of quotes.
+  /// Chooses the first separator outside quotes.
   void ChooseDelimiter(std::string_view header) {
     bool quoted = false;
     has_delimiter_ = true;
@@ -110,7 +110,7 @@ class CsvRows {
                  "the row that begins here is longer than 16 MiB; is a double quote not closed?");
   }
 
-  /// libcsv's third line end.
+  /// libcsv would accept a carriage return as a line end.
   Result<bool> CarriageReturn() const {
     return Fault(name() + ":" + std::to_string(lines_.number()),
                  "a carriage return stands within the line; end lines with LF or CRLF");
@@ -122,7 +122,8 @@ class CsvRows {
   }
 
   static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
-  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // libcsv's 128 make 10^5 copies of a long row
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // libcsv's default of 128 makes 10^5 copies of a
+                                                                     // long row
 
   LineReader lines_;
   csv_parser parser_{};
@@ -131,10 +132,10 @@ class CsvRows {
   bool complete_ = false, goes_on_ = false, has_delimiter_ = false;
 };
 
-/// What an entry takes from a column of this name; other columns are carried through.
+/// Columns with a meaning; other columns are kept as they are.
 constexpr std::array<std::string_view, 7> kColumns = {"path", "id", "rig", "calibration", "from_s", "to_s", "models"};
 
-/// The header, and the entries of the rows below it.
+/// The header, and the conversion of rows to entries.
 class Header {
  public:
   static Result<Header> Make(const std::string& file, Row row) {

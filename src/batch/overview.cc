@@ -34,7 +34,7 @@ SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) F
   return models;
 }
 
-/// Of the runs with several models, how often each is recommended.
+/// Number of recommendations of each model, among runs with several models.
 Json RecommendationsJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT recommended, count(*) FROM runs
@@ -56,7 +56,7 @@ std::string ReasonOf(std::string reason, const std::string& path) {
   return reason.erase(0, std::min(begin, reason.size()));
 }
 
-/// Without what differs from run to run: numbers.
+/// A reason without numbers, which differ between runs.
 std::string KindOf(const std::string& reason) {
   std::string kind;
   for (const char c : reason) {
@@ -70,7 +70,7 @@ std::string KindOf(const std::string& reason) {
 
 struct Failures {
   std::int64_t fits = 0;
-  std::string reason;  ///< Of the first; of all, unless they differ.
+  std::string reason;  ///< Reason of the first run; common to all unless they differ.
   bool differ = false;
   std::vector<std::string> models, examples;
 };

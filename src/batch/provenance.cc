@@ -39,7 +39,7 @@ Json ReadJson(const ReadOptions& read) {
   return json;
 }
 
-/// Enumerations by their number: a new one is appended, or the result changes anyway.
+/// Enumerations are stored by number. New values must be appended, otherwise the hash of unchanged options changes.
 Json FitJson(const FitOptions& fit) {
   return {{"gravity", fit.gravity ? Json(static_cast<int>(*fit.gravity)) : Json(nullptr)},
           {"start", fit.start ? Json(static_cast<int>(*fit.start)) : Json(nullptr)},

@@ -22,10 +22,10 @@
 namespace pendulum {
 namespace {
 
-/// The files of a run, as far as they could be read, and what it is to be fitted with.
+/// The files of a run, if they could be read, and its options.
 struct RunInputs {
   Result<std::string> data;
-  Result<std::optional<std::string>> rig, calibration;  ///< None where there is none.
+  Result<std::optional<std::string>> rig, calibration;  ///< std::nullopt: none.
   std::string rig_name, calibration_name;
   IdentifyOptions options;
 };
@@ -38,7 +38,8 @@ Result<std::optional<std::string>> ReadNamed(const Source& source, const std::st
   return *std::move(bytes);
 }
 
-/// What the run is asked: the batch's options, and what its entry says. Threads are for runs, not within them.
+/// The options of a run: the batch's options with the changes of its entry. Runs are parallel, so each fit uses one
+/// thread.
 IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& batch) {
   IdentifyOptions options = batch;
   options.fit.threads = 1;
@@ -47,7 +48,7 @@ IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& bat
   if (entry.models.empty()) return options;
   options.models.clear();
   const auto models = FindMotionModels(entry.models);
-  if (!models) return options;  // the manifest was checked
+  if (!models) return options;  // the manifest was already checked
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   options.fit.model = options.models.front();
   return options;
@@ -62,7 +63,7 @@ RunInputs ReadInputs(const Source& source, const ManifestEntry& entry, const Ref
           OptionsOf(entry, options.run)};
 }
 
-/// What stands for a file that cannot be read: while that fails alike, the run need not be tried again.
+/// Stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
 std::string Unreadable(const Status& status) { return "unreadable: " + status.message; }
 
 Result<std::string> HashOf(const Result<std::string>& bytes) {
@@ -75,7 +76,7 @@ Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
   return *bytes ? Sha256(**bytes) : std::string();
 }
 
-/// The names that result and reasons have of a run's files.
+/// The names of a run's files, which appear in its result and reasons.
 std::string PathsOf(const ManifestEntry& entry) { return JsonText({entry.path, entry.rig, entry.calibration, 0}); }
 
 Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inputs) {
@@ -131,7 +132,7 @@ RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, cons
   return outcome;
 }
 
-/// What comes of a run; nothing where what it would follow from is current.
+/// The outcome of a run; std::nullopt if its provenance is current.
 template <typename IsCurrent>
 std::optional<RunOutcome> RefitUnless(const Source& source, const ManifestEntry& entry, const RefitOptions& options,
                                       const IsCurrent& is_current) {
@@ -142,34 +143,34 @@ std::optional<RunOutcome> RefitUnless(const Source& source, const ManifestEntry&
   return OutcomeOf(entry, inputs, *std::move(provenance));
 }
 
-/// The refit of a batch by several threads, which take runs from the store and put their outcomes into it.
+/// Refits a batch with several threads, which take runs from the store and write their outcomes to it.
 class Refitter {
  public:
   Refitter(const Source& source, Store& store, const RefitOptions& options, RefitCounts& counts)
       : source_(source), store_(store), options_(options), counts_(counts) {}
 
-  /// What each thread does.
+  /// The loop of each thread.
   void Work() {
     try {
       while (std::optional<StoredRun> run = Take()) {
         const std::optional<RunOutcome> outcome = TryOne(*run);
         Done(*run, outcome ? &*outcome : nullptr);
       }
-    } catch (const std::exception& error) {  // the memory's end, between two runs
+    } catch (const std::exception& error) {  // out of memory between two runs
       const std::scoped_lock lock(mutex_);
       error_ = {StatusCode::kInternal, std::string("internal error: ") + error.what()};
     }
   }
 
-  /// What ended it, if anything did.
+  /// The error that ended the refit, if any.
   const std::optional<Status>& error() const { return error_; }
 
  private:
   static constexpr int kPage = 256;
   static constexpr std::chrono::seconds kCommitInterval{1};
 
-  /// What comes of a run; nothing of one that is current. An exception, which is our bug or the memory's end, costs
-  /// this run only, and this time only.
+  /// The outcome of a run; std::nullopt if it is current. An exception, from a bug or lack of memory, affects only this
+  /// run, and only this time.
   std::optional<RunOutcome> TryOne(const StoredRun& run) const {
     try {
       return RefitUnless(source_, run.entry, options_,
@@ -238,7 +239,7 @@ class Refitter {
   Store& store_;
   const RefitOptions& options_;
   RefitCounts& counts_;
-  std::mutex mutex_;  // of all below, the store and the counts
+  std::mutex mutex_;  // for all members below, the store and the counts
   std::deque<StoredRun> page_;
   std::int64_t position_ = 0;
   bool at_end_ = false;

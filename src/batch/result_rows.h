@@ -13,7 +13,7 @@
 
 #include "pendulum/batch/store.h"
 
-/// The rows of a store's tables, taken from the result JSON, so that the two cannot differ.
+/// The rows of a store's tables. They are derived from the result JSON, so the two always agree.
 namespace pendulum {
 
 /// A row of table quantities.
@@ -42,7 +42,7 @@ namespace result_rows {
 
 using Json = nlohmann::ordered_json;
 
-/// A value of that type, if the object has it.
+/// The value of a member with this type, if there is one.
 template <typename Value>
 std::optional<Value> Get(const Json& object, std::string_view key) {
   if (!object.is_object()) return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<Value> Get(const Json& object, std::string_view key) {
   return found->get<Value>();
 }
 
-/// The number whose key begins so and ends with its unit, and that unit.
+/// The number whose key has this prefix and ends with its unit, and that unit.
 inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(const Json& object,
                                                                                 std::string_view prefix) {
   if (!object.is_object()) return {};
@@ -112,7 +112,7 @@ inline FitRow Fit(const Json& result, const Json& fit) {
 
 }  // namespace result_rows
 
-/// A row for each model that was asked for.
+/// One row per requested model.
 inline std::vector<FitRow> FitRows(const RunOutcome& outcome) {
   std::vector<FitRow> rows;
   if (outcome.result.is_null()) {

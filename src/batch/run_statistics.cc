@@ -20,7 +20,7 @@
 namespace pendulum {
 namespace {
 
-/// Type 7 of Hyndman and Fan, of sorted values.
+/// Quantile of sorted values, type 7 of Hyndman and Fan.
 double Quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -205,7 +205,7 @@ namespace {
 
 constexpr int kHours = 24, kMinutes = 60;
 
-/// Minutes by which a time with this behind it is ahead of UTC: "Z", "+01:00"; 0 for nothing.
+/// Offset from UTC in minutes of a time zone "Z", "+01:00"; 0 for an empty text.
 std::optional<double> MinutesOfZone(const std::string& zone) {
   if (zone.empty() || zone == "Z") return 0;
   std::array<char, 2> sign{};
@@ -216,7 +216,7 @@ std::optional<double> MinutesOfZone(const std::string& zone) {
   return (sign[0] == '-' ? -1.0 : 1.0) * (kMinutes * hour + minute);
 }
 
-/// Days of a time of day, "T12:30", "T12:30:21.6Z"; 0 for nothing.
+/// A time of day as days, "T12:30", "T12:30:21.6Z"; 0 for an empty text.
 std::optional<double> DaysOfTime(const std::string& time) {
   if (time.empty()) return 0;
   unsigned int hour = 0, minute = 0;

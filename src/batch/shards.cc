@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the store of that path is about, if it is one.
+/// The meta data of the store with that path; std::nullopt if it is not a store.
 std::optional<StoreMeta> MetaOf(const fs::path& path) {
   auto store = Store::Open(path, Store::Mode::kRead);
   if (!store) return std::nullopt;
@@ -36,8 +36,8 @@ bool IsSound(const fs::path& path) {
   return store && store->Check();
 }
 
-/// Copies what an attempt begins with, if anything: the checkpoint, which began as the store of before, else that. One
-/// that is damaged is none, nor is one that another attempt takes away meanwhile.
+/// Copies the start of an attempt, if there is one: the checkpoint, otherwise the earlier store. A checkpoint also
+/// starts from the earlier store. Damaged files, and files that another attempt removes meanwhile, are skipped.
 Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
   for (const fs::path& path : {WithSuffix(shard.store, ".part"), shard.store}) {
     if (!IsSound(path)) continue;
@@ -47,7 +47,7 @@ Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
   return {};
 }
 
-/// Refits into the file of the attempt, which is published as the checkpoint now and then, and when it is stopped.
+/// Refits into the attempt's own file. It is published as the checkpoint from time to time, and after a stop.
 Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, RefitOptions options,
                             const fs::path& attempt) {
   using Clock = std::chrono::steady_clock;
@@ -135,7 +135,7 @@ Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int
 
 namespace {
 
-/// A table's columns but `run`, with a prefix, between commas.
+/// A table's columns except `run`, with a prefix, separated by commas.
 std::string ColumnsOf(SQLite::Database& database, const std::string& table, const char* prefix = "") {
   SQLite::Statement columns(database,
                             "SELECT group_concat(? || name, ', ') FROM pragma_table_info(?) WHERE name <> 'run'");
@@ -143,7 +143,7 @@ std::string ColumnsOf(SQLite::Database& database, const std::string& table, cons
   return sqlite::Text(columns, 0);
 }
 
-/// "id = excluded.id, ..." for all columns but `run`.
+/// "id = excluded.id, ..." for all columns except `run`.
 std::string AssignmentsOf(SQLite::Database& database, const std::string& table) {
   SQLite::Statement columns(database,
                             "SELECT group_concat(name || ' = excluded.' || name, ', ') "
@@ -152,7 +152,7 @@ std::string AssignmentsOf(SQLite::Database& database, const std::string& table) 
   return sqlite::Text(columns, 0);
 }
 
-/// Puts the rows that the attached store `shard` has in a table of runs' rows in place of those of the same runs.
+/// Replaces the rows of a table by those of the attached store `shard`, for the runs in that store.
 void ReplaceRows(SQLite::Database& database, const std::string& table) {
   database.exec("DELETE FROM main." + table +
                 " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id))");
@@ -161,7 +161,7 @@ void ReplaceRows(SQLite::Database& database, const std::string& table) {
                 " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id");
 }
 
-/// Puts what the attached store `shard` has into the tables, in place of what they have of the same runs.
+/// Copies the attached store `shard` into the tables and replaces the rows of the same runs.
 void TakeStore(SQLite::Database& database) {
   const std::string runs = ColumnsOf(database, "runs");
   database.exec("INSERT INTO main.runs(" + runs + ") SELECT " + runs +
@@ -176,11 +176,11 @@ void TakeStore(SQLite::Database& database) {
   database.exec("UPDATE main.meta SET value = '' WHERE key IN ('shard', 'shard_count')");
 }
 
-/// Attaches the stores one by one, for SQLite attaches ten at most.
+/// Attaches the stores one at a time, because SQLite attaches at most ten.
 Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Store& store) {
   return sqlite::Guard(store.name(), [&]() -> Result<std::int64_t> {
     SQLite::Database& database = store.database();
-    database.exec("PRAGMA synchronous = OFF");  // the file is synchronised as a whole
+    database.exec("PRAGMA synchronous = OFF");  // the complete file is synchronised at the end
     database.exec("UPDATE runs SET position = -1 WHERE position <> -1");
     std::int64_t runs = 0;
     for (std::int64_t k = 0; k < count; ++k) {
@@ -196,7 +196,7 @@ Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Stor
   });
 }
 
-/// All shards are of one batch.
+/// Checks that all shards belong to one batch.
 Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
   const auto first = MetaOf(ShardPath(folder, 0));
   for (std::int64_t k = 1; k < count; ++k) {
@@ -209,7 +209,7 @@ Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
   return {};
 }
 
-/// The merged store is none of what is merged.
+/// Checks that the merged store is not one of the shards.
 Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs::path& store) {
   std::error_code unknown;
   for (std::int64_t k = 0; k < count; ++k) {
@@ -220,7 +220,7 @@ Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs
   return {};
 }
 
-/// Files of attempts: dead ones, and such as were overtaken by others, for the shards are all there.
+/// Removes files of attempts. They are dead or too late, because all shards are complete.
 void RemoveLeftovers(const fs::path& folder, std::int64_t count) {
   std::error_code error;
   std::vector<fs::path> leftovers;

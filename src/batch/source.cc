@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The bytes of a regular file below a folder, under the name that its entry has for it.
+/// The bytes of a regular file in a folder, by its path in the entry.
 Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
   const fs::path file = folder / path;
   std::error_code unknown;
@@ -50,7 +50,7 @@ Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
   return Error(bytes.error().code, message);
 }
 
-/// "SQLite format 3", with which such a file begins.
+/// Whether a file begins with "SQLite format 3", as SQLite files do.
 bool IsSqlite(const fs::path& path) {
   constexpr std::string_view kMagic{"SQLite format 3\0", 16};
   std::array<char, kMagic.size()> begin{};
@@ -69,7 +69,7 @@ CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the
   path TEXT PRIMARY KEY, code INTEGER, message TEXT, bytes BLOB);
 )";
 
-/// A packed file that is open for reading. SQLite itself lets one thread in at a time.
+/// A packed file open for reading. SQLite itself serializes threads.
 class PackedFile {
  public:
   explicit PackedFile(const fs::path& path)
@@ -111,7 +111,7 @@ class PackedFile {
   }
 
  private:
-  /// A pack may come from another program.
+  /// Checks an entry, because another program may have written the pack.
   Result<void> CheckEntry(const ManifestEntry& entry) const {
     const auto models = FindMotionModels(entry.models);
     if (!entry.models.empty() && !models) return Fault(name_, entry.id + ": " + models.error().message);
@@ -144,7 +144,7 @@ Result<Source> OpenPack(const fs::path& path) {
   });
 }
 
-/// pack replaces packed files only: neither a recording nor the results of a term, nor a device.
+/// Pack may replace only packed files, never a recording, a result store or a device.
 Result<void> CheckReplaceable(const fs::path& path) {
   std::error_code unknown;
   const fs::file_type type = fs::status(path, unknown).type();
@@ -155,7 +155,7 @@ Result<void> CheckReplaceable(const fs::path& path) {
                path.string() + ": this file is there and is no packed file, which pack would replace; name another");
 }
 
-/// A packed file that is being written.
+/// A packed file in progress.
 class Packer {
  public:
   Packer(const std::string& path, const Source& source)
@@ -216,7 +216,7 @@ class Packer {
 Result<Source> OpenSource(const fs::path& path) {
   std::error_code unknown;
   if (fs::is_regular_file(path, unknown) && IsSqlite(path)) return OpenPack(path);
-  if (path != "-" && !fs::is_fifo(path, unknown)) {  // whose writer sees its reader go
+  if (path != "-" && !fs::is_fifo(path, unknown)) {  // opening a pipe to test it would disturb its writer
     if (const auto opened = InputFile::Open(path, "manifest"); !opened) return tl::unexpected(opened.error());
   }
   const fs::path folder = path == "-" ? fs::path() : path.parent_path();

@@ -15,10 +15,10 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/status.h"
 
-/// SQLite as the stores use it: no exception of it leaves a function of ours.
+/// Helpers for SQLite in the stores: no exception of SQLite leaves a function of ours.
 namespace pendulum::sqlite {
 
-/// What SQLite's error means for whoever asked for the file of that name.
+/// Converts SQLite's error to a status for the file of that name.
 inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exception& error) {
   const std::string words = error.what();
   switch (error.getErrorCode()) {
@@ -37,16 +37,16 @@ inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exc
   }
 }
 
-/// A path as SQLite takes it for one, also where it looks like a URI or ":memory:".
+/// A path in a form that SQLite does not take for a URI or ":memory:".
 inline std::string FileName(const std::string& path) { return path.starts_with('/') ? path : "./" + path; }
 
-/// What SQLite would call a file that cannot be opened, where it is one that may not be read.
+/// Gives a permission error its own message; SQLite reports only that the file cannot be opened.
 inline Result<void> CheckReadable(const std::string& name) {
   if (::faccessat(AT_FDCWD, name.c_str(), R_OK, AT_EACCESS) == 0 || errno != EACCES) return {};
   return Fault(name, "the file cannot be read; check its permissions");
 }
 
-/// What `work` gives, or SQLite's refusal of the file of that name; what is not as the tables say is damage.
+/// The result of `work`, or SQLite's error for the file of that name. Content that contradicts the tables is damage.
 template <typename Work>
 auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
   try {
@@ -56,16 +56,17 @@ auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
   } catch (const nlohmann::json::exception& error) {
     return Error(StatusCode::kDataLoss,
                  name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
-  } catch (const std::logic_error& error) {  // std::stoll
+  } catch (const std::logic_error& error) {  // from std::stoll
     return Error(StatusCode::kDataLoss,
                  name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
   }
 }
 
-/// Binds values to the first places of a statement, in their order; an empty optional, and what is left, is NULL.
+/// Binds values to the first parameters of a statement, in order. Empty optionals and the remaining parameters become
+/// NULL.
 template <typename... Values>
 SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
-  (void)statement.tryReset();  // what its last step said has been told
+  (void)statement.tryReset();  // an error of its last step was already reported
   statement.clearBindings();
   int place = 0;
   const auto bind = [&](const auto& value) {
@@ -80,7 +81,7 @@ SQLite::Statement& Bind(SQLite::Statement& statement, const Values&... values) {
   return statement;
 }
 
-/// The text of a column of the row a statement is at; empty for NULL.
+/// The text of a column in the current row of a statement; empty for NULL.
 inline std::string Text(const SQLite::Statement& statement, int column) {
   const SQLite::Column value = statement.getColumn(column);
   return value.isNull() ? "" : value.getString();
@@ -94,7 +95,7 @@ inline std::vector<std::string> Texts(SQLite::Database& database, const std::str
   return texts;
 }
 
-/// Names of the columns that a store's manifests carry through.
+/// Names of the additional manifest columns in a store.
 inline constexpr const char* kManifestColumns = "SELECT DISTINCT key FROM runs, json_each(runs.columns) ORDER BY key";
 
 }  // namespace pendulum::sqlite

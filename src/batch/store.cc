@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The JSON line of an entry that the manifest's hash is made of: the same whether it came from CSV or from a pack.
+/// The JSON line of an entry for the manifest's hash; equal for entries from CSV and from a pack.
 std::string EntryLine(const ManifestEntry& entry) {
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   const Json line = {entry.id,           entry.path,       entry.rig,    entry.calibration,
@@ -44,7 +44,7 @@ StoredRun RunOf(const SQLite::Statement& row) {
   return run;
 }
 
-/// Brings the tables up to date in one transaction; makes those of a new file.
+/// Updates the tables in one transaction; creates them in a new file.
 void Migrate(SQLite::Database& database, int version) {
   SQLite::Transaction transaction(database);
   for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
@@ -55,7 +55,7 @@ void Migrate(SQLite::Database& database, int version) {
   transaction.commit();
 }
 
-/// Whether it is a store whose version is known; a file without tables may become one.
+/// Checks that the file is a store of a known version; a file without tables may become one.
 Result<void> CheckKind(const std::string& name, SQLite::Database& database, Store::Mode mode) {
   const int id = database.execAndGet("PRAGMA application_id").getInt();
   const int version = database.execAndGet("PRAGMA user_version").getInt();
@@ -73,7 +73,7 @@ Result<void> CheckKind(const std::string& name, SQLite::Database& database, Stor
 }  // namespace
 
 std::int64_t Shard::Cut(std::int64_t runs, std::int64_t k) const {
-  return runs / count * k + runs % count * k / count;  // R k / N where R k is too large
+  return runs / count * k + runs % count * k / count;  // R k / N without overflow for large R
 }
 
 struct Store::State {
@@ -86,14 +86,14 @@ struct Store::State {
     if (mode == Mode::kServe) database.setBusyTimeout(kServerPatienceMs);
   }
 
-  /// What SQLite asks of a writer whom readers keep waiting, for the so-and-so-many-th time: whether to go on waiting.
+  /// Called by SQLite when readers block a writer for the `times`-th time; returns whether to keep waiting.
   static int Wait(void* self, int times) {
     const std::atomic<bool>* stop = static_cast<const State*>(self)->stop;
     const int patience = stop != nullptr && stop->load() ? kStoppedPatienceMs : kWriterPatienceMs;
     return times * ::sqlite3_sleep(kStepMs) < patience ? 1 : 0;
   }
 
-  /// A statement that is prepared once.
+  /// Prepares a statement at its first use.
   SQLite::Statement& Prepared(std::unique_ptr<SQLite::Statement>& statement, const char* sql) {
     if (!statement) statement = std::make_unique<SQLite::Statement>(database, sql);
     return *statement;
@@ -135,12 +135,12 @@ struct Store::State {
   std::unique_ptr<SQLite::Statement> run_of, add_run, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
 };
 
-/// Fills the table of this batch with all entries; gives their hash.
+/// Fills the table of this batch with all entries; returns their hash.
 Result<std::string> Store::State::TakeBatch(const Source& source) {
   database.exec("DROP TABLE IF EXISTS temp.batch");
   database.exec(kBatchTable);
   SQLite::Statement add(database, "INSERT OR IGNORE INTO batch VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  std::string hash;  // a chain: that of an entry is over the one before it
+  std::string hash;  // a chain: the hash of an entry includes the previous hash
   auto taken = source.for_each([&](const ManifestEntry& entry) -> Result<void> {
     const int added = sqlite::Bind(add, entry.position, entry.id, entry.path, entry.rig, entry.calibration, entry.from,
                                    entry.to, entry.models, entry.columns, entry.place)
@@ -161,19 +161,19 @@ Result<std::string> Store::State::TakeBatch(const Source& source) {
   return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one a row");
 }
 
-/// Leaves what is not of the shard out of the batch, and out of the store.
+/// Removes runs outside the shard from the batch and from the store.
 void Store::State::TakeShard(const std::optional<Shard>& shard, StoreMeta& meta) {
   meta.runs = database.execAndGet("SELECT count(*) FROM batch").getInt64();
-  // What a service was asked for is of no manifest.
+  // Runs requested from a service belong to no manifest.
   const std::string other_manifest = "id NOT IN (SELECT id FROM batch) AND run NOT IN (SELECT run FROM requests)";
-  if (!shard) {  // of what the manifest names no more, results stay
+  if (!shard) {  // results of runs that are no longer in the manifest stay
     database.exec("DELETE FROM runs WHERE exit_code IS NULL AND " + other_manifest);
     database.exec("UPDATE runs SET position = -1 WHERE position <> -1 AND " + other_manifest);
     return;
   }
   SQLite::Statement leave_out(database, "DELETE FROM batch WHERE position < ? OR position >= ?");
   sqlite::Bind(leave_out, shard->Begin(meta.runs), shard->End(meta.runs)).exec();
-  // The store of a shard may have begun as that of another.
+  // The store of a shard may have begun as the store of another shard.
   for (const char* table : {"quantities", "fits", "runs"}) {
     database.exec(std::string("DELETE FROM ") + table + " WHERE run IN (SELECT run FROM runs WHERE " + other_manifest +
                   ")");
@@ -242,8 +242,8 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     auto state = std::make_unique<State>(name, mode);
     if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
     if (mode == Mode::kRead) return Store(std::move(state));
-    // A rollback journal does without shared memory, on any file system, and EXTRA synchronises the folder too. With a
-    // write-ahead log nobody waits for readers, but whoever changes from one to the other.
+    // A rollback journal needs no shared memory and works on any file system; EXTRA also synchronises the folder. With
+    // a write-ahead log writers do not wait for readers, except when the journal mode changes.
     state->database.exec(mode == Mode::kServe
                              ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -32768"
                              : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");

@@ -14,7 +14,7 @@
 namespace pendulum {
 namespace {
 
-/// Whether the path still names the file that is open: whoever had the lock before may have removed it meanwhile.
+/// Whether the path still refers to the open file; the previous owner of the lock may have removed the file.
 bool IsStillThere(const std::string& path, int descriptor) {
   struct stat named {};
   struct stat open {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a Store asks of its tables (store_schema.h).
+/// Queries of a Store on its tables (store_schema.h).
 namespace pendulum {
 
 inline constexpr const char* kBatchTable = R"sql(
@@ -20,7 +20,7 @@ SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_
     batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
   FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
 
-// Runs are numbered as they come.
+// Runs are numbered in the order of their arrival.
 inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";

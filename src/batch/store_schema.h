@@ -9,8 +9,8 @@ namespace pendulum {
 /// PRAGMA application_id of a result store: "Pend" in ASCII.
 inline constexpr int kStoreId = 0x50656e64;
 
-/// What makes version n of a store's tables from version n - 1 (PRAGMA user_version), n from 1 on. A version that was
-/// shipped is never changed: another one is appended. SQLite keeps the comments, so that .schema explains the tables.
+/// The migration of a store's tables from version n - 1 to n (PRAGMA user_version), n from 1 on. A released version
+/// never changes; a new one is appended. SQLite keeps the comments, so .schema explains the tables.
 inline constexpr std::array<std::string_view, 2> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)

@@ -44,18 +44,18 @@ struct Quantity {
   std::string model, name, unit;
 };
 
-/// Its values, and what its runs are called.
+/// Its values, and the names of its runs.
 struct QuantityRuns {
   RunValues values;
-  std::vector<std::string> ids, groups;  ///< Of each run; of each group.
+  std::vector<std::string> ids, groups;  ///< One per run; one per group.
   bool dates = false;
 };
 
-/// Columns of a manifest that are columns of table runs.
+/// Manifest columns that are columns of table runs.
 constexpr std::array<std::string_view, 7> kOwnColumns = {"id",     "path", "rig",   "calibration",
                                                          "from_s", "to_s", "models"};
 
-/// The value that a manifest column, named by the next parameter, has for a run.
+/// SQL for a run's value in the manifest column given by the next parameter.
 std::string ValueOf(const std::string& column) {
   const bool own = std::ranges::find(kOwnColumns, column) != kOwnColumns.end();
   return own ? "iif(? = '', NULL, runs." + column + ")" : "(SELECT value FROM json_each(columns) WHERE key = ?)";
@@ -90,10 +90,10 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
   return runs;
 }
 
-/// A unit behind a number; nothing for a plain one.
+/// A unit after a number; empty for a dimensionless one.
 std::string Spaced(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
 
-/// "repeat to 1.03 times their errors (p 0.2)", for people.
+/// "20 runs scatter 1.03 times as much as their quoted errors say (p 0.2)".
 std::string VerdictText(const Repeatability& all, const std::string& unit, std::size_t outliers) {
   std::string text = std::to_string(all.runs) + " runs scatter " + NumberText(all.ScatterRatio(), 3) +
                      " times as much as their quoted errors say (p " +
@@ -151,7 +151,7 @@ Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const
   return list;
 }
 
-/// Every so many-th point, so that few remain.
+/// Every n-th point, so that at most kMostPoints remain.
 Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
   Json points = Json::array();
   const std::size_t step = (runs.values.size() + kMostPoints - 1) / kMostPoints;
@@ -213,7 +213,7 @@ Json DistributionJson(const Quantity& quantity, const RunValues& values) {
             {"above", distribution.above}}}};
 }
 
-/// Start and zero are what each run begins with; the others are the rig's.
+/// Whether a quantity belongs to the rig; start and zero differ between runs.
 bool IsOfTheRig(const Quantity& quantity) {
   constexpr std::array<std::string_view, 8> kOfTheRun = {"release_angle", "release_time", "initial_angle",
                                                          "initial_rate",  "zero_angle",   "rate_bias",
@@ -262,7 +262,7 @@ bool NamesSeveralRigs(SQLite::Database& database) {
   return database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> ''").getInt() > 1;
 }
 
-/// A value of a column that says nothing of the order of runs, and how many runs have such.
+/// Number of runs whose value in the column gives no order, and one such value.
 std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, const std::string& column) {
   std::pair<std::int64_t, std::string> found;
   if (column.empty()) return found;

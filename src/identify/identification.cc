@@ -21,7 +21,7 @@ bool SaidByAll(const std::vector<FitReport>& fits, const Warning& warning) {
   return std::ranges::all_of(fits, [&](const FitReport& fit) { return IsSaid(fit.warnings, warning); });
 }
 
-/// The warnings of the recordings of a joint fit: whose each is, or that it is each one's.
+/// The warnings of a joint fit's recordings. Each names its recording, or says that it applies to all.
 std::vector<Warning> WarningsOfRuns(const Identification& report) {
   std::vector<std::vector<Warning>> runs;
   for (const Identification& run : report.runs) runs.push_back(AllWarnings(run));

@@ -13,7 +13,7 @@ namespace {
 
 std::string FourDigits(double value) { return NumberText(value, 4); }
 
-/// The swing about the middle of the travel that counts tell.
+/// Describes the swing about the middle of the travel that the counts cover.
 std::string AboutTheMiddle(const AdcSensor& sensor) {
   const SensorRange usable = sensor.UsableAnglesDeg();
   const double swing = std::min(-usable.low, usable.high);
@@ -31,7 +31,7 @@ std::vector<std::string> SensorRow(const AdcSensor& sensor) {
           NumberText(counts.low) + " to " + NumberText(counts.high)};
 }
 
-/// Where the converter's range ends before the potentiometer's travel does.
+/// Describes the angle at which the converter saturates within the potentiometer's travel.
 std::string SaturationText(const AdcSensor& sensor) {
   const auto angle = sensor.SaturationAngleDeg();
   if (!angle) return "";

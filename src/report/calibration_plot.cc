@@ -37,7 +37,7 @@ constexpr std::string_view kLower = R"(, \
 unset multiplot
 )";
 
-/// Named data of a script.
+/// A named data block of a script.
 std::string PlotData(std::string_view name, const std::string& lines) {
   return std::string(name) + " << EndOfData\n" + lines + "EndOfData\n";
 }

@@ -20,8 +20,8 @@ namespace {
 using Eigen::Index;
 using Row = std::vector<std::string>;
 
-constexpr int kFewDigits = 3;           // significant, of a number to be compared
-constexpr double kSignificance = 0.05;  // of the tests
+constexpr int kFewDigits = 3;           // significant digits of a number that is only compared
+constexpr double kSignificance = 0.05;  // significance level of the tests
 
 std::string Short(double value) { return NumberText(value, kFewDigits); }
 
@@ -34,7 +34,7 @@ std::string Power(int exponent, const std::string& base) {
   return exponent == 0 ? "" : exponent == 1 ? base : base + "^" + std::to_string(exponent);
 }
 
-/// The curve with its numbers: -49.6077 + 0.198544 x
+/// The polynomial with its numbers: -49.6077 + 0.198544 x
 std::string Polynomial(const std::vector<double>& coefficients) {
   std::string text;
   for (std::size_t k = 0; k < coefficients.size(); ++k) {
@@ -101,7 +101,7 @@ std::vector<Index> ShownPoints(const CalibrationFit& fit) {
   return points;
 }
 
-/// Three digits of the largest residual; less than a millionth of the angles counts as nothing.
+/// Three digits of the largest residual; less than a millionth of the angles counts as 0.
 int Decimals(const CalibrationTable& table, const CalibrationFit& fit) {
   constexpr double kNothing = 1e-6;
   const double scale = std::max(std::abs(fit.residual[fit.largest]), kNothing * table.angle.cwiseAbs().maxCoeff());
@@ -150,14 +150,14 @@ std::string ErrorsText(const CalibrationTable& table, const CalibrationFit& fit)
                " rms: how far the curve misses a point that did not take part (\"left out\" above).");
 }
 
-/// From 5 on "an order of magnitude above", from 50 on two, and so on.
+/// From 5 on "an order of magnitude above", from 50 on two orders, and so on.
 std::string MagnitudeText(double ratio) {
   const int orders = static_cast<int>(std::floor(std::log10(2 * ratio)));
   if (orders <= 0) return "above";
   return (orders == 1 ? "an order" : std::to_string(orders) + " orders") + " of magnitude above";
 }
 
-/// Do the residuals come from the rounding to counts?
+/// Says whether rounding to counts explains the residuals.
 std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& fit) {
   if (fit.resolution == 0) return "";
   const std::string& unit = table.angle_unit;
@@ -205,7 +205,7 @@ std::string OrdersText(const CalibrationFit& fit) {
   return text.empty() ? "" : Prose(text);
 }
 
-/// Nothing is known outside of the table, and a curve may turn there.
+/// Warns about readings outside the table, where a curve may even change its direction.
 std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit) {
   const double low = table.reading.minCoeff(), high = table.reading.maxCoeff();
   std::string text = "Outside " + Span(low, high, table.input) + " the curve is extrapolated.";

@@ -70,7 +70,7 @@ Json RowJson(const ClosedFormRow& row) {
       .Done();
 }
 
-/// A number that 0 stands for when it is not known.
+/// std::nullopt for 0, which means unknown.
 std::optional<double> Known(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
 
 }  // namespace

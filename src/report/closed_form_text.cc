@@ -23,7 +23,7 @@ using Cells = std::vector<std::string>;
 // --- sampling --------------------------------------------------------------------------------------------------------
 
 std::string JitterText(const Sampling& sampling) {
-  constexpr double kEven = 1e-6;  // of an interval: rounding of the stamps
+  constexpr double kEven = 1e-6;  // share of an interval: rounding of the time stamps
   if (sampling.jitter * sampling.rate_hz < kEven) return "even";
   return "intervals scatter by " + NumberText(1e3 * sampling.jitter, 2) + " ms";
 }
@@ -52,7 +52,7 @@ Cells EstimateCells(const ReportedEstimate& reported, const Conversion& conversi
   return {"", "", numbers.Value(), numbers.Error(), std::string(conversion.unit)};
 }
 
-/// `in_degrees`: what is in radians once more in degrees.
+/// `in_degrees`: repeats values in radians in degrees.
 Table EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degrees) {
   std::vector<Cells> rows;
   for (const ReportedEstimate& reported : estimates) {
@@ -80,7 +80,7 @@ void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section&
   section.Add(EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false));
 }
 
-/// Friction that gives energy is none.
+/// Warns about negative friction, which would add energy.
 void SayNegative(const Decrement& decrement, Section& section) {
   constexpr double kSurely = 3;
   const std::vector<ParameterInfo> infos = PhysicalParameters(decrement.model);
@@ -113,12 +113,12 @@ void AddDecrement(const Identification& report, Section& section) {
 
 // --- the check -------------------------------------------------------------------------------------------------------
 
-/// 0.1 of a standard deviation is as fine as a z is read.
+/// z to 0.1 standard deviations, which is accurate enough.
 std::string ZText(const std::optional<double>& z) { return z && std::isfinite(*z) ? RoundedText(*z, {1, 0}) : "-"; }
 
 constexpr const char* kDiffers = "NO";
 
-/// The fit as its own error rounds it; without one to the decimal of the closed form.
+/// The fit rounded by its own error; without an error to the decimal of the closed form.
 Cells CheckCells(const ClosedFormRow& row) {
   const QuantityNumbers numbers(row.closed_form, row.std_error);
   const std::string value = numbers.Error().empty() ? numbers.Number(row.closed_form) : numbers.Value();
@@ -143,7 +143,7 @@ Section CheckSection(const ClosedFormCheck& check, const std::string& of) {
 
 // --- turning points --------------------------------------------------------------------------------------------------
 
-/// How many turning points are listed from the beginning and from the end.
+/// Number of listed turning points at the beginning and at the end.
 struct Listed {
   std::size_t first, last;
 };
@@ -163,7 +163,7 @@ std::vector<Column> PeakColumns(const PeakTable& table, const std::string& unit)
           {"n", true}};
 }
 
-/// A value and its error in two cells; empty when there is none.
+/// A value and its error in two cells; empty if missing.
 std::array<std::string, 2> RatioCells(const std::optional<Estimate>& ratio) {
   if (!ratio) return {"", ""};
   const QuantityNumbers numbers(ratio->value, ratio->std_error);

@@ -20,7 +20,7 @@ std::string_view LikelihoodName(Likelihood likelihood) {
   return "none";
 }
 
-/// null where nothing was predicted; then the row says why.
+/// null without a prediction; the row then gives the reason.
 Json PredictionJson(const std::string& what, const Prediction& prediction, const std::string& unit, NumberObject& row) {
   if (prediction.samples == 0) {
     row.Because(what + ": " + (prediction.reason.empty() ? "not made" : prediction.reason));
@@ -94,7 +94,7 @@ Json HalvesJson(const Constancy& constancy) {
       .Done();
 }
 
-/// Friction that is held has no numbers, which needs no reason.
+/// Fixed friction has no numbers; that needs no reason.
 Json WindowJson(const AmplitudeRow& row) {
   return NumberObject()
       .Set("from_s", row.from)

@@ -22,7 +22,7 @@ constexpr int kResidualDigits = 3;
 constexpr int kWeightDigits = 2;
 constexpr const char* kLackOfFit = "lack of fit";
 
-/// Degrees of an angle, else the readings' own unit.
+/// Degrees for angles, otherwise the readings' own unit.
 Conversion ShownUnit(const Identification& report) {
   return Degrees(report.data.unit).value_or(Conversion{report.data.unit});
 }
@@ -31,13 +31,13 @@ std::string FixedOrDash(const std::optional<double>& value, int decimals) {
   return value && std::isfinite(*value) ? FixedText(*value, decimals) : "-";
 }
 
-/// A size to be compared with others of its column: three digits, trailing zeros included.
+/// A number for comparison within its column: three digits, including trailing zeros.
 std::string SizeText(double size) {
   if (!(size > 0) || !std::isfinite(size)) return NumberText(size, kResidualDigits);
   return RoundedText(size, SignificantRounding(size, kResidualDigits));
 }
 
-/// A sentence whether or not it ends with a full stop.
+/// The text with a full stop at its end.
 std::string Sentence(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
 
 // --- comparison ------------------------------------------------------------------------------------------------------
@@ -64,7 +64,7 @@ Table CriteriaTable(const Comparison& comparison, const Conversion& shown) {
   return table;
 }
 
-/// The rms of what was foreseen and that of the standardized, in two cells.
+/// The rms of the prediction and its standardized rms, in two cells.
 Row PredictionCells(const Prediction& prediction, double factor) {
   if (prediction.samples == 0) return {"-", "-"};
   return {SizeText(factor * prediction.rms), SizeText(prediction.standardized)};
@@ -90,7 +90,7 @@ bool PredictsSomething(const Comparison& comparison) {
   });
 }
 
-/// What no row's numbers tell.
+/// Adds explanations that the rows' numbers do not give.
 void SayReasons(const Comparison& comparison, Section& section) {
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
@@ -158,7 +158,7 @@ Table HalvesTable(const Constancy& constancy) {
   return table;
 }
 
-/// A value with its error, or nothing where there is none.
+/// A value with its error; empty if missing.
 Row CellsOf(double value, double std_error) {
   if (!std::isfinite(value)) return {"", ""};
   const QuantityNumbers numbers(value, std_error);
@@ -195,7 +195,7 @@ bool HasTrend(const Constancy& constancy) {
 
 bool SaysHalves(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
 
-/// Whether a table shows friction below 0, which the fit's own bound does not allow.
+/// Whether a table shows friction below 0, which is outside the fit's own bound.
 bool HasNegativeFriction(const Constancy& constancy) {
   const auto in_half = [](const HalvesRow& row) {
     return row.name != kAsymmetry.name && (row.first < 0 || row.second < 0);

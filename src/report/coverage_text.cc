@@ -16,7 +16,7 @@ constexpr int kCoverageDecimals = 3;
 constexpr int kRatioDecimals = 2;
 constexpr int kTableWidth = 120;
 
-/// A table before it is laid out.
+/// A table without layout.
 struct CoverageTable {
   std::vector<Column> columns;
   std::vector<Cells> rows;  ///< One cell per column.
@@ -66,7 +66,7 @@ int Misses(const CoverageStudy& study) {
   return misses;
 }
 
-/// What the studies count.
+/// Name of the counted objects.
 std::string Counted(std::span<const CoverageStudy> studies) {
   const int runs = studies.empty() ? 1 : studies.front().runs;
   return runs > 1 ? "sets of " + std::to_string(runs) : "recordings";
@@ -112,14 +112,14 @@ constexpr std::string_view kColumns =
     "recording, by the noise really simulated; `std error/error` is the mean standard error over the rms error. Zero "
     "and release vary from recording to recording, within a count and a sampling interval.";
 
-/// What is another with sets of recordings.
+/// Explains the differences for sets of recordings.
 std::string SetsText(std::span<const CoverageStudy> studies) {
   return "Here each recording is a set, " + Counted(studies) +
          " of one rig, released from 0.7 to 1.3 times the scenario's angle and fitted together; the bound is that of "
          "what they share, from the readings of all.";
 }
 
-/// What passes, from the same numbers as the verdicts.
+/// Explains the rules, with the numbers used for the verdicts.
 std::string Rules(std::span<const CoverageStudy> studies) {
   const CoverageRule usual;
   std::string text = "A line passes when the interval of its coverage meets " + RuleText(usual);

@@ -9,7 +9,7 @@
 namespace pendulum {
 namespace {
 
-/// The equation with {name} in place of the parameters' values, and {gravity_torque} for G.
+/// The equation with {name} instead of the parameters' values, and {gravity_torque} instead of G.
 std::string EquationOf(const MotionModel& model) {
   std::string equation = "{inertia} th'' + ";
   FrictionModels::Visit(model.friction, [&]<typename F>() { equation += F::kFormula; });

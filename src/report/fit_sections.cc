@@ -23,7 +23,7 @@ using Row = std::vector<std::string>;
 
 bool IsConverged(const FitReport& fit) { return fit.termination == Termination::kConverged; }
 
-/// The title, with the name of the model where there are several.
+/// The title, with the model's name if there are several.
 std::string TitleOf(const std::string& title, const FitReport& fit, bool is_one_of_several) {
   return is_one_of_several ? title + " of " + std::string(fit.model.name) : title;
 }
@@ -41,13 +41,13 @@ Section ModelSection(const FitReport& fit) {
 
 // --- parameters ------------------------------------------------------------------------------------------------------
 
-/// What stands in place of a standard error.
+/// Text shown instead of a standard error.
 std::string Note(const ParameterEstimate& parameter) {
   if (parameter.fixed) return "(fixed)";
   return parameter.at_bound ? "(at bound)" : "";
 }
 
-/// A parameter in closed form: from all turning points where the check has it, else where the fit began.
+/// A parameter in closed form: from all turning points if the check has it, otherwise the start value of the fit.
 std::optional<double> InClosedForm(const ParameterEstimate& parameter, const ClosedFormCheck* check) {
   if (check == nullptr) return parameter.closed_form;
   const std::string quantity = std::string(parameter.info.name) + "_turning_points";
@@ -65,7 +65,7 @@ Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversio
           numbers.Interval(parameter.lower95, parameter.upper95)};
 }
 
-/// What else is known of it: name, symbol, systematic error, closed form, unit.
+/// Further data of a parameter: name, symbol, systematic error, closed form, unit.
 Row FurtherRow(const ParameterEstimate& parameter, const std::optional<double>& closed_form,
                const Conversion& conversion, bool is_first) {
   const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
@@ -89,7 +89,7 @@ Table FurtherTable(const FitReport& fit, const ClosedFormCheck* check) {
   return table;
 }
 
-/// Why parameters have no standard error, each reason said once.
+/// Explains missing standard errors; each reason occurs once.
 void SayMissingErrors(const FitReport& fit, Section& section) {
   std::vector<std::pair<std::string, std::string>> names_by_reason;
   for (const ParameterEstimate& parameter : fit.parameters) {
@@ -116,7 +116,7 @@ std::string OpenIntervals(const FitReport& fit) {
   return text;
 }
 
-/// What the recording hardly tells, and what would.
+/// Names parameters that the recording hardly determines, and recordings that would.
 void SayIdentifiability(const FitReport& fit, Section& section) {
   for (const Identifiability& known : fit.identifiability) {
     if (known.verdict == Identifiability::Verdict::kIdentifiable) continue;
@@ -130,7 +130,7 @@ void SayIdentifiability(const FitReport& fit, Section& section) {
   }
 }
 
-/// The rig file's own moment of inertia beside the fitted one, where no check says it.
+/// Compares the rig file's own moment of inertia with the fitted one, if no check does.
 std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
   const ParameterEstimate* fitted = fit.Find("inertia");
   if (!rig || !rig->inertia || fitted == nullptr) return "";
@@ -154,9 +154,9 @@ Table EstimateTable(const FitReport& fit) {
 
 constexpr const char* kNoEstimates = "These are no estimates: nothing was fitted.";
 
-// --- what follows from the parameters -----------------------------------------------------------------------------
+// --- derived quantities ----------------------------------------------------------------------------------------------
 
-/// An error beyond the value, of a quotient whose divisor may be 0, says nothing.
+/// An error larger than the value carries no information: it belongs to a quotient whose divisor may be 0.
 bool SaysNothing(const DerivedQuantity& quantity) {
   return quantity.std_error.value_or(0) >= std::abs(quantity.estimate);
 }
@@ -172,7 +172,7 @@ std::string DerivedInterval(const DerivedQuantity& quantity) {
   return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
 }
 
-/// In the other units that σ is thought of in: "(0.0512 deg, 0.26 resolutions)".
+/// σ in other units: "(0.0512 deg, 0.26 resolutions)".
 std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
   constexpr int kReadingDigits = 3;
   std::string also;

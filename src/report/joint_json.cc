@@ -82,7 +82,7 @@ Json HomogeneityJson(const Homogeneity& homogeneity) {
   return json.Done();
 }
 
-/// One recording as the joint fit sees it.
+/// One recording's part of the joint fit.
 Json RunJson(const Identification& report, std::size_t index, std::size_t k) {
   const Identification& run = report.runs[k];
   const FitReport& fit = run.fits[index];
@@ -119,7 +119,7 @@ Json WholeStatisticsJson(const Identification& report, const FitReport& fit) {
       .Done();
 }
 
-/// Written with numbers where all of them are shared.
+/// With numbers if all of them are shared.
 Json EquationJson(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool whole = report.joint[index].shared.size() == PhysicalParameters(fit.model).size();

@@ -61,13 +61,13 @@ Section FitSection(const Identification& report, std::size_t index) {
                   converged ? Emphasis::kNone : Emphasis::kAlarm}}}};
 }
 
-// ---- Do they agree? -------------------------------------------------------------------------------------------------
+// ---- Agreement ------------------------------------------------------------------------------------------------------
 
 constexpr const char* kWhatAloneIs =
     "Alone: what a recording by itself tells, without bounds and priors, its errors wider where few of its samples are "
     "independent. Recordings are said to disagree below p 0.01: those of one rig by chance in 1 of 100 cases.";
 
-/// A line of characters from `low` to `high`, on which intervals are drawn.
+/// A line of characters from `low` to `high` that shows intervals.
 class Strip {
  public:
   Strip(double low, double high) : low_(low), high_(high) {}
@@ -109,13 +109,13 @@ Strip StripOf(const SharedParameter& parameter) {
 void AddRow(const std::string& name, double value, const std::optional<double>& error, const std::string& last,
             const std::string& strip, Table& table) {
   const QuantityNumbers numbers(value, error);
-  // No line is broken within the strip.
+  // Prevents line breaks within the strip.
   std::string drawn;
   for (const char c : strip) drawn += c == ' ' ? std::string(kNoBreak) : std::string(1, c);
   table.rows.push_back({name, numbers.Value(), numbers.Error(), last, drawn});
 }
 
-/// A forest plot in characters: each recording alone, the joint estimate, the mean of random effects.
+/// A forest plot in characters: each separate recording, the joint estimate, the mean of random effects.
 Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
   Table table{{{parameter.name + " [" + parameter.unit + "]"}, {"", true}, {"", false, 1}, {"z", true}, {""}}};
   const Strip strip = StripOf(parameter);
@@ -152,7 +152,7 @@ std::string ScatterText(const SharedParameter& parameter) {
          (std::isfinite(scatter.between_upper95) ? NumberText(scatter.between_upper95, 2) : "?") + "].";
 }
 
-// ---- What each has of its own ---------------------------------------------------------------------------------------
+// ---- Separate parameters of each recording --------------------------------------------------------------------------
 
 bool IsShared(const Identification& report, std::size_t index, std::string_view name) {
   const std::vector<std::string>& shared = report.joint[index].shared;
@@ -203,7 +203,7 @@ void AddMainFit(const Identification& report, std::size_t index, Sections& secti
   }
   sections.push_back(AgreementSection(report, index));
   if (fit.termination == Termination::kFailed) return;
-  // Where the recordings are of no one pendulum the joint motion is nobody's.
+  // If the joint fit did not converge, its motion describes none of the recordings.
   const bool is_a_motion = fit.termination != Termination::kNotConverged;
   if (is_a_motion) sections.push_back(OwnSection(report, index));
   if (is_a_motion && !fit.derived.empty()) sections.push_back(DerivedSection(fit));

@@ -52,7 +52,7 @@ Json DataJson(const Identification& report) {
       .Done();
 }
 
-/// What a failed fit does not have is null; its `reason` says why.
+/// Missing parts of a failed fit are null; its `reason` says why.
 Json FitJson(const Identification& report, std::size_t index) {
   const FitReport& fit = report.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
@@ -90,7 +90,7 @@ Json WarningsJson(const Identification& report) {
 
 Json CalibrationJson(const Identification& report) { return report.calibration; }
 
-/// Of one recording itself; of a joint fit one for each recording, in their order.
+/// For one recording the part itself; for a joint fit an array with one per recording, in order.
 template <typename Part>
 Json OfRecordings(const Identification& report, const Part& part) {
   if (!report.is_joint()) return part(report);

@@ -18,7 +18,7 @@ std::string Padded(const std::string& cell, int width, bool right_aligned) {
   return right_aligned ? blanks + cell : cell + blanks;
 }
 
-/// The width of each column; 0 for one that is empty.
+/// The width of each column; 0 if it is empty.
 std::vector<int> ColumnWidths(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows) {
   std::vector<int> widths;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -41,10 +41,10 @@ std::string Line(const std::vector<Column>& columns, const std::vector<int>& wid
   return line + "\n";
 }
 
-/// Columns beside the first one that are shown together.
+/// Columns shown together next to the first one.
 using Group = std::vector<std::size_t>;
 
-/// Fills lines of `width` with columns, each group beside the first column.
+/// Distributes columns to groups; each fits next to the first column within `width`.
 std::vector<Group> GroupsWithin(const std::vector<Column>& columns, const std::vector<int>& widths, int indent,
                                 int width) {
   std::vector<Group> groups(1);
@@ -67,7 +67,7 @@ std::vector<Group> GroupsWithin(const std::vector<Column>& columns, const std::v
   return groups;
 }
 
-/// The first column and a group.
+/// A table of the first column and a group.
 std::string GroupTable(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
                        const Group& group, bool keep_empty, int indent) {
   std::vector<Column> shown = {columns[0]};

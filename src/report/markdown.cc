@@ -18,18 +18,18 @@ namespace {
 
 bool IsWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & '\x80') != 0; }
 
-/// Whether the character at i would be obeyed where it stands.
+/// Whether Markdown would interpret the character at i.
 bool IsActive(std::string_view text, std::size_t i) {
   const char before = i > 0 ? text[i - 1] : ' ';
   const char after = i + 1 < text.size() ? text[i + 1] : ' ';
   switch (text[i]) {
-    case '_': return !IsWordCharacter(before) || !IsWordCharacter(after);  // within a word it is a letter
-    case ']': return after == '(' || after == '[' || after == ':';         // elsewhere brackets make no link
+    case '_': return !IsWordCharacter(before) || !IsWordCharacter(after);  // within a word it is an ordinary character
+    case ']': return after == '(' || after == '[' || after == ':';         // elsewhere brackets do not make a link
     default: return std::string_view("\\`*<|&~$").find(text[i]) != std::string_view::npos;
   }
 }
 
-/// Where a line would begin a heading, a list, a quotation or a rule.
+/// Whether a text would begin a heading, a list, a quotation or a rule.
 bool BeginsActively(std::string_view text) {
   if (text.empty()) return false;
   const std::size_t digits = text.find_first_not_of("0123456789");
@@ -39,7 +39,7 @@ bool BeginsActively(std::string_view text) {
          (is_number && (digits + 1 == text.size() || text[digits + 1] == ' '));
 }
 
-/// A paragraph or an item: what stands at its beginning is no markup either.
+/// A paragraph or an item; its beginning is escaped, too.
 std::string LineText(std::string_view text) {
   std::string escaped = MarkdownText(text);
   if (!BeginsActively(escaped)) return escaped;
@@ -53,7 +53,7 @@ std::string Emphasized(const std::string& text, Emphasis emphasis) {
 
 // --- tables ----------------------------------------------------------------------------------------------------------
 
-/// A table of Markdown, column by column; texts are escaped.
+/// A Markdown table by columns; texts are escaped.
 struct PipeTable {
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows;
@@ -63,7 +63,7 @@ bool IsEmptyColumn(const Table& table, std::size_t i) {
   return std::ranges::all_of(table.rows, [&](const auto& row) { return row[i].empty(); });
 }
 
-/// Columns without text left out, errors put into the column of their value.
+/// The table without empty columns, and with each error in the column of its value.
 PipeTable Joined(const Table& table) {
   PipeTable joined;
   joined.rows.resize(table.rows.size());
@@ -134,7 +134,7 @@ struct MarkdownRenderer {
 
 // --- the verdict -----------------------------------------------------------------------------------------------------
 
-/// The sentences that matter most.
+/// The most important sentences.
 Items VerdictItems(const Identification& report, std::size_t main) {
   const FitReport& fit = report.fits[main];
   Items items;
@@ -147,7 +147,7 @@ Items VerdictItems(const Identification& report, std::size_t main) {
   return items;
 }
 
-/// What a reader who reads no further should know.
+/// The verdict for readers who read nothing else.
 Sections VerdictSections(const Identification& report) {
   Section verdict{"Verdict"};
   Sections sections;

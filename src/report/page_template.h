@@ -5,7 +5,7 @@
 
 namespace pendulum {
 
-/// src/report/page/dist/report.html as it was built, with a place for each JSON: @RESULT@, @SERIES@, @COMMAND@.
+/// The built file src/report/page/dist/report.html with a token for each JSON: @RESULT@, @SERIES@, @COMMAND@.
 std::string_view PageTemplate();
 
 }  // namespace pendulum

@@ -21,7 +21,7 @@ constexpr int kPlanDigits = 4;
 constexpr int kDegreeDigits = 3;
 constexpr int kErrorDigits = 2;
 
-/// How the plan's numbers are shown, parameter by parameter.
+/// The number format of each parameter in the plan.
 class Units {
  public:
   Units(const Plan& plan, const std::optional<Rig>& rig)
@@ -30,7 +30,7 @@ class Units {
   std::string Name(std::size_t i) const {
     return std::string(gravity_torque_ ? plan_.parameters[i].unit : plan_.parameters[i].relative_unit);
   }
-  /// The report's value of one in units of G.
+  /// Factor from units of G to the report's unit.
   double Factor(std::size_t i) const {
     return plan_.parameters[i].scales_with_gravity() ? gravity_torque_.value_or(1.0) : 1.0;
   }
@@ -41,11 +41,12 @@ class Units {
   std::optional<double> gravity_torque_;
 };
 
-/// Two digits, as the rounding of errors keeps at most; three where a power of ten would follow them.
+/// Two digits, the maximum for rounded errors; three if a power of ten would follow otherwise.
 std::string ErrorText(double error) { return NumberText(error, error < 100 ? kErrorDigits : kErrorDigits + 1); }
 
 std::string BiasCell(const std::optional<double>& share) {
-  constexpr double kRounding = 1e-10;  // of the formulas, which a linear pendulum with viscous friction obeys exactly
+  constexpr double kRounding = 1e-10;  // numerical error of the formulas, which are exact for a linear pendulum with
+                                       // viscous friction
   if (!share) return "-";
   return NumberText(std::abs(*share) < kRounding ? 0.0 : 100 * *share, kErrorDigits);
 }
@@ -56,7 +57,7 @@ std::string ErrorCell(const Plan& plan, const Units& units, const PlanRow& row, 
   return ErrorText(units.IsPercent(i) ? 100 * error / std::abs(plan.truth[i]) : units.Factor(i) * error);
 }
 
-/// A value, angles and rates in degrees too.
+/// A value; angles and rates are also given in degrees.
 std::string ValueText(double value, std::string_view unit) {
   std::string text = NumberText(value, kPlanDigits) + " " + std::string(unit);
   if (unit.substr(0, 3) != "rad") return text;
@@ -89,7 +90,7 @@ std::vector<Column> FactorColumns(const Plan& plan) {
   return columns;
 }
 
-/// The unit of each column, and a blank line before each factor.
+/// A row with the unit of each column, and a blank line before each factor.
 std::string FactorTable(const Plan& plan, const Units& units) {
   const std::vector<Column> columns = FactorColumns(plan);
   Cells unit_cells(3);
@@ -114,7 +115,7 @@ bool LacksSomething(const PlanRow& row) {
   return !row.linear_bias || std::ranges::any_of(row.std_errors, [](const auto& error) { return !error; });
 }
 
-/// Why cells are "-".
+/// Explains why cells are "-".
 std::string MissingText(const Plan& plan) {
   std::string text;
   bool others = false;
@@ -146,7 +147,7 @@ std::string BiasText(const Plan& plan, bool has_bound) {
          " deg): beyond it, fit the full equation.";
 }
 
-/// What the bound takes for known: which of its aliases the frequency is.
+/// Warns that the bound assumes the right alias of the frequency.
 std::string SlowText(const Plan& plan) {
   constexpr double kPerSwing = 7;  // as IsUndersampled
   const double frequency = 1 / (2 * kPi * std::sqrt(plan.truth.front()));

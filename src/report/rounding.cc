@@ -13,11 +13,11 @@
 namespace pendulum {
 namespace {
 
-constexpr int kMostDigits = 12;       // of a value: beyond this an error says nothing a reader can use
-constexpr int kLeastExponent = -4;    // smaller numbers are shown with a power of ten, as %g does
+constexpr int kMostDigits = 12;       // significant digits of a value: more are of no use to a reader
+constexpr int kLeastExponent = -4;    // smaller numbers are shown with a power of ten, as with %g
 constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
 
-/// The three leading decimal digits (100 to 999) and the power of ten of the first one, of x != 0.
+/// The three leading decimal digits (100 to 999) of x != 0, and the power of ten of the first one.
 struct LeadingDigits {
   int digits = 0;
   int exponent = 0;
@@ -30,7 +30,7 @@ LeadingDigits LeadingDigitsOf(double x) {
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const std::size_t e = text.find('e');
   LeadingDigits leading;
-  if (e == std::string_view::npos) return leading;  // no finite number
+  if (e == std::string_view::npos) return leading;  // not a finite number
   int count = 0;
   for (const char c : text.substr(0, e)) {
     if (c == '.' || count == 3) continue;
@@ -42,8 +42,8 @@ LeadingDigits LeadingDigitsOf(double x) {
   return leading;
 }
 
-/// The power of ten of the last decimal an error is given to, and the error as it is shown: rounded in decimal digits,
-/// halves upwards, so that 0.0075 becomes 0.008 although the nearest double lies below it.
+/// The power of ten of an error's last decimal, and the rounded error. Decimal digits are rounded half up, so 0.0075
+/// becomes 0.008 although the nearest double is below it.
 struct RoundedError {
   int last = 0;
   double error = 0;
@@ -58,7 +58,7 @@ RoundedError RoundError(double error) {
   return {exponent, std::pow(10.0, exponent + 1)};
 }
 
-/// Numbers with first digit at 10^first, shown down to 10^last.
+/// The format of numbers with the first digit at 10^first and the last at 10^last.
 Rounding RoundingTo(int first, int last) {
   last = std::max(last, first - kMostDigits + 1);
   if (first < kLeastExponent || last > 0) return {std::max(0, first - last), first};

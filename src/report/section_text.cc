@@ -76,7 +76,7 @@ class TextRenderer {
     return Painted(line, emphasis == Emphasis::kAlarm ? kRed : kYellow);
   }
 
-  /// Words behind `first`, line by line; the text alone has the colour. What fits a line stays as it is.
+  /// Words after `first`, wrapped to lines; only the text is coloured. A text that fits on a line stays unchanged.
   std::string Filled(const std::string& text, const std::string& first, Emphasis emphasis) const {
     const int indent = DisplayWidth(first);
     const bool fits = indent + DisplayWidth(text) <= kTextWidth;

@@ -21,7 +21,7 @@ void AppendNumber(double value, std::string& text) {
   if (std::isfinite(value)) text += NumberText(value);
 }
 
-/// To seven digits, which is more than any sensor has.
+/// Rounds to seven digits, more than the resolution of any sensor.
 double Shortened(double value) {
   constexpr double kDigits = 1e6;
   if (!std::isfinite(value) || value == 0) return value;
@@ -30,7 +30,7 @@ double Shortened(double value) {
   return std::isfinite(shortened) ? shortened : value;
 }
 
-/// Numbers of N samples; null where they are of another size.
+/// Numbers of N samples; null if the size differs.
 Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDetail detail) {
   if (values.size() != samples) return nullptr;
   Json json = Json::array();
@@ -43,7 +43,9 @@ Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDeta
 
 Json ExtremaJson(const Recording& used) {
   Json json = Json::array();
-  if (used.quantity == Quantity::kAcceleration) return json;  // its turning points are not the pendulum's
+  if (used.quantity == Quantity::kAcceleration)
+    return json;  // turning points of an acceleration are not the
+                  // pendulum's
   const Result<std::vector<Extremum>> extrema = FindExtrema(used);
   if (!extrema) return json;
   for (const Extremum& extremum : *extrema) json.push_back(Json::array({extremum.time, extremum.value}));
@@ -55,7 +57,7 @@ void SetEstimate(const std::string& key, const std::optional<Estimate>& estimate
   json[key + "_std_error"] = estimate ? NumberOrNull(estimate->std_error) : Json(nullptr);
 }
 
-/// One turning point, numbered from 1 on.
+/// One turning point, numbered from 1.
 Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) {
   const Peak& peak = forms.table.peaks[i];
   const std::string quantity = forms.table.quantity == Quantity::kRate ? "rate" : "angle";
@@ -100,7 +102,7 @@ Json ProfileJson(const ProfileCurve& curve) {
   return json;
 }
 
-/// By model and parameter; null where no fit has a profile.
+/// Profiles by model and parameter; null if no fit has one.
 Json ProfilesJson(const Identification& report) {
   Json json;
   for (const FitReport& fit : report.fits) {

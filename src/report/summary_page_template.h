@@ -5,7 +5,7 @@
 
 namespace pendulum {
 
-/// src/report/page/dist/summary.html as it was built, with a place for its JSON: @SUMMARY@.
+/// The built file src/report/page/dist/summary.html with a token for its JSON: @SUMMARY@.
 std::string_view SummaryPageTemplate();
 
 }  // namespace pendulum

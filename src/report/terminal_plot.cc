@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kWidth = 79, kUpperLines = 14, kLowerLines = 10;  // of the terminal's plots
-constexpr int kColumns = 67, kUpperRows = 11, kLowerRows = 5;   // within their frames
+constexpr int kWidth = 79, kUpperLines = 14, kLowerLines = 10;  // size of the plots on the terminal
+constexpr int kColumns = 67, kUpperRows = 11, kLowerRows = 5;   // inside their frames
 
 /// The readings of a column of the plot, from the smallest to the largest.
 struct Span {
@@ -30,7 +30,7 @@ struct Span {
   }
 };
 
-/// Spans of the columns that lie evenly over the time of a recording.
+/// Spans of columns with equal durations over the recording.
 std::vector<Span> SpansOf(const Recording& used, const Eigen::VectorXd& values, double factor) {
   std::vector<Span> spans(kColumns);
   if (values.size() != used.size()) return spans;
@@ -51,7 +51,7 @@ double LargestOf(const std::vector<Span>& spans) {
   return largest;
 }
 
-/// Points of a column as lines of a script: both ends and, `filled`, what lies between them row by row.
+/// Points of a column as lines of a script: both ends and, if `filled`, the values between them, one per row.
 std::string PointsOf(double time, const Span& span, double row, bool filled) {
   if (span.is_empty()) return "";
   const int steps = !filled ? 1 : row > 0 ? static_cast<int>(std::ceil((span.high - span.low) / row)) : 0;
@@ -63,7 +63,7 @@ std::string PointsOf(double time, const Span& span, double row, bool filled) {
   return points;
 }
 
-/// Named data of a script; gnuplot does not plot data without a point, so that there is always one outside.
+/// A named data block of a script. gnuplot refuses a block without points, so there is always one outside the plot.
 std::string DataBlock(const std::string& name, const Recording& used, const std::vector<Span>& spans, double row,
                       bool filled) {
   const double from = used.time[0];
@@ -75,7 +75,7 @@ std::string DataBlock(const std::string& name, const Recording& used, const std:
   return name + " << EndOfData\n" + (lines.empty() ? "-1e9 0\n" : lines) + "EndOfData\n";
 }
 
-/// A scale that keeps a largest size off the frame of so many rows, and is not empty when it is 0.
+/// A range that keeps the largest value off the frame of `rows` rows, and is not empty for 0.
 std::string RangeOf(double largest, int rows) {
   const double shown = largest > 0 ? largest : 1.0;
   const std::string end = NumberText(shown * (1 + 2.0 / rows), 6);

@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// Damerau's distance: insertions, deletions, replacements and swaps of neighbours that turn one text into the other.
+/// Damerau's distance: the number of insertions, deletions, replacements and swaps of neighbours between two texts.
 std::size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before;
   std::vector<std::size_t> row(b.size() + 1);
@@ -36,7 +36,7 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string NearestName(std::string_view name, std::span<const std::string_view> names) {
-  std::size_t least = 2 + name.size() / 4;  // as many slips as still look like one
+  std::size_t least = 2 + name.size() / 4;  // the distance of a similar name is below this
   std::string_view nearest;
   for (const std::string_view candidate : names) {
     const std::size_t distance = EditDistance(name, candidate);
@@ -91,7 +91,7 @@ Result<double> ParseValue(std::string_view flag, const ParameterInfo& info, std:
                               NumberText(low ? info.lower : info.upper));
 }
 
-/// Parses all entries; parse(info, value) gives what is kept of one.
+/// Parses all entries; parse(info, value) returns the stored value of one.
 template <typename Value, typename Parse>
 Result<std::map<std::string, Value, std::less<>>> ParseEntries(std::string_view flag, std::string_view text,
                                                                std::string_view model,

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// A member of a struct of flags and its name.
+/// A member of a struct of flags, with its name.
 template <typename Flags, typename Value>
 struct NamedFlag {
   std::string_view name;
@@ -108,7 +108,7 @@ Result<void> Parse(std::string_view flag, const std::string& text, std::uint64_t
   return ParseWhole(flag, text, value);
 }
 
-/// Sets the member that has the name, if one of the table has it.
+/// Sets the member with this name, if the table has it.
 template <typename Flags, typename Table>
 Result<void> SetIfNamed(const Table& table, std::string_view name, const std::string& text, Flags& flags) {
   for (const auto& flag : table) {
@@ -127,7 +127,7 @@ std::vector<std::string_view> NamesOf(const Tables&... tables) {
   return names;
 }
 
-/// The flags of all tables.
+/// Makes the flags from all tables.
 template <typename Flags, typename... Tables>
 Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
   const std::vector<std::string_view> names = NamesOf(tables...);

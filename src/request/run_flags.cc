@@ -31,7 +31,7 @@ Result<std::optional<StartKind>> ParseStart(const std::string& start) {
   return BadFlag("--start is '" + start + "'; it must be auto, release or moving");
 }
 
-/// A word and what it stands for.
+/// A word and its meaning.
 template <typename Meaning>
 struct Word {
   std::string_view word;
@@ -61,7 +61,7 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMe
                                                              {"profile", IntervalMethod::kProfile},
                                                              {"bootstrap", IntervalMethod::kBootstrap}}};
 
-/// A whole number that a flag may give; `least` is what it must be at least.
+/// Parses an integer value of a flag, at least `least`.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
   if (value.empty()) return {};
   constexpr double kLargest = 1e15;
@@ -98,7 +98,7 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   return {};
 }
 
-/// Every parameter that a flag may name, whatever the start and the sensor turn out to be: that of any of the models.
+/// Every parameter that a flag may name: those of all models, and of every possible start and sensor.
 std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& models) {
   std::vector<ParameterInfo> infos;
   for (const MotionModel& model : models) {
@@ -112,7 +112,7 @@ std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& mo
   return infos;
 }
 
-/// Reads a time unless the flag was left out.
+/// Parses a time if the flag was given.
 Result<void> ParseTime(std::string_view flag, const std::string& value, double& time) {
   if (value.empty()) return {};
   const auto number = ParseNumber(flag, value, "a time in seconds on the file's clock");
@@ -130,7 +130,7 @@ Result<void> ParseWindow(const RunFlags& flags, IdentifyOptions& options) {
   return {};
 }
 
-/// A parameter that is held cannot be bounded or have a prior.
+/// A fixed parameter cannot have bounds or a prior.
 Result<void> CheckContradictions(const FitOptions& options) {
   for (const auto& [name, value] : options.fixed) {
     const std::string other = options.initial.contains(name)  ? "--init"
@@ -169,7 +169,7 @@ Result<void> ParseFitOptions(const RunFlags& flags, const std::vector<MotionMode
   return CheckContradictions(options);
 }
 
-/// Contradictions that the file could not settle.
+/// Checks contradictions that do not depend on the file.
 Result<void> CheckReadFlags(const RunFlags& flags) {
   const bool is_time_chosen = !flags.time_column.empty() && flags.time_column != "none";
   if (is_time_chosen && !flags.sample_rate_hz.empty()) {
@@ -190,7 +190,7 @@ Result<void> CheckReadFlags(const RunFlags& flags) {
   return {};
 }
 
-/// What the sensor can show, in the unit of the file.
+/// Parses resolution and range of the sensor, in the unit of the file.
 Result<void> ParseSensor(const RunFlags& flags, ReadOptions& options) {
   if (!flags.resolution.empty()) {
     const auto resolution = ParseNumber("--resolution", flags.resolution, "a number, 0 or more, in the file's unit");
@@ -225,7 +225,7 @@ Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
   return {};
 }
 
-/// Closed forms need nothing that only a fit asks for.
+/// Refuses flags that only a fit uses.
 Result<void> CheckClosedFormOnly(const RunFlags& flags) {
   if (!flags.closed_form_only) return {};
   const RunFlags none;

@@ -47,7 +47,7 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
   return model;
 }
 
-/// Every parameter that --set may give, in the order of the truth file.
+/// Every parameter that --set accepts, in the order of the truth file.
 std::vector<ParameterInfo> SettableParameters(const SyntheticOptions& synthetic) {
   std::vector<ParameterInfo> infos = PhysicalParameters(synthetic.model);
   infos.insert(infos.end(), {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate});
@@ -74,7 +74,7 @@ double ValueOr0(const ParameterValues& values, const ParameterInfo& info) {
   return found == values.end() ? 0.0 : found->second;
 }
 
-/// Fills in what --set may leave out: inertia from the rig, no friction, no offset.
+/// Adds the defaults of values missing in --set: inertia from the rig, no friction, no offset.
 Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::optional<Rig>& rig, StartKind start,
                       ParameterValues& values) {
   const std::string inertia(kInertia.name);
@@ -116,12 +116,12 @@ void SetMotion(const ParameterValues& values, double gravity_torque, SyntheticOp
   }
 }
 
-/// What --spread asks for; `infos` are those that --set may name, `values` are complete.
+/// Applies --spread; `infos` are the parameters of --set, `values` are complete.
 Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> infos, const ParameterValues& values,
                           Simulation& simulation) {
   if (spread.empty()) return {};
   const std::vector<ParameterInfo> bounded = infos;
-  for (ParameterInfo& info : infos) info.lower = 0, info.upper = kUnbounded;  // a standard deviation's own
+  for (ParameterInfo& info : infos) info.lower = 0, info.upper = kUnbounded;  // bounds of a standard deviation
   const Result<ParameterValues> std_devs = ParseSettings("--spread", spread, simulation.synthetic.model.name, infos);
   if (!std_devs) return tl::unexpected(std_devs.error());
   for (const auto& [name, std_dev] : *std_devs) {
@@ -135,7 +135,7 @@ Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> 
   return {};
 }
 
-/// The motion that --set asks of the model already chosen: start and parameters, in `simulation` and in its truth.
+/// Applies --set to the chosen model: start and parameters, in `simulation` and in its true values.
 Result<void> ChooseMotion(const SimulationFlags& flags, const std::optional<Rig>& rig, Simulation& simulation) {
   SyntheticOptions& synthetic = simulation.synthetic;
   const std::vector<ParameterInfo> infos = SettableParameters(synthetic);
@@ -165,7 +165,7 @@ Result<std::optional<SensorRange>> ParseRange(const std::string& text) {
   return SensorRange{*low, *high};
 }
 
-/// A number that a flag gives, and the least it may be.
+/// A number flag with its minimum.
 struct NumberFlag {
   std::string_view name;
   double value;
@@ -196,7 +196,7 @@ Result<void> CheckNumbers(const SimulationFlags& flags) {
   return CheckNoiseLaw(flags);
 }
 
-/// Of events, as SimulateRecording asks for them.
+/// Checks the flags of events by the rules of SimulateRecording.
 Result<void> CheckEvents(const SimulationFlags& flags) {
   if (!flags.event_driven && flags.time_noise != 0) return BadFlag("--time_noise needs --event_driven");
   if (!flags.event_driven) return {};
@@ -217,7 +217,7 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
                  "; with --event_driven it must be at most a fifth of --resolution");
 }
 
-/// Sensor and sampling; noise, resolution and range become SI.
+/// Sets sensor and sampling; converts noise, resolution and range to SI.
 Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) {
   const Result<std::optional<SensorRange>> range = ParseRange(flags.range);
   if (!range) return tl::unexpected(range.error());
@@ -243,7 +243,7 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
   return {};
 }
 
-/// What --lose asks for.
+/// Parses --lose.
 Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
   constexpr double kMost = 1e6;
   std::vector<LostCounts> lost;
@@ -297,7 +297,7 @@ Result<Simulation> SimulationOfRecording(const Simulation& all, int index) {
   SyntheticOptions& synthetic = simulation.synthetic;
   synthetic.seed += static_cast<std::uint64_t>(index);
   if (simulation.scattered.empty()) return simulation;
-  // The truth begins with the model's parameters, in their order.
+  // The true values begin with the model's parameters, in order.
   const auto values = ScatterParameters(simulation.scattered, OrderOf(synthetic.model), synthetic.seed);
   if (!values) return BadFlag("--spread: " + values.error().message);
   for (std::size_t i = 0; i < values->size(); ++i) simulation.truth[i].second = (*values)[i];

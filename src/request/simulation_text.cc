@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// As many decimals as `value` needs, without an exponent.
+/// The number of decimals that `value` needs without an exponent.
 int Decimals(double value) {
   std::array<char, 512> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
@@ -23,16 +23,16 @@ int Decimals(double value) {
   return point == end ? 0 : static_cast<int>(end - point) - 1;
 }
 
-/// The double nearest to `value` rounded to `decimals`, at most 22, so that its shortest text has no more of them.
+/// The double nearest to `value` rounded to `decimals` (at most 22), so its shortest text has no more decimals.
 double RoundedTo(int decimals, double value) {
-  constexpr double kMostExact = 9007199254740992;  // 2^53: above, doubles are farther apart than these decimals
-  double power = 1;                                // exact, as is the numerator: their quotient is the nearest double
+  constexpr double kMostExact = 9007199254740992;  // 2^53: larger doubles are farther apart than these decimals
+  double power = 1;                                // exact like the numerator, so the quotient is the nearest double
   for (int i = 0; i < decimals; ++i) power *= 10;
   const double numerator = std::round(value * power);
-  return std::abs(numerator) < kMostExact ? numerator / power + 0.0 : value;  // no -0
+  return std::abs(numerator) < kMostExact ? numerator / power + 0.0 : value;  // avoids -0
 }
 
-/// Turns readings in SI into the file's unit.
+/// Converts readings from SI to the file's unit.
 class FileUnit {
  public:
   explicit FileUnit(const Simulation& simulation)
@@ -48,7 +48,7 @@ class FileUnit {
   }
 
  private:
-  /// Up to here a sum of two decimals is exact enough to be rounded to their last digit.
+  /// With at most this many decimals a sum of two decimals can be rounded correctly to the last one.
   static constexpr int kMostDecimals = 10;
 
   double Level(double si) const {
@@ -63,7 +63,7 @@ class FileUnit {
   int decimals_;
 };
 
-/// The shortest text that reads back, without an exponent where people would not write one.
+/// The shortest text that reads back exactly, without an exponent for numbers of ordinary size.
 void AppendNumber(double value, std::string& text) {
   std::array<char, 32> buffer{};  // 17 digits, sign, point and five zeros; with an exponent at most 24 characters
   const double size = std::abs(value);
@@ -89,7 +89,7 @@ std::string Head(const Simulation& simulation, std::uint64_t seed) {
 
 namespace {
 
-/// A head, and columns in SI beside the times.
+/// The header, and columns in SI next to the times.
 std::string Csv(const Simulation& simulation, std::uint64_t seed, const Eigen::VectorXd& time,
                 const std::vector<const Eigen::VectorXd*>& columns) {
   constexpr std::size_t kTypicalField = 12;  // bytes

@@ -45,7 +45,7 @@ bool IsBracketedAddress(const std::string& host) {
          ::inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), &address) == 1;
 }
 
-/// None where it is no host with or without a port (RFC 9110, section 7.2).
+/// std::nullopt if the text is not a host with an optional port (RFC 9110, section 7.2).
 std::optional<Authority> ParseAuthority(std::string_view text) {
   if (text.find('\0') != std::string_view::npos) return std::nullopt;
   const std::size_t bracket = text.find(']');
@@ -55,11 +55,11 @@ std::optional<Authority> ParseAuthority(std::string_view text) {
   if (!authority.port.empty() && !IsPort(authority.port)) return std::nullopt;
   if (IsBracketedAddress(authority.host)) return authority;
   if (!IsHostName(authority.host)) return std::nullopt;
-  if (authority.host.ends_with('.')) authority.host.pop_back();  // of the root
+  if (authority.host.ends_with('.')) authority.host.pop_back();  // the dot of the DNS root
   return authority;
 }
 
-/// What an Origin names (RFC 6454, section 6.1), with the port of its scheme where it has none.
+/// The authority of an Origin (RFC 6454, section 6.1), with the default port of its scheme if it has none.
 std::optional<Authority> ParseOrigin(std::string_view origin) {
   const bool is_secure = origin.starts_with("https://");
   if (!is_secure && !origin.starts_with("http://")) return std::nullopt;
@@ -78,7 +78,7 @@ bool IsOwnOrigin(std::string_view origin, std::string_view host) {
 
 // ---- Requests ------------------------------------------------------------------------------------------------------
 
-/// Whether somebody typed the address or follows a link to it in a window, not in a frame.
+/// Whether the user typed the address or follows a link to it, in a window and not in a frame.
 bool IsNavigation(const HttpRequest& request) {
   const auto is_or_absent = [&request](std::string_view name, std::string_view value) {
     const auto values = request.Fields(name);
@@ -132,7 +132,7 @@ std::optional<Problem> RefuseToken(const HttpRequest& request, const std::string
 }  // namespace
 
 bool IsSameSecret(std::string_view one, std::string_view other) {
-  const auto ours = Sha256(one), theirs = Sha256(other);  // of one length
+  const auto ours = Sha256(one), theirs = Sha256(other);  // hashes have equal lengths
   return ours && theirs && ours->size() == theirs->size() &&
          CRYPTO_memcmp(ours->data(), theirs->data(), ours->size()) == 0;
 }

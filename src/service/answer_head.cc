@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <ostream>  // which Boost 1.74 does not include
+#include <ostream>  // Boost 1.74 does not include it
 #include <string_view>
 
 #include <boost/beast/http/status.hpp>

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
-/// RFC 8187, section 3.2.1: attr-char as it is, anything else escaped.
+/// RFC 8187, section 3.2.1: keeps attr-char and escapes all other bytes.
 std::string Escaped(std::string_view text) {
   constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789!#$&+-.^_`|~";
   std::string escaped;
@@ -111,7 +111,7 @@ Result<ListPage> PageOf(const RequestTarget& target) {
 
 std::string MakeId() {
   constexpr int kWords = 3;
-  std::random_device random;  // the system's own, as hard to guess as any
+  std::random_device random;  // the system's generator, which cannot be predicted
   std::string id;
   for (int word = 0; word < kWords; ++word) {
     std::uint32_t bits = random();

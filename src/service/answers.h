@@ -17,44 +17,45 @@
 
 namespace pendulum {
 
-/// JSON as the tools write it: indented by two, with a line break at its end.
+/// JSON in the format of the tools: indented by two, with a line break at the end.
 HttpResponse JsonAnswer(const nlohmann::ordered_json& json, int status = 200);
 
 HttpResponse TextAnswer(std::string_view content_type, std::string body);
 
-/// Text that a browser keeps as a file of that name (RFC 6266).
+/// A text that browsers save as a file of that name (RFC 6266).
 HttpResponse FileAnswer(std::string_view content_type, std::string body, std::string_view name);
 
 HttpResponse ProblemAnswer(const Status& status);
 
-/// kWrongRequest: the query has a parameter that is none of these; the nearest is suggested.
+/// kWrongRequest: the query has a parameter that is not in `names`; the message suggests the nearest one.
 Result<void> CheckQuery(const RequestTarget& target, const std::vector<std::string_view>& names);
 
-/// The value of a query parameter; empty where it is not there.
+/// The value of a query parameter; empty if it is missing.
 std::string QueryValue(const RequestTarget& target, std::string_view name);
 
-/// A whole number, at least 1, that a query parameter gives. kInvalidArgument: it is none.
+/// The value of a query parameter as an integer, at least 1; `otherwise` if it is missing. kInvalidArgument: not such a
+/// number.
 Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view name, std::int64_t otherwise);
 
-/// Letters and digits that nobody guesses: 96 bits.
+/// A random identifier of letters and digits: 96 bits.
 std::string MakeId();
 
-/// What a client wants of a list: so many, with lesser numbers only.
+/// The requested part of a list: at most `limit` entries, with numbers below `before`.
 struct ListPage {
   int limit = 50;
   std::optional<std::int64_t> before;
 };
 
-/// The page that a query asks for by limit, of which 500 are given at most, and before. Errors as QueryNumber.
+/// The page that a query requests with limit (at most 500) and before. Errors as QueryNumber.
 Result<ListPage> PageOf(const RequestTarget& target);
 
-/// A run as lists and batches show it.
+/// A run in the form of lists and batches.
 nlohmann::ordered_json ItemOf(const ListedFit& fit);
 
 /// A batch without its runs.
 nlohmann::ordered_json ItemOf(const ListedBatch& batch);
 
-/// A page of a list, and `next`: the number to ask for those before, null where it was not full.
+/// A page of a list with `next`: the value of `before` for the following page, null if this page was not full.
 template <typename Listed>
 HttpResponse PageAnswer(const std::string& name, const std::vector<Listed>& all, std::int64_t Listed::*number,
                         int limit) {

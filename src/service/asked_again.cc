@@ -16,10 +16,10 @@
 namespace pendulum {
 namespace {
 
-/// A text as part of a longer one, from which it can be told where it ends.
+/// A text with its length, so that concatenated texts stay distinguishable.
 std::string Framed(std::string_view text) { return std::to_string(text.size()) + ":" + std::string(text); }
 
-/// What a form says, whatever boundary it is sent with, which is another each time.
+/// The content of a form without its boundary, which differs in every request.
 Result<std::string> FormText(std::string_view content_type, std::string_view body) {
   const auto parts = ParseFormData(content_type, body);
   if (!parts) return tl::unexpected(parts.error());
@@ -30,7 +30,7 @@ Result<std::string> FormText(std::string_view content_type, std::string_view bod
   return text;
 }
 
-/// What makes two requests the same.
+/// A hash that is equal for equal requests.
 Result<std::string> HashOf(const HttpRequest& http) {
   const std::string_view type = http.Field("Content-Type").value_or("");
   const std::string head = Framed(http.method) + Framed(http.target);
@@ -40,7 +40,7 @@ Result<std::string> HashOf(const HttpRequest& http) {
   return Sha256(head + *form);
 }
 
-/// The answer that a request got before.
+/// The earlier answer to a request.
 HttpResponse AnswerAt(ServiceState& state, const Call& call, const std::string& location) {
   const bool is_batch = location.starts_with("/v1/batches/");
   const Call again{call.http, {location, {}}, location.substr(location.rfind('/') + 1)};
@@ -51,7 +51,7 @@ HttpResponse AnswerAt(ServiceState& state, const Call& call, const std::string& 
   return response;
 }
 
-/// A key that is taken for as long as this is.
+/// Reserves a key during its lifetime.
 class TakenKey {
  public:
   TakenKey(KeysUnderWay& keys, const std::string& key) : keys_(keys), key_(key), is_taken_(keys.Begin(key)) {}

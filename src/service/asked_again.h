@@ -8,9 +8,9 @@
 
 namespace pendulum {
 
-/// Answers a request that changes something once for each idempotency key it comes with: what is asked again, in the
-/// same words, gets the answer that it got, and what is asked in other words, or meanwhile, is refused. `answer` makes
-/// the answer and keeps the key with what it keeps; there is none without a key.
+/// Answers a request that changes data once per idempotency key. A repeated identical request gets the first answer. A
+/// different request with the key, or a repetition while the first one runs, is refused. `answer` makes the answer and
+/// stores the key with the data; it gets std::nullopt for a request without a key.
 HttpResponse AnswerOnce(ServiceState& state, const Call& call,
                         const std::function<HttpResponse(const std::optional<RequestKey>&)>& answer);
 

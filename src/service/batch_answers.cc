@@ -48,7 +48,7 @@ std::vector<FitOrder> OrdersOf(FitRequest request) {
   return orders;
 }
 
-/// Events about a batch from a place on: what is done of it, then what becomes so.
+/// Events of a batch from run `place` on: first the runs that are done, later those that become done.
 class BatchEvents {
  public:
   BatchEvents(std::shared_ptr<const BatchProgress> progress, std::size_t place) : progress_(std::move(progress)) {
@@ -72,7 +72,7 @@ class BatchEvents {
   }
 
  private:
-  /// The run that is next, if it is done.
+  /// The next run, if it is done.
   std::optional<BatchProgress::Run> Advance() {
     auto run = progress_->DoneAt(place_);
     if (!run) return run;
@@ -93,7 +93,7 @@ class BatchEvents {
   std::size_t place_ = 0, done_ = 0, failed_ = 0;
 };
 
-/// Of a batch that nobody works on any more.
+/// Progress of a batch that is no longer running.
 Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& state, const std::string& id) {
   if (const auto batch = state.store->FindBatch(id); !batch) return tl::unexpected(batch.error());
   auto fits = state.store->RunsOf(id);
@@ -101,7 +101,7 @@ Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& sta
   return std::make_shared<const BatchProgress>(*std::move(fits));
 }
 
-/// After which event a client wants to go on (WHATWG HTML, 9.2.4); 0 where it says none.
+/// Number of the last event that a reconnecting client received (WHATWG HTML, 9.2.4); 0 if it sends none.
 std::size_t LastEvent(const HttpRequest& http) {
   std::size_t last = 0;
   const std::string_view text = http.Field("Last-Event-ID").value_or("");

@@ -3,7 +3,7 @@
 
 #include "service/service_state.h"
 
-/// Answers to requests about batches (openapi.json): one function for each method of a path.
+/// Answers to requests about batches (openapi.json), one function per method of a path.
 namespace pendulum {
 
 HttpResponse PostBatch(ServiceState& state, const Call& call);

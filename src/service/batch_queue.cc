@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// On Linux this is of the calling thread alone.
+/// On Linux this changes only the calling thread.
 void BeNice() {
   constexpr int kNiceness = 5;
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
@@ -182,7 +182,8 @@ std::optional<FitStore::Waiting> BatchQueue::Take() {
   return run;
 }
 
-/// The error of a store that cannot be had now. An exception is our bug or the memory's end, and costs this run only.
+/// Returns the error of a store that is not available now. An exception is a bug or lack of memory and fails only this
+/// run.
 Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
   try {
     return FitOne(run);
@@ -193,12 +194,12 @@ Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
       outcome.reason = std::string("internal error: ") + error.what();
       return Keep(run, outcome);
     } catch (const std::exception&) {
-      return Error(StatusCode::kInternal, "out of memory");  // short enough to need none
+      return Error(StatusCode::kInternal, "out of memory");  // short enough to need no allocation
     }
   }
 }
 
-/// It is settled where it is kept, was deleted meanwhile, or is left for the next start.
+/// The run is settled if it was stored, deleted meanwhile, or left for the next start.
 Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
   auto kept = store_.Find(run.id);
   if (!kept) {
@@ -243,11 +244,11 @@ void BatchQueue::SayWhy(const FitStore::Waiting& run, const Status& why, std::ch
     say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again within " +
          std::to_string(pause.count()) + " s");
   } catch (const std::exception&) {
-    return;  // words need memory, and the run goes on without
+    return;  // a message needs memory; the run continues without it
   }
 }
 
-/// The run is the first again, and this thread pauses.
+/// Puts the run back at the front of the queue and pauses this thread.
 void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   std::unique_lock lock(mutex_);
   if (!batches_.contains(run.batch)) return;

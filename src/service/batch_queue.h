@@ -21,34 +21,34 @@
 
 namespace pendulum {
 
-/// How far a batch is, run by run in the order they were sent. For any thread.
+/// Progress of a batch, with its runs in the order in which they were sent. For any thread.
 class BatchProgress {
  public:
   struct Run {
     std::string id, name;
-    std::optional<int> exit_code;  ///< None: it waits.
+    std::optional<int> exit_code;  ///< std::nullopt: it waits.
     std::string reason;
-    bool is_gone = false;  ///< It was deleted before its turn came.
+    bool is_gone = false;  ///< It was deleted before it was fitted.
   };
 
   explicit BatchProgress(std::vector<Run> runs);
 
-  /// Of a batch as it is kept.
+  /// Progress of a stored batch.
   explicit BatchProgress(std::vector<ListedFit> fits);
 
   void Done(const std::string& id, int exit_code, const std::string& reason);
   void Gone(const std::string& id);
 
-  /// The run at a place, once it and all before it are done or gone; none before that.
+  /// The run at a place, if it and all runs before it are done or deleted; otherwise std::nullopt.
   std::optional<Run> DoneAt(std::size_t place) const;
 
-  /// There will be no more of it.
+  /// Marks the batch as deleted: no more runs follow.
   void Delete();
   bool is_deleted() const;
 
   std::size_t places() const { return runs_.size(); }
 
-  /// Those that are not gone.
+  /// Number of runs without deleted ones.
   std::size_t runs() const;
 
  private:
@@ -56,17 +56,16 @@ class BatchProgress {
 
   mutable std::mutex mutex_;
   std::vector<Run> runs_;
-  std::map<std::string, std::size_t, std::less<>> places_;  // of ids
+  std::map<std::string, std::size_t, std::less<>> places_;  // places of the runs by id
   mutable std::size_t done_ = 0;                            // all runs before this place are done
   bool is_deleted_ = false;
 };
 
-/// Works off the runs of batches that wait in the store, first come, first served, beside requests that want their
-/// answer at once and with less of the processor than these. A store that cannot be had is asked again and again.
-/// Whatever ends it, what is in the store goes on next time.
+/// Fits the waiting runs of batches, first come, first served, with a lower priority than requests for single fits. If
+/// the store is not available, it retries. After any interruption the stored runs continue at the next start.
 class BatchQueue {
  public:
-  /// `say`: whom to tell what no answer does, from any thread; may be empty.
+  /// `say`: receives messages that no answer contains, from any thread; may be empty.
   BatchQueue(FitStore& store, Fitter& fitter, ServiceMetrics& metrics, std::function<void(const std::string&)> say);
   BatchQueue(const BatchQueue&) = delete;
   BatchQueue& operator=(const BatchQueue&) = delete;
@@ -74,26 +73,26 @@ class BatchQueue {
   BatchQueue& operator=(BatchQueue&&) = delete;
   ~BatchQueue();
 
-  /// Takes up what waits in the store, once, with so many threads; 0: cores. Errors: of the store; kTryAgain: no thread
-  /// can be had.
+  /// Starts `threads` threads (0: one per core) and queues the waiting runs of the store. Call it once. Errors: of the
+  /// store; kTryAgain: no thread can be started.
   Result<void> Begin(int threads);
 
-  /// Keeps room for so many runs, unless more than `most` would wait then; and gives it back.
+  /// Reserves room for `runs` runs, unless more than `most` would then wait; Release returns it.
   bool Reserve(std::size_t runs, std::size_t most);
   void Release(std::size_t runs);
 
-  /// Takes up a batch that has been stored, in the room that was kept for it.
+  /// Queues a stored batch, in the room reserved for it.
   void Add(const std::string& batch, const std::vector<FitOrder>& orders);
 
-  /// Passes over what waits of a batch.
+  /// Removes the waiting runs of a batch.
   void Delete(const std::string& batch);
 
-  /// Of a batch that is being worked on; null of any other.
+  /// Progress of a running batch; nullptr for other batches.
   std::shared_ptr<BatchProgress> ProgressOf(const std::string& batch) const;
 
   std::size_t waiting() const;
 
-  /// No more runs; those under way are left for the next time.
+  /// Starts no more runs; unfinished ones are left for the next start.
   void Stop();
 
  private:
@@ -112,7 +111,7 @@ class BatchQueue {
   Fitter& fitter_;
   ServiceMetrics& metrics_;
   std::function<void(const std::string&)> say_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // for the members below
   std::condition_variable changed_;
   std::deque<FitStore::Waiting> waiting_;
   struct Batch {
@@ -122,7 +121,7 @@ class BatchQueue {
   std::map<std::string, Batch, std::less<>> batches_;
   std::size_t reserved_ = 0;  // runs that are not in the store yet
   bool is_stopping_ = false;
-  std::vector<std::jthread> threads_;  // last, so that they end before the rest goes
+  std::vector<std::jthread> threads_;  // last member, so they are joined before the others are destroyed
 };
 
 }  // namespace pendulum

@@ -7,13 +7,13 @@
 
 namespace pendulum::wire {
 
-/// Bytes of bodies that may be in memory, of all connections together. For any thread.
+/// Limit for the bytes of bodies in memory, over all connections. For any thread.
 class ByteBudget {
  public:
   explicit ByteBudget(std::size_t most) : most_(most) {}
 
   bool is_full() const { return taken_ >= most_; }
-  bool is_exceeded() const { return taken_ > most_; }  ///< By answers.
+  bool is_exceeded() const { return taken_ > most_; }  ///< Only answers can exceed it.
   std::size_t taken() const { return taken_; }
 
  private:
@@ -23,7 +23,7 @@ class ByteBudget {
   std::atomic<std::size_t> taken_ = 0;
 };
 
-/// Bytes that one body has of a budget, until it goes.
+/// The part of a budget that one body uses, until destruction.
 class HeldBytes {
  public:
   explicit HeldBytes(ByteBudget& budget) : budget_(&budget) {}
@@ -37,7 +37,7 @@ class HeldBytes {
   HeldBytes& operator=(const HeldBytes&) = delete;
   ~HeldBytes() { Release(); }
 
-  /// Takes more; false, and nothing is taken, where the budget does not have it.
+  /// Takes more bytes; false, without a change, if the budget has too few.
   bool Take(std::size_t bytes) {
     if (budget_->taken_.fetch_add(bytes) + bytes > budget_->most_) {
       budget_->taken_ -= bytes;
@@ -47,7 +47,7 @@ class HeldBytes {
     return true;
   }
 
-  /// Takes more, come what may: of an answer that is there.
+  /// Takes more bytes without a check: the answer already exists.
   void Add(std::size_t bytes) {
     budget_->taken_ += bytes;
     bytes_ += bytes;

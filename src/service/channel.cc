@@ -13,7 +13,7 @@
 namespace pendulum::wire {
 namespace {
 
-/// What must be taken within one limit: with 30 s a client that takes 9 kB/s loses nothing.
+/// A client must take this much within one limit: with 30 s, 9 kB/s are enough.
 constexpr std::size_t kPiece = std::size_t{256} << 10;
 
 constexpr std::chrono::seconds kLingerTime{2};
@@ -44,7 +44,7 @@ void Channel::Limit(std::chrono::milliseconds time) {
   is_late_ = false;
   limit_.expires_at(std::min(asio::steady_timer::clock_type::now() + time, end_));
   limit_.async_wait([this, self = shared_from_this()](const Code& code) {
-    // One that expired before it was set anew may be called all the same.
+    // An old timer may still call back after it was reset.
     if (code || limit_.expiry() > asio::steady_timer::clock_type::now()) return;
     is_late_ = true;
     Code ignored;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kReadOfHead = std::size_t{4} << 10, kReadOfBody = std::size_t{64} << 10;
 
-/// Calls what is the handler's, whose exceptions are its bugs: none comes further than here.
+/// Calls handler code. An exception is a bug of the handler and is caught here.
 template <typename Call, typename Failed>
 auto Guarded(const Call& call, const Failed& failed) -> decltype(call()) {
   try {
@@ -101,7 +101,7 @@ void Connection::Parse() {
   ParseBody();
 }
 
-/// True where the body is to be read, or the request is whole.
+/// True if the head is complete: the body can be read or the request is done.
 bool Connection::ParseHead() {
   while (bytes_.starts_with("\r\n")) bytes_.erase(0, 2);  // RFC 9112, section 2.2
   const auto size = parser_->ReadHead(bytes_);
@@ -185,7 +185,7 @@ void Connection::Dispatch() {
   if (!is_taken) Refuse({429, "too many requests are waiting; try again later"});
 }
 
-/// On a thread of a lane, to which the request belongs meanwhile.
+/// Runs on a thread of a lane, which owns the request meanwhile.
 HttpResponse Connection::Handle(std::chrono::steady_clock::time_point offered) {
   if (std::chrono::steady_clock::now() - offered > serving_.options.wait_time) {
     return MakeRefusal({408, "the request waited too long for its turn; try again later"});
@@ -206,7 +206,7 @@ HttpResponse Connection::MakeRefusal(const Refused& refused) const {
                  });
 }
 
-/// What was not understood is not followed by anything that could be.
+/// After a request that was not understood, no further request can be read.
 void Connection::Refuse(const Refused& refused) {
   HttpResponse response = MakeRefusal(refused);
   response.events = nullptr;

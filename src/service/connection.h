@@ -22,7 +22,7 @@ namespace pendulum::wire {
 
 class Connection;
 
-/// What all connections of a server share. But for the numbers, on the I/O thread only.
+/// Data shared by all connections of a server. For the I/O thread only, except for the numbers.
 struct Serving {
   const ServerOptions& options;
   HttpHandler& handler;
@@ -30,30 +30,30 @@ struct Serving {
   asio::io_context& io;
   ByteBudget& budget;
   WorkQueue &quick, &fits;
-  std::function<void(const std::shared_ptr<Connection>&)> closed;  ///< It is over with one.
+  std::function<void(const std::shared_ptr<Connection>&)> closed;  ///< Called when a connection is over.
   std::atomic<bool> is_stopping = false;
   std::atomic<std::size_t> streams = 0;
   std::atomic<std::uint64_t> answers = 0, refusals = 0;
 };
 
-/// One client: requests one after another, each read, handed to a lane, and answered. On the I/O thread but for the
-/// handler's part.
+/// One client. Requests are read, passed to a lane and answered one after another. Runs on the I/O thread, except for
+/// the handler.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(asio::ip::tcp::socket socket, Serving& serving);
 
   void Start();
 
-  /// Answers what has not been asked yet, and closes.
+  /// Answers without reading a request, and closes.
   void TurnAway(int status, const std::string& detail);
 
-  /// No request after this one: closes if there is none, ends a stream.
+  /// Accepts no further request: closes an idle connection, ends a stream.
   void Finish();
 
-  /// At once, whatever is under way.
+  /// Closes at once, in any state.
   void Close();
 
-  /// For the head of a request, until it is whole; zero while there is something to do.
+  /// How long it has waited for a complete request head; zero while a request is processed.
   std::chrono::steady_clock::duration waited() const;
 
  private:
@@ -81,14 +81,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<Channel> channel_;
   Serving& serving_;
   Stage stage_ = Stage::kIdle;
-  std::string bytes_;  ///< That have come and are not taken.
+  std::string bytes_;  ///< Received bytes that are not used yet.
   std::optional<RequestParser> parser_;
-  std::string method_, target_;                  ///< As they came.
-  std::chrono::steady_clock::time_point began_;  ///< The request, or waiting for it.
-  HeldBytes held_;                               ///< By an answer.
+  std::string method_, target_;                  ///< Unchanged from the request line.
+  std::chrono::steady_clock::time_point began_;  ///< Start of the request, or of waiting for it.
+  HeldBytes held_;                               ///< Bytes of an answer.
   std::weak_ptr<EventStream> stream_;
   bool keeps_alive_ = false;
-  std::optional<Answered> answered_;  ///< What is being answered.
+  std::optional<Answered> answered_;  ///< The request that is being answered.
   std::size_t sent_before_ = 0;
 };
 

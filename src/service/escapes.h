@@ -10,21 +10,20 @@
 
 namespace pendulum {
 
-/// The value of a hexadecimal digit in either case; -1 of anything else.
+/// The value of a hexadecimal digit in either case; -1 for other characters.
 constexpr int HexValue(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
   if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
   return digit >= 'a' && digit <= 'f' ? digit - 'a' + 10 : -1;
 }
 
-/// The byte that an escape at the beginning of a text stands for, "%7E" (RFC 3986, section 2.1); none where there is
-/// no such.
+/// The byte of an escape, "%7E", at the beginning of a text (RFC 3986, section 2.1); std::nullopt without an escape.
 inline std::optional<char> EscapedByte(std::string_view text) {
   if (text.size() < 3 || text[0] != '%' || HexValue(text[1]) < 0 || HexValue(text[2]) < 0) return std::nullopt;
   return static_cast<char>(HexValue(text[1]) * 16 + HexValue(text[2]));
 }
 
-/// The text without its escapes; none where a percent sign begins no escape.
+/// The decoded text; std::nullopt if a percent sign begins no escape.
 inline std::optional<std::string> WithoutEscapes(std::string_view text) {
   std::string decoded;
   decoded.reserve(text.size());
@@ -41,7 +40,7 @@ inline std::optional<std::string> WithoutEscapes(std::string_view text) {
   return decoded;
 }
 
-/// How many bytes the first character of a text has in UTF-8 (RFC 3629, section 4); 0 where it is none.
+/// Bytes of the first character of a text in UTF-8 (RFC 3629, section 4); 0 if it is invalid.
 inline std::size_t Utf8Length(std::string_view text) {
   struct Form {
     unsigned char first_low, first_high, second_low, second_high;
@@ -78,7 +77,7 @@ inline bool IsUtf8(std::string_view text) {
   return true;
 }
 
-/// Whether a character in UTF-8 is one of C0, C1 or DEL, which a terminal may obey.
+/// Whether a character in UTF-8 is in C0 or C1, or is DEL; terminals may interpret these.
 constexpr bool IsControl(std::string_view character) {
   if (character.size() == 1) return (character[0] >= 0 && character[0] < 0x20) || character[0] == 0x7F;
   return character.size() == 2 && character[0] == '\xC2' && (character[1] & 0xE0) == 0x80;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kBetweenQuestions{100};
 
-/// For a client to take what is on its way when the stream is to end.
+/// Time for a client to receive the remaining data when the stream ends.
 constexpr std::chrono::milliseconds kForTheRest{1000};
 
 std::string ChunkOf(const std::string& text) {
@@ -45,7 +45,8 @@ void EventStream::End() {
   if (is_waiting_) timer_.cancel();
 }
 
-/// Finds out when the client goes. What it sends is of no use; then its going is seen when something is sent.
+/// Detects that the client closes the connection. Unexpected input is ignored; afterwards a closed connection is
+/// detected when data is sent.
 void EventStream::Watch() {
   channel_->Read(asio::buffer(unasked_), [self = shared_from_this()](const Code& code, std::size_t) {
     if (code) self->channel_->Close();
@@ -67,7 +68,7 @@ void EventStream::Ask() {
   EventText events;
   try {
     events = next_();
-  } catch (...) {  // its bug; without the last chunk the client knows that something is missing
+  } catch (...) {  // a bug of the handler; the missing last chunk shows the client that the stream is incomplete
     return Finish(false);
   }
   is_last_ = is_last_ || events.is_last;

@@ -13,18 +13,18 @@
 
 namespace pendulum::wire {
 
-/// Server-sent events on a channel until the last, until the client goes, or until it is told to end. Asks for more
-/// only once the client has taken what there was, so that nothing piles up.
+/// Server-sent events on a channel until the last event, until the client leaves, or until End. The next events are
+/// requested only after the client has received the previous ones, so nothing accumulates.
 class EventStream : public std::enable_shared_from_this<EventStream> {
  public:
-  /// `done` is called once, whatever ends it; true: all of it was taken.
+  /// `done` is called once at any end; true: the client received everything.
   EventStream(std::shared_ptr<Channel> channel, NextEvents next, bool is_chunked, const ServerOptions& options,
               std::function<void(bool)> done);
 
-  /// Sends the answer's head, and what there is.
+  /// Sends the answer's head and the first events.
   void Start(std::string head);
 
-  /// Ends as after the last event, or, if the client does not take what is on its way, soon.
+  /// Ends as after the last event, or after a short time if the client does not receive the remaining data.
   void End();
 
  private:
@@ -42,7 +42,7 @@ class EventStream : public std::enable_shared_from_this<EventStream> {
   asio::steady_timer timer_;
   std::chrono::steady_clock::time_point spoke_;
   bool is_last_ = false;
-  bool is_waiting_ = false;  ///< For the timer, so that nothing is being sent.
+  bool is_waiting_ = false;  ///< It waits for the timer; nothing is being sent.
   std::array<char, 512> unasked_ = {};
 };
 

@@ -33,7 +33,8 @@ HttpResponse Located(HttpResponse response, const std::string& id) {
   return response;
 }
 
-/// The answer of a run that could not be fitted: as that of its exit code, for its sentence is all that was kept.
+/// The answer for a run that could not be fitted. Only its sentence was stored, so the status follows from the exit
+/// code.
 HttpResponse UnfittedAnswer(const ListedFit& fit) {
   const int exit_code = fit.exit_code.value_or(0);
   for (const StatusCode code : {StatusCode::kInvalidArgument, StatusCode::kDataLoss, StatusCode::kFailedPrecondition,
@@ -46,7 +47,7 @@ HttpResponse UnfittedAnswer(const ListedFit& fit) {
   return ProblemAnswer({StatusCode::kInternal, fit.reason});
 }
 
-/// Why there is no result of a run yet, or none at all.
+/// The answer for a run that has no result, or none yet.
 std::optional<HttpResponse> WithoutResult(const KeptFit& kept) {
   if (!kept.fit.exit_code) {
     return ProblemResponse(
@@ -61,7 +62,7 @@ HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
   return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message));
 }
 
-/// Fits what is asked and keeps it.
+/// Fits the request and stores the fit.
 HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
   const auto begin = std::chrono::steady_clock::now();
   FitOrder order{MakeId(),
@@ -77,7 +78,7 @@ HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::opti
   return Located(JsonAnswer(fitted.outcome.result), order.id);
 }
 
-/// What a function makes of the fit of a kept run and its name, which is made once more unless it is remembered.
+/// Passes the fit of a stored run and its name to a function. The fit is repeated unless it is remembered.
 template <typename Make>
 HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   auto kept = state.store->Find(call.id);
@@ -90,7 +91,7 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
 }
 
-/// The report as people keep it, with the name of its recording.
+/// The report with the name of its recording as path.
 Identification NamedReport(const Identification& run, const std::string& name) {
   Identification named = run;
   named.data.path = name;
@@ -103,7 +104,7 @@ Json FileJson(const SharedFile& file) {
   return json ? *std::move(json) : Json(nullptr);
 }
 
-/// The samples of a recording as they were read, as many as a plot shows.
+/// The samples of a recording as read, thinned for a plot.
 Json SamplesJson(const Recording& recording) {
   constexpr Eigen::Index kMostShown = 4000;
   const auto size = static_cast<std::size_t>(recording.size());
@@ -119,7 +120,7 @@ Json SamplesJson(const Recording& recording) {
           {"samples", recording.size()}};
 }
 
-/// A value that must be one of some words; empty where it is not asked for.
+/// A query parameter that must be one of `words`; empty if it is missing.
 Result<std::string> OneOf(const RequestTarget& target, std::string_view name,
                           const std::vector<std::string_view>& words) {
   std::string value = QueryValue(target, name);
@@ -128,7 +129,7 @@ Result<std::string> OneOf(const RequestTarget& target, std::string_view name,
                std::string(name) + " is '" + value + "'; it must be one of " + NameList(words));
 }
 
-/// "2026-11-23T21:40:05Z", or with an offset from UTC or fractions of a second, or a day alone (RFC 3339).
+/// "2026-11-23T21:40:05Z"; an offset from UTC, fractions of a second, or a day alone are allowed (RFC 3339).
 Result<std::string> SinceOf(const RequestTarget& target) {
   static const std::regex form(
       R"(\d{4}-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01])([T ]([01]\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d{1,9})?)?(Z|[+-]([01]\d|2[0-3]):[0-5]\d)?)?)");

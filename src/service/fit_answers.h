@@ -3,7 +3,7 @@
 
 #include "service/service_state.h"
 
-/// Answers to requests about single fits (openapi.json): one function for each method of a path.
+/// Answers to requests about single fits (openapi.json), one function per method of a path.
 namespace pendulum {
 
 HttpResponse PostFit(ServiceState& state, const Call& call);

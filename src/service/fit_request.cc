@@ -25,10 +25,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 200, kMostOptionBytes = 8192;
-constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 27;  // Of a body that is a zip or a MAT-file.
+constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 27;  // Limit for a body that is a zip or a MAT-file.
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
-/// What a client calls a file, without the folders that old browsers send along and what no terminal should see.
+/// The client's name of a file, without folders (old browsers send them) and without control characters.
 std::string NameOf(std::string_view filename) {
   const std::size_t slash = filename.find_last_of("/\\");
   if (slash != std::string_view::npos) filename.remove_prefix(slash + 1);
@@ -61,7 +61,7 @@ Result<void> CheckName(const std::string& name) {
                "name has " + std::to_string(name.size()) + " bytes; it must have 1 to " + std::to_string(kLongestName));
 }
 
-/// Adds a flag that the other place did not give.
+/// Adds a flag unless query or body already gave it.
 Result<void> AddFlag(const std::string& name, const std::string& text, FlagTexts& flags) {
   if (flags.emplace(name, text).second) return {};
   return Error(StatusCode::kInvalidArgument,
@@ -77,10 +77,10 @@ Result<void> AddOptions(const Json& object, FlagTexts& flags) {
   return {};
 }
 
-/// What the query of a request gives, before its body is looked at.
+/// The query of a request; it is read before the body.
 struct Query {
   FlagTexts flags;
-  std::string name;  ///< Empty where there is none.
+  std::string name;  ///< Empty if missing.
 };
 
 Result<Query> QueryOf(const RequestTarget& target) {
@@ -97,7 +97,7 @@ Result<Query> QueryOf(const RequestTarget& target) {
   return query;
 }
 
-/// The parts of a form, into the request.
+/// Reads the parts of a form into the request.
 class FormReader {
  public:
   explicit FormReader(FitRequest& request) : request_(request) {}
@@ -146,7 +146,7 @@ Result<void> ReadForm(std::string_view content_type, const std::string& body, Fi
   return {};
 }
 
-/// A rig or calibration of a JSON body; null is none.
+/// Reads a rig or calibration of a JSON body; null means none.
 Result<void> ReadObject(const std::string& name, const Json& value, SharedFile& file) {
   file.reset();
   if (value.is_null()) return {};
@@ -173,7 +173,7 @@ Result<Json> ParseBody(const std::string& body) {
   return json;
 }
 
-/// `name` gets the recording's, if it is given.
+/// `name` receives the recording's name, if given.
 Result<void> ReadJson(const std::string& body, FitRequest& request, std::string& name) {
   auto json = ParseBody(body);
   if (!json) return tl::unexpected(json.error());
@@ -203,15 +203,15 @@ bool IsRecording(std::string_view type) {
       "text/plain",
       "text/tab-separated-values",
       "application/octet-stream",
-      "application/vnd.ms-excel",  // what Windows calls CSV
+      "application/vnd.ms-excel",  // the type of CSV on Windows
       "application/zip",
-      "application/x-zip-compressed",  // what Windows calls it
+      "application/x-zip-compressed",  // its name on Windows
       "application/x-matlab-data",
   };
   return std::ranges::find(kTypes, type) != kTypes.end();
 }
 
-/// The type of a body, in lower case, or as it stands where it is none; empty where it is not there.
+/// The type of a body in lower case; the unchanged text if it is invalid; empty if it is missing.
 std::string TypeOf(const HttpRequest& request) {
   const auto field = request.Field("Content-Type");
   if (!field) return "";
@@ -234,7 +234,7 @@ OrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
                                              " samples at most; send a part of it, or use fit_pendulum");
 }
 
-/// Each run of a batch keeps its options.
+/// Limits the options, because each run of a batch stores them.
 OrProblem<void> CheckOptions(const FlagTexts& flags) {
   const std::size_t bytes = JsonText(JsonOf(flags)).size();
   if (bytes <= kMostOptionBytes) return {};
@@ -242,7 +242,7 @@ OrProblem<void> CheckOptions(const FlagTexts& flags) {
                                              std::to_string(kMostOptionBytes) + "; leave some out");
 }
 
-/// The options of what was read, and whether there is not too much of it.
+/// Makes the options and checks the limits.
 OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
   if (auto checked = CheckOptions(request.flags); !checked) return tl::unexpected(checked.error());
   auto options = RunOptionsOf(request.flags, request.calibration);
@@ -302,7 +302,7 @@ Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& c
                  "--release all makes several results of a recording; a request has one, so give the number of one");
   }
   options->read.most_unpacked_bytes = kMostUnpackedBytes;
-  options->fit.threads = 1;  // of many requests at a time each has its own
+  options->fit.threads = 1;  // parallelism comes from concurrent requests
   return options;
 }
 

@@ -32,7 +32,7 @@ Status TookTooLong(std::chrono::milliseconds limit) {
 
 }  // namespace
 
-/// An exception is our bug or the memory's end, and costs this run only.
+/// An exception is a bug or lack of memory and fails only this run.
 FittedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
   FittedRun fitted;
   try {

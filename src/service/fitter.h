@@ -16,15 +16,15 @@
 
 namespace pendulum {
 
-/// A run that is done: what there is to be kept of it, and the fit with its samples where it could be fitted.
+/// A finished run: its outcome for the store, and the fit with its samples if it succeeded.
 struct FittedRun {
   RunOutcome outcome;
   std::shared_ptr<const Identification> run;
   std::optional<Status> error;  ///< Why it could not be fitted.
-  bool is_stopped = false;      ///< It took longer than it may, or all are stopped.
+  bool is_stopped = false;      ///< It exceeded the time limit, or all fits were stopped.
 };
 
-/// Fits within a limit of time, and remembers the last fits with their samples for who asks for these. For any thread.
+/// Fits within a time limit and keeps the most recent fits with their samples. For any thread.
 class Fitter {
  public:
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
@@ -32,20 +32,20 @@ class Fitter {
   /// The result is that of fit_pendulum, without a path.
   FittedRun Fit(const IdentifyOptions& asked, RunFiles files);
 
-  /// The fit of the run of that id, which was made from these: remembered, or made once more.
+  /// The fit of run `id`, made from these options and files: the remembered one, or a new one.
   Result<std::shared_ptr<const Identification>> FitOf(const std::string& id, const IdentifyOptions& options,
                                                       RunFiles files);
 
   /// Remembers the fit of a run.
   void Remember(const std::string& id, std::shared_ptr<const Identification> run);
 
-  /// Stops what is under way, and what is still to come.
+  /// Stops current and future fits.
   void StopAll() { limit_.StopAll(); }
 
   std::chrono::milliseconds limit() const { return limit_.limit(); }
 
  private:
-  /// A fit has about a kilobyte a sample where several models are compared.
+  /// A fit needs about a kilobyte per sample if several models are compared.
   static constexpr Eigen::Index kMostRemembered = 100'000;  // samples
 
   struct Remembered {
@@ -58,8 +58,8 @@ class Fitter {
   std::shared_ptr<const Identification> Find(const std::string& id);
 
   TimeLimit limit_;
-  std::mutex mutex_;                  // of what follows
-  std::list<Remembered> remembered_;  // the last used first
+  std::mutex mutex_;                  // for the members below
+  std::list<Remembered> remembered_;  // most recently used first
 };
 
 }  // namespace pendulum

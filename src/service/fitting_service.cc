@@ -16,15 +16,15 @@
 namespace pendulum {
 namespace {
 
-/// Everything of the page comes from here, as files: whatever else gets into it is not run.
+/// All content of the page comes as files from this server; injected code does not run.
 constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// What is no page runs nothing, even where a browser is made to show it.
+/// Other answers run nothing, even if a browser displays them.
 constexpr const char* kDataPolicy = "default-src 'none'; frame-ancestors 'none'; sandbox";
 
-/// What every answer says to browsers.
+/// Adds the security fields that every answer has.
 HttpResponse Guarded(HttpResponse response) {
   const auto type = std::ranges::find(response.fields, "Content-Type", &HttpField::name);
   const bool is_file =
@@ -42,7 +42,7 @@ HttpResponse Guarded(HttpResponse response) {
 
 HttpResponse GuardedProblem(const Problem& problem) { return Guarded(ProblemResponse(problem)); }
 
-/// The server hands HEAD on as GET and keeps the content to itself.
+/// The server passes HEAD as GET and drops the content.
 std::string_view MethodOf(const HttpRequest& request) {
   return request.method == "HEAD" ? "GET" : std::string_view(request.method);
 }
@@ -76,7 +76,7 @@ Lane FittingService::LaneOf(const HttpRequest& request) const {
 std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& request) const {
   const auto target = ParseTarget(request.target);
   const Match match = target ? FindRoute(MethodOf(request), target->path) : Match{};
-  // Who may not ask is not told what there is.
+  // Access is checked first, so an unauthorized client cannot find out which paths exist.
   const Audience audience = match.route == nullptr ? Audience::kTokenHolders : match.route->audience;
   if (const auto refused = RefuseAccess(request, state_->options.access, audience)) return GuardedProblem(*refused);
   if (!target) return GuardedProblem(ProblemOf(target.error()));

@@ -37,19 +37,19 @@ Result<std::string> BoundaryOf(std::string_view content_type) {
   return std::string(*boundary);
 }
 
-/// A line between two parts: from the line end before it to behind its own.
+/// A boundary line: from the line end before it to the end of its own line end.
 struct BoundaryLine {
   std::size_t begin, end;
   bool is_last;
 };
 
-/// Finds the boundary lines of a body, each byte of which it looks at a few times at most.
+/// Finds the boundary lines of a body in linear time.
 class BoundaryLines {
  public:
   BoundaryLines(std::string_view body, const std::string& boundary)
       : body_(body), mark_(std::string(kLineEnd) + "--" + boundary) {}
 
-  /// The first; also where the body begins with it.
+  /// The first line; the body may begin with it.
   std::optional<BoundaryLine> First() const {
     const std::string_view at_begin = std::string_view(mark_).substr(kLineEnd.size());
     if (body_.starts_with(at_begin)) {
@@ -58,7 +58,7 @@ class BoundaryLines {
     return FindFrom(0);
   }
 
-  /// The next one; it may begin with the line end of the last.
+  /// The next line; it may begin with the line end of `line`.
   std::optional<BoundaryLine> Behind(const BoundaryLine& line) const { return FindFrom(line.end - kLineEnd.size()); }
 
  private:
@@ -70,8 +70,8 @@ class BoundaryLines {
     return std::nullopt;
   }
 
-  /// A line has the boundary, two dashes if it is the last, and blanks that a transport may have added; a longer one is
-  /// content.
+  /// A boundary line has the boundary, two dashes if it is the last one, and blanks added in transport. A longer line
+  /// is content.
   std::optional<BoundaryLine> LineOf(std::size_t begin, std::size_t behind_mark) const {
     const bool is_last = body_.substr(behind_mark).starts_with("--");
     const std::size_t blanks = behind_mark + (is_last ? 2 : 0);
@@ -87,12 +87,12 @@ class BoundaryLines {
 
 // ---- The head of a part --------------------------------------------------------------------------------------------
 
-/// The fields of a part that say something to us, as written.
+/// The fields of a part that are used, as written.
 struct PartHead {
   std::optional<std::string> disposition, type, encoding;
 };
 
-/// A part while it is read; `place` names it in messages: "part 3".
+/// Reads one part; `place` is its name in messages: "part 3".
 struct PartReader {
   std::string place;
 
@@ -100,7 +100,7 @@ struct PartReader {
     return Error(StatusCode::kInvalidArgument, place + " of the form " + sentence);
   }
 
-  /// Splits what stands between two boundaries in head and content.
+  /// Splits the text between two boundaries into head and content.
   Result<std::pair<std::string_view, std::string_view>> Split(std::string_view part) const {
     constexpr std::string_view kBlankLine = "\r\n\r\n";
     if (part.starts_with(kLineEnd)) return std::pair(part.substr(0, 0), part.substr(kLineEnd.size()));
@@ -110,7 +110,7 @@ struct PartReader {
       return Wrong("has a head of more than " + std::to_string(kMostPartHeadBytes) +
                    " bytes, or no blank line below it; shorten its names");
     }
-    // The line end before the boundary may be the blank line's: there is a head alone.
+    // A part with a head only: its blank line may be the line end before the boundary.
     if (part.ends_with(kLineEnd)) return std::pair(part.substr(0, part.size() - kLineEnd.size()), std::string_view());
     return Wrong("has no blank line below its head; write one, with lines that end in CR LF");
   }
@@ -134,7 +134,7 @@ struct PartReader {
     return {};
   }
 
-  /// A line that begins with a blank goes on with the one before (RFC 5322, section 2.2.3).
+  /// A line that begins with a blank continues the previous one (RFC 5322, section 2.2.3).
   Result<PartHead> ReadHead(std::string_view text) const {
     PartHead head;
     while (!text.empty()) {
@@ -182,7 +182,7 @@ struct PartReader {
   Result<FormPart> Read(std::string_view text) const;
 };
 
-/// Without the escapes of browsers for a quote and line breaks; any other percent sign is one.
+/// Decodes the browsers' escapes for a quote and line breaks; any other percent sign stays.
 std::string WithoutBrowserEscapes(std::string_view text) {
   constexpr std::string_view kEscaped = "\"\r\n";
   std::string decoded;

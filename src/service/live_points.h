@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-/// What of a recording in progress is shown, in memory that does not grow with it.
+/// Points of a recording in progress for a plot, in bounded memory.
 namespace pendulum {
 
 /// A sample: time [s] and value, in the unit of the recording.
@@ -13,8 +13,8 @@ struct LivePoint {
   double time, value;
 };
 
-/// The samples with the least and the largest value of some that follow each other; of equal ones the first and the
-/// last.
+/// The samples with the smallest and the largest value in a block of successive samples. Of equal values the smallest
+/// is the first one and the largest the last one.
 struct LiveExtremes {
   explicit LiveExtremes(LivePoint only) : least(only), largest(only) {}
 
@@ -23,7 +23,7 @@ struct LiveExtremes {
     if (next.largest.value >= largest.value) largest = next.largest;
   }
 
-  /// Appends them in the order they came, none that is not behind the last.
+  /// Appends both in the order of their times; skips a point that is not after the previous one.
   void AppendTo(std::vector<LivePoint>& points) const {
     const bool is_falling = largest.time < least.time;
     for (const LivePoint& point : {is_falling ? largest : least, is_falling ? least : largest}) {
@@ -34,8 +34,8 @@ struct LiveExtremes {
   LivePoint least, largest;
 };
 
-/// A whole run, however long, in at most kMostPoints points, with its first, its last, and the extremes of blocks of
-/// samples, which grow with it.
+/// A whole run of any length in at most kMostPoints points: the first, the last, and the extremes of blocks of samples.
+/// The block size grows with the run.
 class WholeRun {
  public:
   static constexpr std::size_t kMostPoints = 4000;
@@ -63,7 +63,7 @@ class WholeRun {
   }
 
  private:
-  static constexpr std::size_t kMostBlocks = kMostPoints / 2 - 2;  // even, and room for the ends
+  static constexpr std::size_t kMostBlocks = kMostPoints / 2 - 2;  // even, with room for the ends
 
   void Merge() {
     for (std::size_t i = 0; i < blocks_.size(); i += 2) {
@@ -75,16 +75,16 @@ class WholeRun {
   }
 
   std::vector<LiveExtremes> blocks_;
-  std::size_t block_size_ = 2, in_last_ = 0;  // samples; of two a block keeps both
+  std::size_t block_size_ = 2, in_last_ = 0;  // samples; a block of two keeps both
   std::optional<LivePoint> first_;
   LivePoint last_{};
 };
 
-/// Of samples as they come at most fifty a second of their time: each one while they are few, else the extremes of
-/// short blocks. Every point is paid for with a fiftieth of a second.
+/// Reduces incoming samples to at most fifty per second of recording time: all samples at low rates, otherwise the
+/// extremes of short blocks. Each point uses a fiftieth of a second.
 class SparsePoints {
  public:
-  /// Appends what is settled by now.
+  /// Takes a sample and appends the finished points.
   void Take(LivePoint point, std::vector<LivePoint>& points) {
     if (block_ && point.time >= paid_until_ + 2 * kPrice) Flush(points);
     if (block_) {
@@ -98,7 +98,7 @@ class SparsePoints {
     }
   }
 
-  /// Appends what is left, where nothing follows for now.
+  /// Appends the unfinished block, if no sample follows for now.
   void Flush(std::vector<LivePoint>& points) {
     if (!block_) return;
     block_->AppendTo(points);
@@ -109,7 +109,7 @@ class SparsePoints {
  private:
   static constexpr double kPrice = 0.02;  // s
 
-  std::optional<LiveExtremes> block_;  // from paid_until_ on, for the time of two points
+  std::optional<LiveExtremes> block_;  // starts at paid_until_ and lasts for the time of two points
   double paid_until_ = 0;              // s
   bool has_begun_ = false;
 };

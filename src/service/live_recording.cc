@@ -23,7 +23,7 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kMostLiveBytes = std::size_t{64} << 20;  // an answer is in memory
+constexpr std::size_t kMostLiveBytes = std::size_t{64} << 20;  // an answer is held in memory
 constexpr std::chrono::milliseconds kLivePollInterval{50};
 
 std::string LiveStatusJson(const LiveStatus& status) {
@@ -42,7 +42,7 @@ std::string LiveEvent(std::string_view name, const std::string& data) {
 }
 
 std::string SamplesJson(const std::vector<LivePoint>& points) {
-  constexpr int kDigits = 7;  // more than any sensor has
+  constexpr int kDigits = 7;  // more than the resolution of any sensor
   std::string times, values;
   for (const LivePoint& point : points) {
     (times += times.empty() ? "" : ",") += NumberText(point.time);
@@ -51,7 +51,7 @@ std::string SamplesJson(const std::vector<LivePoint>& points) {
   return "{\"time_s\":[" + times + "],\"values\":[" + values + "]}";
 }
 
-/// The bytes of an open file, which may grow, up to their last line end. `name`: for messages.
+/// The bytes of an open, possibly growing, file up to its last line end. `name`: for messages.
 Result<std::string> WholeLinesOf(int descriptor, const std::string& name) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   struct stat status {};
@@ -84,13 +84,13 @@ Result<std::string> WholeLinesOf(const std::filesystem::path& run) {
   return bytes;
 }
 
-/// How far a listener is.
+/// Position of a listener.
 struct LiveCursor {
-  std::string said;          // The status it knows.
-  bool has_samples = false;  // It has the run so far.
-  std::uint64_t run = 0;     // Which one.
-  std::uint64_t next = 0;    // Number of the latest point that it has not.
-  double time = 0;           // s, of the last point it has.
+  std::string said;          // The last status sent.
+  bool has_samples = false;  // The run so far was sent.
+  std::uint64_t run = 0;     // Number of the run.
+  std::uint64_t next = 0;    // Number of the next point to send.
+  double time = 0;           // s, of the last point sent.
 };
 
 }  // namespace
@@ -175,11 +175,11 @@ class LiveRecording::Reader {
 
   const std::filesystem::path run_path_;
   const std::string name_;
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // for all members below
   RunTail tail_;
   LiveRun run_;
-  std::uint64_t number_ = 0;  // of the run
-  bool has_more_ = false;     // there is much to read yet, and samples are sent once it is read
+  std::uint64_t number_ = 0;  // number of the run
+  bool has_more_ = false;     // more data is available; samples are sent after it is read
   std::chrono::steady_clock::time_point polled_;
 };
 

@@ -11,7 +11,7 @@
 namespace pendulum {
 namespace {
 
-/// The finite number that a field holds; none where it holds something else.
+/// The finite number in a field; std::nullopt for other content.
 std::optional<double> NumberOf(std::string_view field) {
   field = WithoutBlanks(field);
   double number = 0;
@@ -20,7 +20,7 @@ std::optional<double> NumberOf(std::string_view field) {
   return number;
 }
 
-/// What stands before the first comma, and what stands between it and the next.
+/// The text before the first comma, and the text from there to the next.
 struct FirstColumns {
   std::string_view time, value;
 };
@@ -32,7 +32,7 @@ FirstColumns FirstColumnsOf(std::string_view line) {
   return {line.substr(0, comma), rest.substr(0, rest.find(','))};
 }
 
-/// "adc_counts" is in counts, "rate_rad_s" in rad/s; a name without a unit has none.
+/// "adc_counts" has the unit counts, "rate_rad_s" rad/s; a name without a unit has none.
 std::string UnitOf(std::string_view column) {
   if (column.ends_with("_rad_s")) return "rad/s";
   if (column.ends_with("_deg_s")) return "deg/s";

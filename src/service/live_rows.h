@@ -10,14 +10,15 @@
 
 namespace pendulum {
 
-/// The lines of a recording as record_pendulum writes it: comments, the names of the columns, rows of time and value.
+/// Reads the lines of a recording from record_pendulum: comments, column names, rows of time and value.
 class LiveRows {
  public:
-  /// The sample of a line; none where it is a comment, the names, or no row that follows the last in time.
+  /// The sample of a line; std::nullopt for comments, column names, and rows that are invalid or not later than the
+  /// last one.
   std::optional<LivePoint> Take(std::string_view line);
 
-  bool has_begun() const { return has_names_; }                ///< The names of the columns were there.
-  const std::string& unit() const { return unit_; }            ///< Of the values.
+  bool has_begun() const { return has_names_; }                ///< The column names were read.
+  const std::string& unit() const { return unit_; }            ///< Unit of the values.
   const std::optional<double>& rate() const { return rate_; }  ///< Hz
 
  private:
@@ -27,7 +28,7 @@ class LiveRows {
   bool has_names_ = false;
   std::string unit_;
   std::optional<double> rate_;
-  std::optional<Calibration> calibration_;  // Of the values; none: they are shown as they are.
+  std::optional<Calibration> calibration_;  // Calibration of the values; std::nullopt: they are shown unchanged.
   std::optional<double> last_time_;         // s
 };
 

@@ -13,16 +13,16 @@
 
 namespace pendulum {
 
-/// What has been read of a run.
+/// The part of a run that was read so far.
 struct LiveRun {
-  static constexpr std::size_t kMostLatest = 4000;  // 80 s of them: a listener that is later begins again
+  static constexpr std::size_t kMostLatest = 4000;  // 80 s of points; a listener that is further behind starts again
 
   LiveRows rows;
   WholeRun whole;
   SparsePoints sparse;
   std::deque<LivePoint> latest;
   std::uint64_t samples = 0;
-  std::uint64_t latest_begin = 0;  // number of the first of the latest points
+  std::uint64_t latest_begin = 0;  // number of the first point in `latest`
 
   std::uint64_t latest_end() const { return latest_begin + latest.size(); }
 
@@ -45,7 +45,7 @@ struct LiveRun {
     Keep(settled);
   }
 
-  /// What waits for more samples of its block, where none come.
+  /// Appends points that wait for more samples of their block, if none arrive.
   void Settle() {
     std::vector<LivePoint> settled;
     sparse.Flush(settled);

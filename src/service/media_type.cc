@@ -30,8 +30,8 @@ tl::unexpected<Status> WrongParameters(std::string_view what, std::string_view a
 
 bool IsControlInQuotes(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7F'; }
 
-/// Takes the value in quotes that the text begins with from it; none where it has no closing quote or a control
-/// character.
+/// Removes a quoted value from the beginning of the text and returns it; std::nullopt without a closing quote or with a
+/// control character.
 std::optional<std::string> TakeQuoted(std::string_view& text, Backslash backslash) {
   std::string value;
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -49,7 +49,7 @@ std::optional<std::string> TakeQuoted(std::string_view& text, Backslash backslas
   return std::nullopt;
 }
 
-/// Takes the token that the text begins with from it; empty where there is none.
+/// Removes a token from the beginning of the text and returns it; empty if there is none.
 std::string TakeToken(std::string_view& text) {
   std::string token(text.substr(0, TokenLength(text)));
   text.remove_prefix(token.size());

@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 
 FlagTexts QueryFlags(const RequestTarget& target) { return {target.query.begin(), target.query.end()}; }
 
-/// What a simulation is asked for: by the query, or by a JSON object that may have a rig.
+/// A simulation from the query, or from a JSON object that may contain a rig.
 struct SimulationRequest {
   FlagTexts flags;
   std::optional<Rig> rig;
@@ -89,7 +89,7 @@ Json ParameterJson(const ParameterInfo& info) {
           {"upper", NumberOrNull(info.upper)}};
 }
 
-/// What the laws say of themselves; `linear` is no law of friction.
+/// A model with its own description; `linear` is not a friction law.
 Json ModelJson(const MotionModel& model) {
   std::string label = "viscous friction and small angles";
   std::string about = "The textbook's pendulum, whose period does not depend on the angle: for comparison.";
@@ -128,7 +128,7 @@ HttpResponse NoLive() {
 
 std::string TagOf(std::string_view content) { return "\"" + Sha256(content).value_or("").substr(0, 32) + "\""; }
 
-/// A file of the page, which a browser asks again for only once it has changed.
+/// A file of the page; a browser loads it again only after a change.
 HttpResponse PageFile(const Call& call, std::string_view type, std::string_view content, const std::string& tag) {
   const bool is_known = call.http.Field("If-None-Match").value_or("").find(tag) != std::string_view::npos;
   HttpResponse response = TextAnswer(type, is_known ? "" : std::string(content));

@@ -3,8 +3,8 @@
 
 #include "service/service_state.h"
 
-/// Answers to requests about everything else: simulations, calibrations, models, examples, the live recording, the
-/// service itself and its page (openapi.json): one function for each method of a path.
+/// Answers to all other requests (openapi.json), one function per method of a path: simulations, calibrations, models,
+/// examples, the live recording, the service itself and its page.
 namespace pendulum {
 
 HttpResponse PostSimulation(ServiceState& state, const Call& call);

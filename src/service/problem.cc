@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-/// What the problems of a kind have in common.
+/// The common properties of a kind of problems.
 struct KindOfProblem {
   ProblemKind kind;
   int status;
@@ -60,7 +60,7 @@ ProblemKind KindOf(StatusCode code) {
   return ProblemKind::kInternal;
 }
 
-/// A status that several kinds have says nothing of the kind.
+/// kWrongRequest or kInternal for a status that several kinds share.
 ProblemKind KindOfHttpStatus(int status) {
   constexpr int kUnprocessable = 422, kServerErrors = 500;
   const auto* const found = std::ranges::find(kKindsOfProblem, status, &KindOfProblem::status);

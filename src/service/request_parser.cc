@@ -14,14 +14,14 @@
 namespace pendulum::wire {
 namespace {
 
-/// What may come of the line of a chunk's size, or of the trailer, without its end.
+/// Limit for the line of a chunk's size, or for the trailer, before it is complete.
 constexpr std::size_t kMaxBetweenChunks = std::size_t{8} << 10;
 
 constexpr std::size_t kFirstCapacity = std::size_t{64} << 10;
 
 tl::unexpected<Refused> Malformed(std::string detail) { return tl::unexpected(Refused{400, std::move(detail)}); }
 
-/// What may not stand at `i` of a head. Beast takes some of these for blanks, and folds lines.
+/// Describes a forbidden byte at `i` of a head. Beast would accept some of these as blanks and would join folded lines.
 std::optional<std::string> WrongByte(std::string_view bytes, std::size_t i) {
   const auto byte = static_cast<unsigned char>(bytes[i]);
   const bool is_last = i + 1 == bytes.size();
@@ -49,7 +49,7 @@ Refused TooMuchAtOnce() { return {429, "too much is being sent and answered at o
 RequestParser::RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget)
     : max_head_(max_head), max_body_(max_body), held_(budget) {
   header_limit(static_cast<std::uint32_t>(max_head));
-  // Append sees to that, after the handler was asked. None at all would be below any length in Boost 1.74.
+  // Append checks the limit, after the handler. Without a limit Boost 1.74 would refuse every length.
   body_limit(std::numeric_limits<std::uint64_t>::max());
 }
 
@@ -124,7 +124,7 @@ std::optional<Refused> RequestParser::ReadTarget() {
     return Refused{400, "method " + request_.method + " is not served here"};
   }
   constexpr std::string_view kScheme = "http://";
-  if (IsSameWord(target.substr(0, kScheme.size()), kScheme)) {  // as to a proxy; RFC 9112, section 3.2.2
+  if (IsSameWord(target.substr(0, kScheme.size()), kScheme)) {  // as sent to a proxy; RFC 9112, section 3.2.2
     const std::size_t path = std::min(target.find_first_of("/?", kScheme.size()), target.size());
     const std::string authority = target.substr(kScheme.size(), path - kScheme.size());
     const auto host = request_.Field("Host");
@@ -169,7 +169,7 @@ std::size_t RequestParser::Append(View body, Code& code) {
     return 0;
   }
   const std::size_t size = text.size() + body.size();
-  if (size > text.capacity()) {  // no more than what is needed, where that is known
+  if (size > text.capacity()) {  // allocates exactly the known size
     const std::size_t more = std::max(kFirstCapacity, 2 * size);
     text.reserve(head_.is_chunked ? more : std::min<std::size_t>(more, head_.content_length));
   }

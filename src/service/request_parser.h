@@ -15,19 +15,19 @@
 
 namespace pendulum::wire {
 
-/// Why the server itself refuses a request.
+/// A request refused by the server itself.
 struct Refused {
   int status;
   std::string detail;
 };
 
-/// The request's body is longer than it may be.
+/// The request's body exceeds the limit.
 Refused BodyTooLong(std::size_t max_body);
 
-/// There is no memory left for what comes in and goes out.
+/// The memory for bodies and answers is exhausted.
 Refused TooMuchAtOnce();
 
-/// What a head says beside the request's own words.
+/// Properties of a request's head other than its fields.
 struct RequestHead {
   bool keeps_alive = false;  ///< Another request may follow on the connection.
   bool is_http11 = true;
@@ -35,26 +35,26 @@ struct RequestHead {
   std::uint64_t content_length = 0;
 };
 
-/// One request, from the bytes of a connection as they come. Stricter than Beast where two readings are possible, so
-/// that no proxy in front of it takes one request for two (RFC 9112, section 11.2).
+/// Parses one request from the bytes of a connection. It is stricter than Beast if a head has two readings, so a proxy
+/// cannot take one request for two (RFC 9112, section 11.2).
 class RequestParser final : private boost::beast::http::basic_parser<true> {
  public:
   RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget);
 
-  /// Takes the head if it is whole: bytes to be taken away, 0 where it is not. `bytes`: all from its first byte on.
+  /// Parses a complete head and returns its bytes; 0 if it is incomplete. `bytes`: all bytes of the request so far.
   tl::expected<std::size_t, Refused> ReadHead(std::string_view bytes);
 
-  /// Takes what belongs to the body: bytes to be taken away.
+  /// Parses bytes of the body and returns their number.
   tl::expected<std::size_t, Refused> ReadBody(std::string_view bytes);
 
   bool is_done() const { return basic_parser::is_done(); }
 
   const RequestHead& head() const { return head_; }
 
-  /// As far as it has come.
+  /// The part received so far.
   HttpRequest& request() { return request_; }
 
-  /// Once it is answered: gives back what the request has of memory and budget.
+  /// Frees the memory and budget of an answered request.
   void Forget();
 
  private:
@@ -82,8 +82,8 @@ class RequestParser final : private boost::beast::http::basic_parser<true> {
   std::size_t scanned_ = 0;
   HttpRequest request_;
   RequestHead head_;
-  bool has_head_ = false;           ///< Fields that come later are trailers, which nobody asks for.
-  std::optional<Refused> refused_;  ///< Of the body.
+  bool has_head_ = false;           ///< Later fields are trailers, which are ignored.
+  std::optional<Refused> refused_;  ///< Reason to refuse the body.
 };
 
 }  // namespace pendulum::wire

@@ -17,7 +17,7 @@ tl::unexpected<Status> WrongTarget(std::string_view which, std::string_view text
                "the " + std::string(which) + " " + Quoted(text) + " " + std::string(fault));
 }
 
-/// A piece of a target without its escapes. `which`: what it is, for messages.
+/// A decoded piece of a target. `which`: its name in messages.
 Result<std::string> DecodedPiece(std::string_view piece, std::string_view which) {
   auto decoded = WithoutEscapes(piece);
   if (!decoded) {
@@ -52,7 +52,7 @@ Result<std::string> DecodedPath(std::string_view path) {
   if (path == "/") return "/";
   std::string decoded;
   while (!path.empty()) {
-    path.remove_prefix(1);  // the slash
+    path.remove_prefix(1);  // the leading slash
     const std::string_view segment = path.substr(0, path.find('/'));
     auto name = DecodedSegment(segment);
     if (!name) return name;
@@ -74,7 +74,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DecodedQuery(std::strin
   while (!query.empty()) {
     const std::string_view item = query.substr(0, query.find('&'));
     query.remove_prefix(std::min(query.size(), item.size() + 1));
-    if (item.empty()) continue;  // as browsers read it
+    if (item.empty()) continue;  // as browsers do
     const std::size_t equals = item.find('=');
     auto name = DecodedFormText(item.substr(0, equals), "name of a query parameter");
     if (!name) return tl::unexpected(name.error());
@@ -89,7 +89,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DecodedQuery(std::strin
   return parameters;
 }
 
-/// What stands before the authority of a target in absolute form; none of another.
+/// Length of the text before the authority of a target in absolute form; std::nullopt for other forms.
 std::size_t SchemeLength(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (IsSameWord(target.substr(0, scheme.size()), scheme)) return scheme.size();

@@ -42,7 +42,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/healthz", Lane::kQuick, kAll, QueryKind::kNone, GetHealth},
     Route{"GET", "/metrics", Lane::kQuick, kHolders, QueryKind::kNone, GetMetrics},
     Route{"GET", "/openapi.json", Lane::kQuick, kHolders, QueryKind::kNone, GetOpenApi},
-    // The page decides itself what its paths show; its queries are its own.
+    // The page itself interprets its paths and queries.
     Route{"GET", "/", Lane::kQuick, kAll, QueryKind::kOwn, GetPage},
     Route{"GET", "/fits", Lane::kQuick, kAll, QueryKind::kOwn, GetPage},
     Route{"GET", "/fits/{id}", Lane::kQuick, kAll, QueryKind::kOwn, GetPage},
@@ -54,7 +54,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/app.css", Lane::kQuick, kAll, QueryKind::kNone, GetStyle},
 };
 
-/// What stands for {id}, empty where the pattern has none; nothing where the path is no instance of it.
+/// The text in place of {id}, empty if the pattern has none; std::nullopt if the path does not match.
 std::optional<std::string_view> MatchPath(std::string_view pattern, std::string_view path) {
   constexpr std::string_view kId = "{id}";
   const std::size_t open = pattern.find(kId);

@@ -12,13 +12,13 @@
 
 namespace pendulum {
 
-/// Whose query a route takes.
+/// Query parameters of a route.
 enum class QueryKind {
   kNone,  ///< No parameters.
-  kOwn,   ///< The answer itself checks them.
+  kOwn,   ///< The handler checks them.
 };
 
-/// A path and a method that are answered.
+/// A path and a method with a handler.
 struct Route {
   std::string_view method;
   std::string_view path;  ///< "/v1/fits/{id}"
@@ -30,16 +30,16 @@ struct Route {
 
 std::span<const Route> Routes();
 
-/// A path as a route has it: whether it is an instance of the route's, and what stands for {id} in it.
+/// The route of a path, and the text in place of {id}.
 struct Match {
-  const Route* route = nullptr;  ///< Null: of that method there is none.
+  const Route* route = nullptr;  ///< nullptr: no route has this path and method.
   std::string id;
-  std::string allowed;  ///< The methods that the path has, "GET, HEAD, POST"; empty: there is no such path.
+  std::string allowed;  ///< The methods of the path, "GET, HEAD, POST"; empty: unknown path.
 };
 
 Match FindRoute(std::string_view method, std::string_view path);
 
-/// What the path of a target is an instance of; "other" for none.
+/// The pattern that a target's path matches; "other" if none.
 std::string_view PatternOf(std::string_view path);
 
 }  // namespace pendulum

@@ -16,10 +16,10 @@ namespace {
 constexpr std::size_t kRunTailLook = std::size_t{4} << 20;         // bytes
 constexpr std::size_t kRunTailBlock = std::size_t{1} << 16;        // bytes
 constexpr std::size_t kRunTailHead = 512;                          // bytes
-constexpr std::size_t kRunTailLongestLine = std::size_t{1} << 17;  // bytes; a calibration has 64 KiB at most
+constexpr std::size_t kRunTailLongestLine = std::size_t{1} << 17;  // bytes; a calibration has at most 64 KiB
 constexpr double kRunTailSilence = 60;                             // s; record_pendulum writes once a second
 
-/// Bytes of a file from an offset on; fewer than there is room for at its end, or where it cannot be read.
+/// Reads bytes of a file from an offset; fewer than `room` at its end or after an error.
 std::string_view ReadAt(int descriptor, std::uintmax_t offset, std::span<char> room) {
   const ssize_t size = ::pread(descriptor, room.data(), room.size(), static_cast<off_t>(offset));
   return {room.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
@@ -51,7 +51,7 @@ std::optional<RunTail::Sight> RunTail::Find(const std::filesystem::path& path) {
   return ::stat(path.c_str(), &status) == 0 ? SightOf(status) : std::nullopt;
 }
 
-/// Gives whether there was anything to forget.
+/// Returns whether there was anything to forget.
 bool RunTail::Forget() {
   offset_ = 0;
   head_.clear();
@@ -60,7 +60,7 @@ bool RunTail::Forget() {
   return descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) == 0;
 }
 
-/// Whether it goes on from where it was read to: a new run in the same file is shorter, or begins otherwise.
+/// Whether the file continues the data read so far. A new run in the same file is shorter or has another beginning.
 bool RunTail::IsFollowed(const Sight& file) const {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) return false;

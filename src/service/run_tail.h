@@ -12,17 +12,17 @@
 
 namespace pendulum {
 
-/// Opens a regular file for reading without waiting for anything; -1 where there is none.
+/// Opens a regular file for reading without blocking; -1 on failure.
 int OpenRegularFile(const std::filesystem::path& path);
 
-/// The file that record_pendulum --out PATH writes, followed: PATH.part while it is there, else PATH.
+/// Follows the file that record_pendulum --out PATH writes: PATH.part while it exists, otherwise PATH.
 class RunTail {
  public:
-  /// What has come since the last look.
+  /// New data since the last look.
   struct News {
-    bool is_another = false;  ///< It belongs to another file than what came before; with no lines, to none.
-    bool has_more = false;    ///< There was more than one look takes.
-    std::string lines;        ///< Whole lines, some megabytes at most.
+    bool is_another = false;  ///< The lines are from another file than before; without lines there is no file.
+    bool has_more = false;    ///< There is more data than one look reads.
+    std::string lines;        ///< Complete lines, some megabytes at most.
   };
 
   explicit RunTail(const std::filesystem::path& run);
@@ -34,15 +34,15 @@ class RunTail {
 
   News Look();
 
-  /// Whether the part is there, and was written to within a minute.
+  /// Whether the part file exists and was written to in the last minute.
   bool is_growing() const { return is_growing_; }
 
  private:
-  /// A file as a directory shows it.
+  /// Attributes of a file in its directory.
   struct Sight {
     std::uintmax_t device, node;
     std::uintmax_t size;  // bytes
-    double age;           // s since it was written to
+    double age;           // s since it was last written
   };
 
   static std::optional<Sight> SightOf(const struct stat& status);
@@ -53,12 +53,12 @@ class RunTail {
   void TakeBytes(std::string_view bytes, std::string& lines);
 
   std::filesystem::path run_, part_;
-  int descriptor_ = -1;  // Of the file that is followed.
+  int descriptor_ = -1;  // Descriptor of the followed file.
   bool is_growing_ = false;
-  std::uintmax_t offset_ = 0;      // Of the next byte.
-  std::string head_;               // The first bytes, which tell one run from another.
-  std::string unfinished_;         // A line whose end is not there yet.
-  bool is_line_too_long_ = false;  // It is passed over.
+  std::uintmax_t offset_ = 0;      // Offset of the next byte.
+  std::string head_;               // The first bytes, which identify the run.
+  std::string unfinished_;         // A line without its end.
+  bool is_line_too_long_ = false;  // The rest of the line is skipped.
 };
 
 }  // namespace pendulum

@@ -26,10 +26,10 @@ namespace asio = boost::asio;
 using boost::asio::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
-/// After an accept that failed, such as for want of file descriptors, which does not change by asking again.
+/// Pause after a failed accept, for example without free file descriptors; an immediate retry would fail too.
 constexpr std::chrono::milliseconds kAfterFailedAccept{100};
 
-/// Connections beyond the limit that are told so at a time; more are closed without a word.
+/// Rejected connections that get an answer at the same time; further ones are closed without one.
 constexpr std::size_t kMaxTurnedAway = 64;
 
 std::size_t ThreadsOf(int threads) {
@@ -59,7 +59,7 @@ struct Server::State {
   void EndStop();
   void DropAll();
 
-  // In an order that lets everything go before what it refers to.
+  // Members are in an order in which each is destroyed before those it refers to.
   const ServerOptions options;
   wire::ByteBudget budget;
   asio::io_context io{1};
@@ -97,7 +97,7 @@ void Server::State::Accept() {
   acceptor.async_accept([this](const ErrorCode& code, tcp::socket socket) {
     if (!acceptor.is_open()) return;
     if (!code) {
-      Accept();  // first, for what throws below costs this connection only
+      Accept();  // first, so an exception below affects only this connection
       return Take(std::move(socket));
     }
     pause.expires_after(kAfterFailedAccept);
@@ -107,12 +107,12 @@ void Server::State::Accept() {
   });
 }
 
-/// Who holds many connections and asks nothing keeps nobody out for long.
+/// Closes the connection that has been idle longest, so idle connections cannot block new clients.
 void Server::State::MakeRoom() {
   const auto patience = [](const auto& connection) { return connection->waited(); };
   const auto longest = std::ranges::max_element(connections, {}, patience);
   if (longest == connections.end() || patience(*longest) <= options.yield_time) return;
-  const auto taken_out = connections.extract(longest);  // which keeps it, while it tells that it is closed
+  const auto taken_out = connections.extract(longest);  // keeps it alive while it reports its end
   taken_out.value()->Close();
 }
 
@@ -188,7 +188,7 @@ void Server::Run() {
     try {
       state_->io.run();
       is_done = true;
-    } catch (const std::exception&) {  // no memory for one: its limit will close it
+    } catch (const std::exception&) {  // out of memory for this connection; its time limit will close it
       continue;
     }
   }

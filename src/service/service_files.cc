@@ -26,7 +26,7 @@ std::span<const Example> Examples() {
 }
 
 std::string OpenApiDocument() {
-  // References of the schema are to its own definitions, wherever it stands.
+  // References in the schema point to its own definitions; they must work inside the document.
   std::string schema(ResultSchema());
   constexpr std::string_view kOwn = "\"#/$defs/", kInDocument = "\"#/components/schemas/Result/$defs/";
   for (std::size_t at = 0; (at = schema.find(kOwn, at)) != std::string::npos; at += kInDocument.size()) {

@@ -7,23 +7,23 @@
 
 namespace pendulum {
 
-/// A recording to try the service with.
+/// A recording for trying the service.
 struct Example {
-  std::string_view name;   ///< In paths.
+  std::string_view name;   ///< Used in paths.
   std::string_view title;  ///< "A run to rest"
   std::string_view about;
-  std::string_view models;     ///< As --model.
+  std::string_view models;     ///< In the form of --model.
   std::string_view recording;  ///< CSV
-  std::string_view rig;        ///< JSON; empty for none.
+  std::string_view rig;        ///< JSON; empty: none.
 };
 
-/// Some of datasets/, each with a truth that a fit should find.
+/// Some of datasets/, each with known true values.
 std::span<const Example> Examples();
 
-/// openapi.json with the schema of results in it.
+/// openapi.json with the schema of results inserted.
 std::string OpenApiDocument();
 
-// Files as they are, embed_file.cmake's: the page of src/report/page/dist, openapi.json and what belongs into it,
+// Files embedded unchanged by embed_file.cmake: the page of src/report/page/dist, openapi.json and its parts,
 // recordings and rigs of datasets/.
 std::string_view ServicePage();
 std::string_view ServiceScript();

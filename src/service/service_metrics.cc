@@ -28,12 +28,12 @@ using prometheus::Family;
 using prometheus::Gauge;
 using prometheus::Histogram;
 
-/// s, of answers and fits: a short fit takes some ten milliseconds, the longest that is let go on half a minute.
+/// s, for answers and fits: a short fit takes some ten milliseconds, the longest permitted one half a minute.
 const std::vector<double> kSeconds = {0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
 
 double Seconds(std::chrono::duration<double> time) { return time.count(); }
 
-/// Bytes of the process that are in memory.
+/// Resident memory of the process in bytes.
 double ResidentBytes() {
   std::ifstream statm("/proc/self/statm");
   double all = 0, resident = 0;
@@ -41,7 +41,7 @@ double ResidentBytes() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-/// s that the process has had of processors.
+/// CPU time of the process in seconds.
 double CpuSeconds() {
   struct rusage usage {};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -51,7 +51,7 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// How a fit ended, by its exit code.
+/// Outcome of a fit from its exit code.
 std::string_view OutcomeOf(int exit_code) {
   return exit_code == 0 ? "converged" : exit_code == 1 ? "not_converged" : "failed";
 }
@@ -63,7 +63,7 @@ struct ServiceMetrics::State {
     return BuildGauge().Name(name).Help(help).Register(registry).Add({});
   }
 
-  /// Counters that others keep: what they say is what is told.
+  /// Counters kept elsewhere; their values are copied.
   Counter& AddCounter(const std::string& name, const std::string& help) {
     return BuildCounter().Name(name).Help(help).Register(registry).Add({});
   }
@@ -91,7 +91,7 @@ struct ServiceMetrics::State {
   Counter& accepted = AddCounter("pendulum_http_connections_total", "Connections that were accepted.");
   Counter& refused = AddCounter("pendulum_http_requests_refused_total", "Requests that never came to be worked on.");
 
-  std::mutex mutex;  // of what follows, and of the counters that others keep
+  std::mutex mutex;  // for the members below and the counters kept elsewhere
   std::function<ServerCounts()> server;
 };
 

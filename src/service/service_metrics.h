@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// What a service counts, in Prometheus' text format. For any thread.
+/// Counters of the service in Prometheus' text format. For any thread.
 class ServiceMetrics {
  public:
   ServiceMetrics();
@@ -21,19 +21,19 @@ class ServiceMetrics {
   ServiceMetrics& operator=(ServiceMetrics&&) = delete;
   ~ServiceMetrics();
 
-  /// An answer: `route` is a path with {id} for what differs, so that there are few of them.
+  /// Counts an answer. `route`: the path with {id} for the variable part, so that there are few routes.
   void CountAnswer(const std::string& method, const std::string& route, int status, std::chrono::microseconds time);
 
-  /// A fit that was made: `kind` is request or batch.
+  /// Counts a finished fit; `kind` is request or batch.
   void CountFit(const std::string& kind, int exit_code, std::chrono::steady_clock::duration time);
 
-  /// A run of a batch that has to wait until the store can be had again.
+  /// Counts a run of a batch that must wait because the store is not available.
   void CountRetry();
 
-  /// What the server says of itself when the metrics are asked for.
+  /// Sets the source of the server's numbers.
   void set_server(std::function<ServerCounts()> counts);
 
-  /// All of it, with `waiting` runs of batches.
+  /// All metrics, with `waiting` waiting runs of batches.
   std::string Text(std::size_t waiting);
 
  private:

@@ -20,10 +20,10 @@
 
 namespace pendulum {
 
-/// Keys of requests that are being worked on.
+/// Keys of requests in progress.
 class KeysUnderWay {
  public:
-  /// False: another request with the key is being worked on.
+  /// False: another request with this key is in progress.
   bool Begin(const std::string& key) {
     const std::scoped_lock lock(mutex_);
     return keys_.insert(key).second;
@@ -39,7 +39,7 @@ class KeysUnderWay {
   std::set<std::string> keys_;
 };
 
-/// What all requests of a service share.
+/// State shared by all requests of a service.
 struct ServiceState {
   ServiceState(ServiceOptions given, std::unique_ptr<FitStore> kept)
       : options(std::move(given)),
@@ -50,7 +50,7 @@ struct ServiceState {
     if (!options.live.empty()) live.emplace(options.live);
   }
 
-  /// Runs of batches leave the processor to requests, so they may take longer.
+  /// Runs of batches have a lower priority, so they may take longer.
   static constexpr int kBatchPatience = 4;
 
   ServiceOptions options;
@@ -60,14 +60,14 @@ struct ServiceState {
   KeysUnderWay keys;
   std::optional<LiveRecording> live;
   std::atomic<bool> is_stopping = false;
-  BatchQueue queue;  // last: its threads use what stands above
+  BatchQueue queue;  // last member: its threads use the members above
 };
 
-/// One request on its way to an answer.
+/// One request that is being answered.
 struct Call {
   const HttpRequest& http;
   RequestTarget target;
-  std::string id;  ///< What stands for {id} or {name} in the path.
+  std::string id;  ///< The text in place of {id} or {name} in the path.
 };
 
 using Answer = HttpResponse (*)(ServiceState& state, const Call& call);

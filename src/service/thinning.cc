@@ -9,7 +9,7 @@
 namespace pendulum {
 namespace {
 
-/// The least and the largest value of [first, end), in the order they come; none where all are NaN.
+/// Appends the smallest and the largest value of [first, end), in their order; nothing if all are NaN.
 void AppendExtremes(std::span<const double> value, std::size_t first, std::size_t end,
                     std::vector<Eigen::Index>& chosen) {
   std::size_t least = end, largest = end;

@@ -30,7 +30,7 @@ void TimeLimit::StopAll() {
 void TimeLimit::Work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
-    std::uint64_t due = next_;  // the first that has not been stopped
+    std::uint64_t due = next_;  // the first one that was not stopped
     Clock::time_point end = Clock::time_point::max();
     for (const auto& [number, running] : running_) {
       if (running.watch->source_.stop_requested()) continue;

@@ -11,7 +11,7 @@ WorkQueue::WorkQueue(std::size_t threads, std::size_t max_waiting) {
   try {
     while (threads_.size() < threads) threads_.emplace_back([this] { Run(); });
   } catch (const std::system_error&) {
-    // Those that there are will do.
+    // Continues with the threads that could be started.
   }
   most_ = threads_.empty() ? 0 : threads_.size() + max_waiting;
 }
@@ -27,7 +27,7 @@ bool WorkQueue::Offer(std::function<void()> work) {
 }
 
 void WorkQueue::Close() {
-  std::deque<std::function<void()>> dropped;  // goes without the lock, and before what runs is awaited
+  std::deque<std::function<void()>> dropped;  // destroyed without the lock, before the wait for running work
   {
     const std::lock_guard lock(mutex_);
     is_closed_ = true;
@@ -59,7 +59,7 @@ void WorkQueue::Run() {
     ++running_;
     lock.unlock();
     work();
-    work = nullptr;  // what it holds goes before it counts as done
+    work = nullptr;  // releases its objects before it counts as done
     lock.lock();
     --running_;
   }

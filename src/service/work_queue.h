@@ -11,10 +11,10 @@
 
 namespace pendulum::wire {
 
-/// Work for a few threads, first come first served, of which only so much may wait. For any thread.
+/// Runs work on a few threads, first come, first served, with a limit for waiting work. For any thread.
 class WorkQueue {
  public:
-  /// Throws std::system_error where threads cannot be had.
+  /// Throws std::system_error if no thread can be started.
   WorkQueue(std::size_t threads, std::size_t max_waiting);
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
@@ -22,10 +22,10 @@ class WorkQueue {
   WorkQueue& operator=(WorkQueue&&) = delete;
   ~WorkQueue();
 
-  /// False where all threads are busy and no more may wait, or it is closed. `work` must not throw.
+  /// False if all threads are busy and the queue is full, or it is closed. `work` must not throw.
   bool Offer(std::function<void()> work);
 
-  /// Drops what waits and returns once what runs has run.
+  /// Drops waiting work and returns when running work is done.
   void Close();
 
   std::size_t waiting() const;
@@ -34,7 +34,7 @@ class WorkQueue {
  private:
   void Run();
 
-  std::size_t most_ = 0;  ///< That run and wait.
+  std::size_t most_ = 0;  ///< Limit for running and waiting work.
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;

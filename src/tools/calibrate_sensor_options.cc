@@ -11,15 +11,15 @@
 namespace pendulum {
 namespace {
 
-constexpr int kUsualBits = 10;  // of the ATmega328P
+constexpr int kUsualBits = 10;  // bits of the ATmega328P's converter
 
-/// A quantity that nothing sensible exceeds and no computation overflows with.
+/// Checks a quantity against limits that no sensible value exceeds and no computation overflows with.
 Result<void> CheckQuantity(const std::string& flag, double value, double most) {
   if (value >= 1e-6 && value <= most) return {};
   return BadFlag(flag + " is " + NumberText(value) + "; it must be positive, 0.000001 to " + NumberText(most));
 }
 
-/// A flag that was given although it says nothing of what is to be done.
+/// Refuses a flag that has no effect on the requested task.
 Result<void> CheckBelongs(bool is_given, const std::string& flag, bool plan) {
   if (!is_given) return {};
   return BadFlag(flag + (plan ? " belongs to the calibration of a table; leave it or --plan out"

@@ -11,37 +11,37 @@
 
 namespace pendulum {
 
-/// The flags of calibrate_sensor as they were given.
+/// The flags of calibrate_sensor as given.
 struct CalibrateSensorFlags : CalibrationFlags {
-  std::string data;  ///< Path, "-" for stdin, or empty.
-  std::string json;  ///< Path, "-" for stdout, or empty for none.
-  std::string plot;  ///< As json.
+  std::string data;  ///< Path, "-" for stdin; empty: none.
+  std::string json;  ///< Path, "-" for stdout; empty: none.
+  std::string plot;  ///< Path as for json.
   bool plan = false;
-  std::string reference_voltage;  ///< "volts,...", or empty.
+  std::string reference_voltage;  ///< "volts,..."; empty: none.
   double supply_voltage = 5;      ///< V
   double potentiometer_range_deg = 270;
   double divider = 1;
-  std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// What calibrate_sensor is to do: plan sensors when there are any, else calibrate one.
+/// The task of calibrate_sensor: a plan of sensors if there are any, otherwise a calibration.
 struct CalibrateSensorOptions : CalibrationOptions {
   std::string data;  ///< As in the flags.
   std::string json;  ///< As in the flags.
   std::string plot;
   std::vector<AdcSensor> plan;
 
-  /// The files to be written, with their flags.
+  /// The output files, with their flags.
   std::vector<NamedFile> Outputs() const;
 
-  /// The files to be read, with their flags.
+  /// The input files, with their flags.
   std::vector<NamedFile> Inputs() const;
 };
 
-/// Checks the flags and turns them into what is to be done.
+/// Checks the flags and converts them to options.
 ///
-/// kInvalidArgument: neither a table nor a plan or both, a flag that belongs to the other of them, a number outside its
-/// domain, something that belongs to no flag; the message names the flag.
+/// kInvalidArgument: neither a table nor a plan, or both; a flag that belongs to the other task; a number outside its
+/// domain; an argument without a flag. The message names the flag.
 Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorFlags& flags);
 
 }  // namespace pendulum

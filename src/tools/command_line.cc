@@ -23,7 +23,7 @@ std::string Suggestion(std::string_view name, std::span<const FlagInfo> flags) {
   return nearest.empty() ? "--help lists the flags" : "did you mean --" + nearest + "?";
 }
 
-/// The flag of that name, dashes within it standing for underscores; "noNAME" finds the boolean NAME.
+/// The flag with that name, with dashes read as underscores; "noNAME" finds the boolean NAME.
 const FlagInfo* FindFlag(std::string name, std::span<const FlagInfo> flags) {
   std::replace(name.begin(), name.end(), '-', '_');
   const auto found = std::find_if(flags.begin(), flags.end(), [&](const FlagInfo& flag) {
@@ -36,7 +36,7 @@ tl::unexpected<Status> WrongFlag(const std::string& name, const std::string& why
   return Error(StatusCode::kInvalidArgument, "--" + name + " " + why);
 }
 
-/// True unless the flag is a number and the value is none; whether it lies in the type's range is left to gflags.
+/// False for a number flag whose value is not a number; gflags checks the range of the type.
 bool Fits(const FlagInfo& flag, std::string_view value) {
   if (flag.type == "string" || flag.type == "bool") return true;
   const char* end = value.data() + value.size();
@@ -45,14 +45,14 @@ bool Fits(const FlagInfo& flag, std::string_view value) {
   return error == std::errc() && rest == end && (flag.type == "double" || number == std::floor(number));
 }
 
-/// A flag as it is given.
+/// A flag and its value from the command line.
 struct GivenFlag {
   const FlagInfo* info = nullptr;
   std::string value;
-  std::size_t arguments = 1;  ///< How many it takes.
+  std::size_t arguments = 1;  ///< Number of arguments used.
 };
 
-/// Checks the flag that begins the arguments.
+/// Checks the flag at the beginning of the arguments.
 Result<GivenFlag> CheckFlag(std::span<const std::string> arguments, std::span<const FlagInfo> flags) {
   const std::string body = arguments[0].substr(arguments[0][1] == '-' ? 2 : 1);
   const std::size_t equals = body.find('=');
@@ -70,7 +70,7 @@ Result<GivenFlag> CheckFlag(std::span<const std::string> arguments, std::span<co
   return GivenFlag{flag, value, joined ? 1U : 2U};
 }
 
-/// gflags would take the last value without a word. A switch may be repeated, for it says the same.
+/// gflags would silently use the last value. A repeated switch is allowed, because it has the same effect.
 Result<void> CheckGivenOnce(const GivenFlag& flag, std::map<std::string, std::string>& values) {
   constexpr std::array<std::string_view, 5> kLists = {"data", "fix", "init", "bounds", "prior"};
   const std::string& name = flag.info->name;

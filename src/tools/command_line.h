@@ -10,26 +10,27 @@
 
 namespace pendulum {
 
-/// A flag that a tool understands.
+/// A flag of a tool.
 struct FlagInfo {
   std::string name;             ///< Without dashes.
-  std::string help;             ///< What, unit, meaning of the default.
-  std::string type = "string";  ///< In gflags' words: bool (takes no value after a blank), string, double, int32, ...
-  bool own = true;              ///< The tool's, not a library's: shown by --help and suggested for a misspelt one.
+  std::string help;             ///< Meaning, unit and default.
+  std::string type = "string";  ///< gflags' type: bool (no value in a following argument), string, double, int32, ...
+  bool own = true;              ///< Defined by the tool, not by a library: shown by --help and suggested for misspelt
+                                ///< names.
 };
 
-/// Walks through the arguments (without the program's name) by gflags' grammar, setting nothing, and gives those that
-/// belong to no flag. gflags itself exits with 1 on what this refuses.
+/// Parses the arguments (without the program's name) by gflags' grammar, without setting flags. Returns the arguments
+/// that belong to no flag. Without this check gflags would exit with 1.
 ///
-/// kInvalidArgument: an unknown flag (the nearest own flag is suggested), a flag without its value or with an empty
-/// one, a number that is none, a flag other than a switch that is given twice.
+/// kInvalidArgument: an unknown flag (the nearest own flag is suggested), a flag without a value or with an empty one,
+/// an invalid number, a repeated flag other than a switch.
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
                                                      std::span<const FlagInfo> flags);
 
-/// The arguments with --model where --models stands: they are one flag.
+/// The arguments with --models replaced by --model; both names mean the same flag.
 std::vector<std::string> WithModelForModels(std::vector<std::string> arguments);
 
-/// What --help prints: the usage, then the own flags.
+/// The output of --help: the usage, then the own flags.
 std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);
 
 }  // namespace pendulum

@@ -52,7 +52,7 @@ CoverageFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
-/// Says on standard error how far a study is, at each tenth of it, and how long it took.
+/// Reports the progress of a study on standard error at each tenth, and the total time.
 class Progress {
  public:
   Progress(std::string scenario, int count, int runs)

@@ -11,34 +11,34 @@
 
 namespace pendulum {
 
-/// The flags of coverage_study as they were given.
+/// The flags of coverage_study as given.
 struct CoverageFlags {
   std::string scenario;  ///< name,... or all
   int count = 1000;
   int runs = 1;
   std::uint64_t seed = 1;
   int threads = 0;
-  std::string markdown;                 ///< Path, "-" for stdout, or empty for none.
-  bool list = false;                    ///< Asks for the scenarios' names.
-  std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
+  std::string markdown;                 ///< Path, "-" for stdout; empty: none.
+  bool list = false;                    ///< Lists the scenarios' names.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// What coverage_study is to do.
+/// The task of coverage_study.
 struct CoverageStudyOptions {
   std::vector<CoverageScenario> scenarios;  ///< To be studied, or listed.
   CoverageOptions study;
   bool list = false;
   std::string markdown;  ///< As in the flags.
-  std::string command;   ///< That makes the same tables again.
+  std::string command;   ///< The command that makes the same tables.
 
-  /// The files to be written, with their flags.
+  /// The output files, with their flags.
   std::vector<NamedFile> Outputs() const;
 };
 
-/// Checks the flags and turns them into what is to be done.
+/// Checks the flags and converts them to options.
 ///
-/// kInvalidArgument: no scenario or an unknown one (the message lists those there are), a number outside its domain,
-/// something that belongs to no flag; the message names the flag.
+/// kInvalidArgument: no scenario or an unknown one (the message lists the known ones), a number outside its domain, an
+/// argument without a flag. The message names the flag.
 Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags);
 
 }  // namespace pendulum

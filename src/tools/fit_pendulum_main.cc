@@ -80,7 +80,7 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
-/// The command as a shell would take it again.
+/// The command line, quoted for a shell.
 std::string CommandLine() {
   std::string command;
   for (const std::string& word : gflags::GetArgvs()) {
@@ -96,7 +96,7 @@ std::string CommandLine() {
   return command;
 }
 
-/// What is to be written of run `index` (0-based) of `count`, standard output for people apart.
+/// Adds the outputs of run `index` (0-based) of `count`, except the text for standard output.
 void RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
                  std::vector<Output>& outputs) {
   const std::vector<const Identification*> parts = run.Parts();
@@ -118,7 +118,7 @@ void RenderFiles(const FitPendulumOptions& options, const Identification& run, i
   }
 }
 
-/// The result for people, with a picture of each recording when asked for.
+/// The result as text, with a plot of each recording if requested.
 Result<std::string> TextOf(const FitPendulumOptions& options, const Identification& run) {
   std::string text;
   const std::vector<const Identification*> parts = run.Parts();
@@ -130,8 +130,8 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   return text + ToText(run, {.colour = WantsColour(STDOUT_FILENO)});
 }
 
-/// What is to be written of all runs; tables for people are joined on standard output unless data go there. What could
-/// not be fitted is said.
+/// All outputs of all runs. Text tables are joined on standard output unless data go there. Runs that could not be
+/// fitted are reported.
 Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std::vector<Result<Identification>>& runs) {
   const bool data_on_stdout =
       std::ranges::any_of(options.Outputs(), [](const NamedFile& output) { return IsStandardOutput(output.path); });
@@ -161,7 +161,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   return outputs;
 }
 
-/// Now and then how far the bootstrap is.
+/// Reports the progress of the bootstrap from time to time.
 void SayProgress(int done, int total) {
   Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
 }

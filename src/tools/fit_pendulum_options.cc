@@ -33,7 +33,7 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
   return {};
 }
 
-/// Closed forms make nothing that only a fit has.
+/// Refuses outputs that closed forms alone cannot provide.
 Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
   if (!flags.shared.empty() && flags.shared != "none") return NeedsAFit("--shared");
@@ -42,7 +42,7 @@ Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   return {};
 }
 
-/// What recordings share: all of inertia and friction unless it is said.
+/// Parses the parameters that recordings share; the default is all of inertia and friction.
 Result<void> ParseShared(const FitPendulumFlags& flags, FitPendulumOptions& options) {
   const std::vector<std::string> all = PhysicalNames(options.models);
   options.shared = all;
@@ -60,7 +60,7 @@ Result<void> ParseShared(const FitPendulumFlags& flags, FitPendulumOptions& opti
   return {};
 }
 
-/// A joint fit has the intervals of its covariance, or profiles.
+/// A joint fit has intervals from its covariance or from profiles only.
 Result<void> CheckJoint(const FitPendulumFlags& flags, const FitPendulumOptions& options) {
   const bool joint = options.IsJoint(options.data.size()) || (!flags.data_list.empty() && options.IsJoint(2));
   if (!joint || options.fit.interval != IntervalMethod::kBootstrap) return {};

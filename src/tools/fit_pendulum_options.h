@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// The flags of fit_pendulum as they were given; empty, or the default, where they were not.
+/// The flags of fit_pendulum as given; empty or the default if not given.
 struct FitPendulumFlags : RunFlags {
   std::string data;
   std::string data_list;
@@ -22,40 +22,41 @@ struct FitPendulumFlags : RunFlags {
   std::string markdown;
   std::string shared;
   bool terminal_plot = false;
-  std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// Whether recordings are fitted together: unless it is said, several recordings are, and the releases of one are not.
+/// Whether recordings are fitted together. By default several recordings are, and several releases of one recording are
+/// not.
 enum class Sharing { kByDefault, kNothing, kAsked };
 
-/// What fit_pendulum is asked to do.
+/// The task of fit_pendulum.
 struct FitPendulumOptions : IdentifyOptions {
   std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
-  std::string data_list;          ///< Path of a file that lists them instead; empty for none.
-  std::string calibration;        ///< Path; empty for none. ReadOptions::calibration is for the caller to read from it.
-  std::string rig;        ///< Path of the rig file; empty for none. FitOptions::rig is for the caller to read from it.
-  std::string json;       ///< Path of the result; "-" is standard output; empty for none.
-  std::string residuals;  ///< Path of the samples beside the fit; "-" is standard output; empty for none.
-  std::string series;     ///< Path of the same with turning points and models; "-" is standard output; empty for none.
-  std::string report;     ///< Path of the page that shows all of it; "-" is standard output; empty for none.
-  std::string markdown;   ///< Path of the result for a notebook; "-" is standard output; empty for none.
-  bool terminal_plot = false;  ///< Draws the recording on standard output.
+  std::string data_list;          ///< Path of a file that lists the recordings instead; empty: none.
+  std::string calibration;        ///< Path; empty: none. The caller reads ReadOptions::calibration from it.
+  std::string rig;                ///< Path of the rig file; empty: none. The caller reads FitOptions::rig from it.
+  std::string json;               ///< Path of the result; "-" is standard output; empty: none.
+  std::string residuals;          ///< Path of samples and fit; "-" is standard output; empty: none.
+  std::string series;    ///< Path of samples, fit, turning points and models; "-" is standard output; empty: none.
+  std::string report;    ///< Path of the HTML page with all results; "-" is standard output; empty: none.
+  std::string markdown;  ///< Path of the result as Markdown; "-" is standard output; empty: none.
+  bool terminal_plot = false;  ///< Plots the recording on standard output.
   Sharing sharing = Sharing::kByDefault;
 
-  /// The files that fit `index` (0-based) of `count` writes, with their flags: numbered where there are several.
+  /// The output files of fit `index` (0-based) of `count`, with their flags; numbered if there are several fits.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;
 
-  /// Those of one joint fit of `recordings`: numbered are the residuals of each.
+  /// The output files of one joint fit of `recordings`; the residuals of each recording are numbered.
   std::vector<NamedFile> JointOutputs(int recordings) const;
 
-  /// Whether that many recordings are fitted together.
+  /// Whether this many recordings are fitted together.
   bool IsJoint(std::size_t recordings) const;
 
-  /// The files to be read, with their flags.
+  /// The input files, with their flags.
   std::vector<NamedFile> Inputs() const;
 };
 
-/// Turns flags into options. kInvalidArgument: a flag is missing, wrong or contradicts another; the message names it.
+/// Converts flags to options. kInvalidArgument: a flag is missing, wrong or contradicts another; the message names it.
 Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags);
 
 }  // namespace pendulum

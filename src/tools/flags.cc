@@ -19,7 +19,7 @@ namespace {
 
 bool gflags_is_parsing = false;
 
-/// gflags exits with 1 on a flag it refuses; the tools' code for that is 2.
+/// gflags exits with 1 on a flag that it refuses; the tools use 2.
 void ExitWithTwo() {
   if (gflags_is_parsing) std::_Exit(ExitCode(StatusCode::kInvalidArgument));
 }

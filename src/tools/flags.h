@@ -9,19 +9,18 @@
 
 namespace pendulum {
 
-/// What the command line asks for, once the FLAGS_ variables are set.
+/// The result of parsing; the FLAGS_ variables are set.
 struct ParsedFlags {
-  std::string answer;                   ///< What --help or --version prints; empty when the tool is to do its work.
-  std::vector<std::string> positional;  ///< What belongs to no flag.
+  std::string answer;                   ///< The text of --help or --version; empty if the tool is to run.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag.
 };
 
-/// Whether a flag is defined beside `main_file`, not in a library. Files are as __FILE__ gives them: the compiler may
-/// spell the way to one folder differently for a source file and for a header, so the name of the folder alone is
-/// compared.
+/// Whether a flag is defined in the folder of `main_file`, and not in a library. Both paths come from __FILE__. The
+/// compiler may spell the path of a folder differently for sources and headers, so only the folder's name is compared.
 bool IsOwnFlag(std::string_view flag_file, std::string_view main_file);
 
-/// Sets the flags that `main_file` (its __FILE__), what lies beside it and the libraries define. The process exits with
-/// 2, never 1, should gflags refuse what PositionalArguments let through. `usage` begins the help.
+/// Sets the flags of `main_file` (its __FILE__), of its folder and of the libraries. If gflags refuses a flag that
+/// passed PositionalArguments, the process exits with 2, never 1. The help begins with `usage`.
 ///
 /// kInvalidArgument: as PositionalArguments.
 Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file, std::string_view usage);

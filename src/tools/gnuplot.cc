@@ -25,7 +25,8 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Without a name, gone when closed. A child that reads and writes such files cannot wait for us, as it could on pipes.
+/// A file without a name, deleted when closed. With pipes parent and child could wait for each other; with such files
+/// they cannot.
 using TemporaryFile = std::unique_ptr<std::FILE, Close>;
 
 std::string Contents(std::FILE* file) {
@@ -36,7 +37,7 @@ std::string Contents(std::FILE* file) {
   return text;
 }
 
-/// What becomes standard input, output and error of the child.
+/// Standard input, output and error of the child.
 struct ChildFiles {
   std::array<TemporaryFile, 3> files = {TemporaryFile(std::tmpfile()), TemporaryFile(std::tmpfile()),
                                         TemporaryFile(std::tmpfile())};
@@ -51,7 +52,7 @@ struct ChildFiles {
   }
 };
 
-/// Runs gnuplot and waits; gives its exit status, 0 when all is well, or what posix_spawnp says.
+/// Runs gnuplot and waits. `status` gets its exit status, 0 on success; returns the error of posix_spawnp.
 std::error_code Spawn(std::vector<std::string> arguments, const ChildFiles& child, int& status) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -70,7 +71,7 @@ std::error_code Spawn(std::vector<std::string> arguments, const ChildFiles& chil
   return {};
 }
 
-/// The first line that is not blank, as a message may show it.
+/// The first line that is not blank, quoted for a message.
 std::string FirstWords(std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t\n"), text.size());
   return Quoted(text.substr(begin, text.find('\n', begin) - begin));

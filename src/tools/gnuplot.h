@@ -7,11 +7,11 @@
 
 namespace pendulum {
 
-/// kCannotWrite: there is no gnuplot to draw with; the message names the package that has it.
+/// kCannotWrite: gnuplot is not installed; the message names its package.
 Result<void> CheckGnuplot();
 
-/// What gnuplot, the one that PATH finds, writes to its standard output when it reads the script. Runs no shell and
-/// none of the user's start files. kCannotWrite: there is no gnuplot, or it fails: its own words follow.
+/// Runs gnuplot from PATH with the script and returns its standard output. No shell and none of the user's start files
+/// are used. kCannotWrite: gnuplot is missing or fails; the message includes its own.
 Result<std::string> RunGnuplot(const std::string& script);
 
 }  // namespace pendulum

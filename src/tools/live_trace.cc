@@ -12,14 +12,14 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kMostColumns = 66, kLabel = 9;  // of the picture, and of the numbers beside it
+constexpr std::size_t kMostColumns = 66, kLabel = 9;  // columns of the plot, and of the numbers next to it
 constexpr std::size_t kPictureRows = LiveTrace::kRows - 1;
 
 std::string RightAligned(const std::string& text, std::size_t width) {
   return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
 }
 
-/// With so many decimals: numbers in a column that is drawn again and again must not change their width.
+/// A number with fixed decimals. A column that is redrawn must keep its width.
 std::string Fixed(double value, int decimals) {
   const double scale = std::pow(10, decimals);
   std::string text = std::to_string(std::round(std::abs(value) * scale) / scale);
@@ -27,7 +27,7 @@ std::string Fixed(double value, int decimals) {
   return (text.find_first_not_of("0.") != std::string::npos && value < 0 ? "-" : "") + text;
 }
 
-/// The smallest and largest value of a column.
+/// The smallest and the largest value in a column.
 struct Span {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 };
@@ -42,7 +42,7 @@ void LiveTrace::Take(double time, double value, double counts, double full_scale
 }
 
 std::vector<std::string> LiveTrace::Plot(std::size_t width) const {
-  constexpr std::size_t kBesides = kLabel + 3;  // label, blank, frame, and one to spare
+  constexpr std::size_t kBesides = kLabel + 3;  // label, blank, frame, and one in reserve
   std::vector<std::string> rows(kRows);
   if (points_.empty() || width < kBesides + 2) return rows;
   const std::size_t columns = std::min(kMostColumns, width - kBesides);
@@ -58,7 +58,7 @@ std::vector<std::string> LiveTrace::Plot(std::size_t width) const {
     low = std::min(low, point.value);
     high = std::max(high, point.value);
   }
-  const double least = 2;  // deg or counts: noise alone shall not fill the picture
+  const double least = 2;  // deg or counts: noise alone must not fill the plot
   if (high - low < least) std::tie(low, high) = std::pair((low + high - least) / 2, (low + high + least) / 2);
   const double step = (high - low) / (kPictureRows - 1);
   for (std::size_t row = 0; row < kPictureRows; ++row) {

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True for what is written to as it stands: a pipe, a terminal, another device.
+/// True for a pipe, a terminal or another device, which is written directly.
 bool IsStream(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -32,10 +32,10 @@ bool IsStream(const std::string& path) {
 
 fs::path FolderOf(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-/// What the names of files stand for; what is found out about a folder is found out once.
+/// Identifies files by name; each folder is examined only once.
 class Identities {
  public:
-  /// The same for all names of one file, be it there or not; empty when that cannot be told.
+  /// Equal for all names of one file, existing or not; empty if it cannot be determined.
   std::string Of(const std::string& path) {
     if (IsStandardOutput(path)) return "-";
     struct stat file {};
@@ -73,7 +73,7 @@ bool IsRedirectionOfStdout(const std::string& path) {
          file.st_dev == out.st_dev && file.st_ino == out.st_ino;
 }
 
-/// `proven` are folders in which a file has been opened.
+/// `proven`: folders in which a file was already opened.
 Result<void> CheckWritable(const std::string& path, std::set<fs::path>& proven) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -90,7 +90,7 @@ Result<void> CheckWritable(const std::string& path, std::set<fs::path>& proven) 
   return {};
 }
 
-/// For each output the flag of the first one after it that is the same file; empty where there is none.
+/// For each output the flag of the first later output that is the same file; empty if there is none.
 std::vector<std::string> FlagsOfTheSame(std::span<const NamedFile> outputs, std::span<const std::string> identities) {
   std::vector<std::string> flags(outputs.size());
   std::unordered_map<std::string_view, std::size_t> later;
@@ -101,7 +101,7 @@ std::vector<std::string> FlagsOfTheSame(std::span<const NamedFile> outputs, std:
   return flags;
 }
 
-/// Writes to a stream as the pieces come.
+/// Writes pieces to a stream as they arrive.
 Result<void> WriteStream(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run) {
   const bool standard = IsStandardOutput(path);
   const std::string name = standard ? "standard output" : path;
@@ -183,7 +183,7 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
 
 namespace {
 
-/// A stream takes its text at once, for it cannot be taken back.
+/// Output to a stream is written at once, because it cannot be undone.
 Result<void> WriteStreamOfPieces(const std::string& path, int count,
                                  const std::function<Result<std::string>(int)>& piece) {
   Output output{path, ""};
@@ -222,7 +222,7 @@ Result<void> SynchroniseFileSystem(const std::string& path) {
   const fs::path folder = FolderOf(FollowLinks(path));
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) {
-    ::sync();  // A folder that may be written to but not read: all file systems, then.
+    ::sync();  // A folder that can be written but not read: all file systems are synchronised.
     return {};
   }
   const bool synchronised = ::syncfs(descriptor) == 0;

@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-constexpr int kReadAndWrite = 0666;  // less what the umask takes
+constexpr int kReadAndWrite = 0666;  // before the umask is applied
 
 bool IsFileOrAbsent(const std::string& path) {
   std::error_code error;

@@ -8,11 +8,11 @@
 
 namespace pendulum {
 
-/// What is there of a recording while it is being made: beside its place under the name PATH.part, a recording that can
-/// be read at any time, so that neither a crash nor a loss of power loses more than a second. Nothing for a stream.
+/// The incomplete recording on disk, named PATH.part. It can be read at any time, so a crash or a loss of power costs
+/// at most a second of data. A stream has no part file.
 class PartFile {
  public:
-  /// `path`: where the whole recording will be; empty for nowhere.
+  /// `path`: final path of the recording; empty: none.
   explicit PartFile(const std::string& path);
   PartFile(const PartFile&) = delete;
   PartFile(PartFile&&) = delete;
@@ -20,19 +20,19 @@ class PartFile {
   PartFile& operator=(PartFile&&) = delete;
   ~PartFile();
 
-  /// Whether the part of an earlier recording is there.
+  /// Whether the part of an earlier recording exists.
   bool Exists() const;
 
-  /// Begins it anew. kCannotWrite.
+  /// Creates it or empties it. kCannotWrite.
   Result<void> Open();
 
   /// kCannotWrite.
   Result<void> Append(std::string_view text);
 
-  /// Puts what was appended on the disk. kCannotWrite.
+  /// Writes the appended text to the disk. kCannotWrite.
   Result<void> Synchronise();
 
-  /// Once the whole is there.
+  /// Call it when the complete recording is written.
   void Remove();
 
   const std::string& path() const { return path_; }

@@ -69,7 +69,8 @@ std::atomic<bool> stop = false;
 
 void Stop(int) { stop = true; }
 
-/// Also when the terminal is closed: what was recorded must be written. SIG_DFL ends the process again.
+/// Sets the handler of all signals that end a recording, including a closed terminal: the recording must still be
+/// written. SIG_DFL restores the default.
 void OnSignals(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -98,7 +99,7 @@ RecordPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
-/// The port asked for, or the only one there is.
+/// The requested port, or the only one available.
 Result<std::string> ChoosePort(const std::string& asked) {
   if (!asked.empty()) return asked;
   std::vector<PortName> ports = ListSerialPorts();
@@ -111,7 +112,7 @@ Result<std::string> ChoosePort(const std::string& asked) {
                "there are several ports, and --port says which: " + ports.front().path + " to " + ports.back().path);
 }
 
-/// A recording is not made again, so it does not replace one by accident.
+/// A recording cannot be repeated, so an existing one is not overwritten by accident.
 Result<void> CheckOut(const RecordPendulumOptions& options) {
   if (auto checked = CheckOutputs(options.Outputs(), options.Inputs()); !checked) return checked;
   const PartFile part(options.out);
@@ -138,14 +139,14 @@ Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOpti
   return *std::move(calibration);
 }
 
-/// 1 where something is missing, 130 where a recording of a given length was stopped before.
+/// 1 if data is missing; 130 if a recording of given length was stopped early.
 int CodeOf(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   if (!IsComplete(recorded)) return kIncomplete;
   const bool has_end = options.seconds.has_value() || options.until_rest;
   return has_end && recorded.end == RunEnd::kStopped ? kInterrupted : 0;
 }
 
-/// Fits what was recorded and prints the table; the exit code is the fit's.
+/// Fits the recording and prints the table; returns the fit's exit code.
 Result<int> Fit(FitPendulumOptions options) {
   auto setup = ReadSetup(options);
   if (!setup) return tl::unexpected(setup.error());
@@ -157,14 +158,14 @@ Result<int> Fit(FitPendulumOptions options) {
   return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
 }
 
-/// Where what came can be found although the recording could not be written.
+/// Names the part file with the received data if the recording could not be written.
 std::string PartRemark(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   const PartFile part(options.out);
   if (!part.Exists()) return "";
   return recorded.part_trouble.empty() ? "; it is in " + part.path() : "; its beginning is in " + part.path();
 }
 
-/// Writes the recording, removes its part, and says what it is.
+/// Writes the recording, removes its part file, and prints a summary.
 Result<void> Keep(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   if (auto written = WriteOutputs(std::vector<Output>{{options.out, recorded.Csv()}}); !written) {
     return Error(written.error().code, written.error().message + PartRemark(options, recorded));
@@ -176,7 +177,7 @@ Result<void> Keep(const RecordPendulumOptions& options, const RecordedRun& recor
   return {};
 }
 
-/// A fit that needs angles is not found impossible after the swing.
+/// Checks before the swing whether a requested fit lacks a calibration to angles.
 Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
                              const pendulum_logger::Info& info) {
   const auto needs_angle = [](const std::string& model) { return model != "linear"; };
@@ -209,7 +210,7 @@ Result<int> Record(const RecordPendulumOptions& options, const std::optional<Cal
   return Fit(*options.fit).map([code](int fit) { return fit != 0 ? fit : code; });
 }
 
-/// The mean of a second's readings; of less than all of them none.
+/// Prints the mean of one second of readings; nothing if readings are missing.
 Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_logger::Info& info, Logger& logger) {
   constexpr int kDigits = 6;
   if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
@@ -226,7 +227,7 @@ Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_log
   return WriteOutputs(std::vector<Output>{{"-", mean}}).map([] { return 0; });
 }
 
-/// What is done with a logger that has answered.
+/// Runs the task with a connected logger.
 Result<int> WorkWith(const RecordPendulumOptions& options, const std::string& port,
                      const std::optional<Calibration>& given, Logger& logger) {
   auto info = logger.Connect();
@@ -250,7 +251,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   }
   const auto given = ReadGivenCalibration(*options);
   if (!given) return tl::unexpected(given.error());
-  if (options->fit) {  // a rig that cannot be read is to be known before the pendulum swings
+  if (options->fit) {  // an unreadable rig must be reported before the pendulum swings
     FitPendulumOptions fit = *options->fit;
     if (const auto setup = ReadSetup(fit); !setup) return tl::unexpected(setup.error());
   }

@@ -14,7 +14,7 @@ namespace {
 namespace wire = pendulum_logger;
 
 constexpr double kLongestRun = 1e6;   // s, eleven days
-constexpr double kCountsSeconds = 1;  // that --counts takes the mean of
+constexpr double kCountsSeconds = 1;  // averaged by --counts
 
 Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
   using Asked = std::pair<bool, RecordTask>;
@@ -35,7 +35,7 @@ Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
   return std::ranges::find(asked, true, &Asked::first)->second;
 }
 
-/// Flags of a recording that were given where none is made.
+/// Refuses flags of a recording for other tasks.
 Result<void> CheckBelongs(const RecordPendulumFlags& flags) {
   const RecordPendulumFlags unset;
   const std::array<std::pair<bool, const char*>, 9> of_a_recording = {{{!flags.seconds.empty(), "--seconds"},
@@ -93,7 +93,7 @@ Result<void> ChooseFit(const RecordPendulumFlags& flags, RecordPendulumOptions& 
   if (!flags.model.empty()) fit.model = flags.model;
   auto made = MakeFitPendulumOptions(fit);
   if (!made) return tl::unexpected(made.error());
-  made->data = {flags.out};  // one path, whatever commas are in it
+  made->data = {flags.out};  // one path, even if it contains commas
   options.fit = *std::move(made);
   return {};
 }
@@ -142,7 +142,7 @@ Result<RecordPendulumOptions> MakeRecordPendulumOptions(const RecordPendulumFlag
 }
 
 double LineCapacityHz(const SamplingRate& rate, unsigned baud) {
-  constexpr double kBitsPerByte = 10;  // with start and stop bit
+  constexpr double kBitsPerByte = 10;  // including start and stop bit
   const int block = wire::BlockSize(static_cast<std::uint32_t>(rate.Ticks()));
   return baud / kBitsPerByte * block / wire::DataFrameSize(block);
 }

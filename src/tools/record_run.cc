@@ -23,16 +23,16 @@ namespace {
 namespace wire = pendulum_logger;
 
 constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kSaySeconds = 10;
-constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // whichever is longer
+constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // the longer of both applies
 constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
 
-/// Whether the other end of the pipe that is standard output has been closed.
+/// Whether standard output is a pipe whose reader has closed it.
 bool IsReaderGone() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
-/// Whether so many seconds have gone by since the last time it was asked and they had.
+/// Whether so many seconds have passed since it was last due.
 class Every {
  public:
   explicit Every(double seconds) : seconds_(seconds) {}
@@ -87,10 +87,10 @@ class RunInProgress {
   RedrawnLines lines_;
   bool is_live_;
   RestDetector rest_;
-  std::size_t rest_samples_ = 0;  // until it was at rest; 0: it is not, or nobody asked
+  std::size_t rest_samples_ = 0;  // number of samples until rest; 0: not at rest, or not requested
   Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
-  std::size_t kept_ = 0;                // samples that are in the part
-  double silence_ = 0, last_look_ = 0;  // s: how long nothing came while we looked; when we looked last
+  std::size_t kept_ = 0;                // samples in the part file
+  double silence_ = 0, last_look_ = 0;  // s: time without data while we looked; time of the last look
   double stop_asked_ = 0;
   bool is_stopping_ = false, is_over_ = false;
 };
@@ -110,7 +110,7 @@ Result<void> RunInProgress::Record() {
   return Error(StatusCode::kDataLoss, "nothing was recorded: " + recorded_.why_lost);
 }
 
-/// What came after the end that was asked for does not belong to the recording.
+/// Removes samples after the requested end.
 void RunInProgress::Trim() {
   if (recorded_.end == RunEnd::kRest) {
     recorded_.run.KeepFirst(rest_samples_);
@@ -119,7 +119,7 @@ void RunInProgress::Trim() {
   }
 }
 
-/// Nothing on the disk is touched before the logger has started.
+/// Nothing is written before the logger has started.
 Result<void> RunInProgress::Begin() {
   if (auto started = logger_.Start(); !started) return started;
   recorded_.description.begun = UtcTimeText();
@@ -134,7 +134,8 @@ void RunInProgress::Go() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = HostTime();
-    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // where we were suspended, the logger was not silent
+    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // after a suspension of this process the logger was not
+                                                               // silent
     last_look_ = now;
     if (!received) {
       Lose(received.error().message);
@@ -177,7 +178,7 @@ void RunInProgress::TakeData(const wire::Data& data, double host_time) {
 
 void RunInProgress::Lose(const std::string& why) {
   is_over_ = true;
-  if (is_stopping_) return;  // the recording had ended before
+  if (is_stopping_) return;  // the recording had already ended
   recorded_.end = RunEnd::kLost;
   recorded_.why_lost = why;
 }
@@ -201,7 +202,7 @@ void RunInProgress::StopWhenDue(double now) {
     stop_asked_ = now;
     repeat_.Restart(now);
   } else if (now - stop_asked_ > kStopSeconds) {
-    is_over_ = true;  // without its End: the description says so
+    is_over_ = true;  // without the logger's End frame, which the description reports
     return;
   } else if (!repeat_.IsDue(now)) {
     return;
@@ -209,7 +210,7 @@ void RunInProgress::StopWhenDue(double now) {
   if (auto sent = logger_.RequestStop(); !sent) Lose(sent.error().message);
 }
 
-/// What has come since, as rows.
+/// Appends the new samples as rows.
 void RunInProgress::KeepPart(double now) {
   if (!recorded_.part_trouble.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
   std::string rows;

@@ -14,24 +14,24 @@
 
 namespace pendulum {
 
-/// Why a recording ended.
+/// The reason why a recording ended.
 enum class RunEnd {
-  kSeconds,  ///< It is as long as was asked for.
-  kRest,     ///< The pendulum has come to rest.
-  kStopped,  ///< A signal asked for it.
-  kLost,     ///< The logger is gone.
+  kSeconds,  ///< It has the requested length.
+  kRest,     ///< The pendulum is at rest.
+  kStopped,  ///< A signal stopped it.
+  kLost,     ///< The connection to the logger is lost.
 };
 
-/// A run that was recorded, whole or as far as it came.
+/// A recorded run, complete or up to an interruption.
 struct RecordedRun {
   explicit RecordedRun(const SamplingRate& rate) : run(rate) {}
 
   RunDescription description;
-  ReceivedRun run;  ///< No more of it than was asked for.
+  ReceivedRun run;  ///< Samples up to the requested length.
   RunEnd end = RunEnd::kStopped;
-  std::string why_lost;      ///< A sentence, of kLost.
-  int damaged_frames = 0;    ///< Pieces of what came that were no frame.
-  std::string part_trouble;  ///< Why there is no copy on the disk; empty where there is one.
+  std::string why_lost;      ///< A sentence for kLost.
+  int damaged_frames = 0;    ///< Received pieces that were not valid frames.
+  std::string part_trouble;  ///< Why there is no copy on the disk; empty if there is one.
 
   /// The file's text.
   std::string Csv() const;
@@ -39,10 +39,10 @@ struct RecordedRun {
 
 inline constexpr std::string_view kRecordToolName = "record_pendulum";
 
-/// Starts the connected logger, records until the run is to end, or `stop` is true, and stops it. Meanwhile what has
-/// come is in a PartFile, and a live trace is drawn on standard error where that is a terminal, else said now and then.
-/// Losing the logger ends the run; what came before is kept. kDataLoss: nothing came at all. kTryAgain: stopped before
-/// anything came.
+/// Starts the connected logger, records until the end of the run or until `stop` is true, and stops the logger. During
+/// the run the data is kept in a PartFile. If standard error is a terminal, a live trace is drawn on it; otherwise the
+/// progress is printed from time to time. Losing the logger ends the run and keeps the data. kDataLoss: no data
+/// arrived. kTryAgain: stopped before data arrived.
 Result<RecordedRun> RecordRun(const RecordPendulumOptions& options, const pendulum_logger::Info& info,
                               const std::optional<Calibration>& calibration, const std::atomic<bool>& stop,
                               Logger& logger);

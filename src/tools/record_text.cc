@@ -78,7 +78,7 @@ std::string EndText(const RecordedRun& recorded) {
   return "";
 }
 
-/// "1 sample is", "2 samples are"; the verb in both numbers.
+/// "1 sample is", "2 samples are"; `is` and `are` are the singular and the plural of the verb.
 std::string Counted(std::int64_t count, const std::string& one, const std::string& is, const std::string& are) {
   return std::to_string(count) + " " + one + (count == 1 ? " " + is : "s " + are);
 }

@@ -12,20 +12,19 @@
 
 namespace pendulum {
 
-/// What was recorded, for people: logger, samples and losses, readings, clock, why it ended, and warnings.
+/// A summary of the recording as text: logger, samples and losses, readings, clock, reason of the end, and warnings.
 std::string RecordText(const RecordedRun& recorded, const std::string& path);
 
-/// What there is to worry about in it: lost samples, an end that did not arrive, saturated readings, a clock that is
-/// none, a copy that could not be kept.
+/// Warnings about lost samples, a missing end frame, saturated readings, an unusable clock, a failed copy on the disk.
 std::vector<Warning> RecordWarnings(const RecordedRun& recorded);
 
-/// True unless samples are missing, or the recording is shorter than was asked for.
+/// True unless samples are missing or the recording is shorter than requested.
 bool IsComplete(const RecordedRun& recorded);
 
-/// What a logger says of itself.
+/// The logger's information about itself.
 std::string LoggerText(const pendulum_logger::Info& info, const std::string& port);
 
-/// The ports there are, one a line.
+/// The available ports, one per line.
 std::string PortsText(const std::vector<PortName>& ports);
 
 }  // namespace pendulum

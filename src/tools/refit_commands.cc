@@ -33,7 +33,7 @@ namespace {
 std::atomic<bool> stop = false;
 std::atomic<int> stop_signal = 0;
 
-/// The first asks for an orderly end; a second Ctrl-C does not wait for it, which a store survives.
+/// The first signal requests an orderly end. A second Ctrl-C stops at once, which a store survives.
 void Stop(int signal) {
   constexpr std::string_view kWords =
       "\nrefit_pendulums: stopping when the runs in work are done; Ctrl-C again stops at once\n";
@@ -56,7 +56,7 @@ Result<Source> SourceOf(const RefitPendulumsOptions& options) {
   return options.manifest.empty() ? FindSource(options.patterns) : OpenSource(options.manifest);
 }
 
-/// Reads rig and calibration of the whole batch, which must be good: all runs would fail alike.
+/// Reads rig and calibration of the whole batch. They must be valid, because otherwise every run would fail.
 Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refit) {
   if (!options.rig.empty()) {
     auto text = ReadFile(options.rig, "rig", kMostJsonBytes);
@@ -74,7 +74,7 @@ Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refi
   return {};
 }
 
-/// Unlike that of any other attempt: job, restart, host, process.
+/// A name that is unique among all attempts: job, restart, host, process.
 std::string AttemptName() {
   const auto variable = [](const char* name, const char* otherwise) -> std::string {
     const char* value = std::getenv(name);
@@ -88,7 +88,7 @@ std::string AttemptName() {
          std::to_string(::getpid());
 }
 
-/// Refits into the store in its place, where this process is the only one that writes.
+/// Refits directly into the store; this process is its only writer.
 Result<RefitCounts> RefitInPlace(const Source& source, const std::string& path, const RefitOptions& options) {
   if (const auto checked = CheckFolderOf(path); !checked) return tl::unexpected(checked.error());
   const auto lock = StoreLock::Take(path);
@@ -111,7 +111,7 @@ Result<int> ShowStatus(const std::string& path) {
   return WriteText(*text);
 }
 
-/// What is said at the end of a refit, and its exit code.
+/// Prints the summary of a refit and returns its exit code.
 Result<int> Conclude(const RefitCounts& counts, const std::string& store, bool force) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
@@ -142,7 +142,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   return Conclude(*counts, store, refit.force);
 }
 
-/// The store, for reading, once --out is known to be a file that can be written and not the store.
+/// Opens the store for reading, after a check that --out can be written and is not the store.
 Result<Store> OpenToWriteOut(const RefitPendulumsOptions& options) {
   const std::string& store = options.stores.front();
   const std::vector<NamedFile> outputs = {{"--out", options.out}}, inputs = {{"--store", store}};

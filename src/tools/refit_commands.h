@@ -10,9 +10,9 @@ namespace pendulum {
 
 inline constexpr std::string_view kRefitToolName = "refit_pendulums";
 
-/// Does what refit_pendulums is asked to do; gives the exit code. Of a refit 0: every run has its rows, 130 or 75:
-/// interrupted or terminated, what was done is kept; of compare 1: something moved by more than its error or ended
-/// otherwise.
+/// Runs the command of refit_pendulums and returns the exit code. Refit: 0: every run has its rows; 130 or 75:
+/// interrupted or terminated, finished work is kept. Compare: 1: a value changed by more than its error, or a fit ended
+/// differently.
 Result<int> RunRefitCommand(const RefitPendulumsOptions& options);
 
 }  // namespace pendulum

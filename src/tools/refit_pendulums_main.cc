@@ -61,7 +61,7 @@ constexpr const char* kUsage =
     "75 terminated or the store is in use: try again, 130 interrupted.\n"
     "\n";
 
-/// Names of our flags that the command line gave; libraries' flags are set by the tool itself.
+/// Names of the tool's flags on the command line; the tool sets libraries' flags itself.
 std::vector<std::string> GivenFlags() {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);

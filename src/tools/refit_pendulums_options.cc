@@ -15,7 +15,8 @@
 namespace pendulum {
 namespace {
 
-/// A command, the flags it cannot do without, and those it takes besides. Those of a refit are all that no other has.
+/// A command, its required flags, and its optional flags. A refit takes all flags that are not reserved for another
+/// command.
 struct CommandFlags {
   std::string_view name;
   RefitCommand command;
@@ -37,7 +38,7 @@ const std::vector<CommandFlags>& Commands() {
 
 bool Contains(const auto& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
-/// Flags that only other commands than a refit have.
+/// Flags that a refit does not have.
 constexpr std::array<std::string_view, 5> kNotOfARefit = {"out", "shard_dir", "shard_count", "group_by", "trend_by"};
 
 Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) {
@@ -68,7 +69,7 @@ Result<Shard> ParseShard(const std::string& text) {
   return BadFlag("--shard is '" + text + "'; it must be k/N, shard k from 0 to N - 1 of N");
 }
 
-/// Where the runs come from.
+/// Parses the source of the runs.
 Result<void> ParseSource(const RefitFlags& flags, RefitPendulumsOptions& options) {
   if (flags.manifest.empty() == flags.data.empty()) {
     return BadFlag(flags.manifest.empty() ? "no runs were given; name their manifest with --manifest, or folders, "

@@ -14,7 +14,7 @@
 
 namespace pendulum {
 
-/// The flags of refit_pendulums as they were given; empty, or the default, where they were not.
+/// The flags of refit_pendulums as given; empty or the default if not given.
 struct RefitFlags : RunFlags {
   std::string manifest;
   std::string data;
@@ -29,30 +29,30 @@ struct RefitFlags : RunFlags {
   std::int64_t shard_count = 0;
   bool force = false;
   bool retry_failed = false;
-  std::vector<std::string> positional;  ///< The command, and what belongs to it.
-  std::vector<std::string> given;       ///< Names of the flags that were given.
+  std::vector<std::string> positional;  ///< The command and its arguments.
+  std::vector<std::string> given;       ///< Names of the given flags.
 };
 
-/// What refit_pendulums can do.
+/// The commands of refit_pendulums.
 enum class RefitCommand { kRefit, kStatus, kExport, kCompare, kReport, kPack, kMissing, kMerge };
 
-/// What refit_pendulums is asked to do.
+/// The task of refit_pendulums.
 struct RefitPendulumsOptions {
   RefitCommand command = RefitCommand::kRefit;
-  std::string manifest;               ///< Path of a manifest or a packed file; empty: `patterns` instead.
+  std::string manifest;               ///< Path of a manifest or a packed file; empty: use `patterns`.
   std::vector<std::string> patterns;  ///< Folders, patterns and files.
-  std::string rig, calibration;       ///< Paths of those of the whole batch; empty for none.
-  std::vector<std::string> stores;    ///< One; of compare two.
-  std::string out;                    ///< Of export, report and pack.
+  std::string rig, calibration;       ///< Paths for the whole batch; empty: none.
+  std::vector<std::string> stores;    ///< One; two for compare.
+  std::string out;                    ///< Output path of export, report and pack.
   std::string shard_dir;
   std::int64_t shard_count = 0;
-  RefitOptions refit;  ///< Rig and calibration are for the caller to read.
-  ShardOptions shard;  ///< Of a shard; its attempt is for the caller to name.
+  RefitOptions refit;  ///< The caller reads rig and calibration.
+  ShardOptions shard;  ///< Options of a shard; the caller names its attempt.
   SummaryOptions summary;
 };
 
-/// Turns flags into options. kInvalidArgument: no such command, a flag that it needs is missing, or one that is not its
-/// own, a wrong value; the message names the flag.
+/// Converts flags to options. kInvalidArgument: an unknown command, a missing required flag, a flag of another command,
+/// a wrong value; the message names the flag.
 Result<RefitPendulumsOptions> MakeRefitPendulumsOptions(const RefitFlags& flags);
 
 }  // namespace pendulum

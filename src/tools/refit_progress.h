@@ -8,23 +8,23 @@
 
 namespace pendulum {
 
-/// Seconds for people: "42 s", "3 min 05 s", "2 h 10 min".
+/// A duration as text: "42 s", "3 min 05 s", "2 h 10 min".
 std::string DurationText(double seconds);
 
 /// "1200 of 2000 runs (60 %), 1850 a second, 1 s left, 3 could not be fitted".
 std::string ProgressText(const RefitCounts& counts, double seconds);
 
-/// Shows how far a refit is: on a terminal a bar that is drawn again a few times a second, elsewhere a plain line now
-/// and then.
+/// Shows the progress of a refit: on a terminal a bar that is redrawn a few times a second, elsewhere a plain line from
+/// time to time.
 class RefitProgress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `name`: of the tool, begins plain lines. `descriptor`: where to write, such as STDERR_FILENO. `between`: plain
-  /// lines.
+  /// `name`: the tool's name, which begins plain lines. `descriptor`: for the output, such as STDERR_FILENO. `between`:
+  /// time between plain lines.
   RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between = std::chrono::seconds(10));
 
-  /// Tests pass `now`; otherwise it is the current time.
+  /// Tests pass `now`; the default is the current time.
   void Show(const RefitCounts& counts, Clock::time_point now = Clock::now());
 
   /// Ends the bar's line.
@@ -34,7 +34,7 @@ class RefitProgress {
   std::string name_;
   int descriptor_;
   bool is_terminal_;
-  std::chrono::milliseconds between_;  // what it shows
+  std::chrono::milliseconds between_;  // between two updates
   bool has_drawn_ = false;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;

@@ -11,10 +11,10 @@
 
 namespace pendulum {
 
-/// What a store holds, for people: runs, fits by model and status, failures by reason.
+/// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);
 
-/// How two stores differ, for people.
+/// The differences between two stores as text.
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after);
 
 }  // namespace pendulum

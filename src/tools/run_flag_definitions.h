@@ -50,7 +50,7 @@ DEFINE_string(
 
 namespace pendulum {
 
-/// The flags as they were given.
+/// The current values of the flags.
 inline RunFlags CurrentRunFlags() {
   RunFlags flags;
   flags.rig = FLAGS_rig;

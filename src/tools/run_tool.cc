@@ -29,9 +29,9 @@ void Say(std::string_view name, std::string_view sentence) { std::cerr << name <
 
 int RunTool(const Tool& tool, int argc, char** argv) {
   FLAGS_logtostderr = true;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are not the user's affair
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are of no use to users
   if (!google::IsGoogleLoggingInitialized()) google::InitGoogleLogging(argv[0]);
-  std::signal(SIGXFSZ, SIG_IGN);  // So that a limit to the size of files is an error of writing as any other.
+  std::signal(SIGXFSZ, SIG_IGN);  // A file size limit then causes an ordinary write error.
   try {
     const Result<int> code = Run(tool, argc, argv);
     if (code) return *code;

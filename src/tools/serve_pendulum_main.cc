@@ -86,7 +86,7 @@ ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   return flags;
 }
 
-/// One line on standard error, at once and whole, whoever else writes there.
+/// Prints one line on standard error in a single write, so lines of several threads do not mix.
 void SayAtTime(const std::string& words) { (void)WriteAll(STDERR_FILENO, UtcTimeText() + " " + words + "\n"); }
 
 sigset_t EndingSignals() {
@@ -97,8 +97,8 @@ sigset_t EndingSignals() {
   return signals;
 }
 
-/// Waits for SIGINT or SIGTERM, which all threads block, and stops; fits that then take longer than they may are
-/// stopped too. At the second signal the process ends at once.
+/// Waits for SIGINT or SIGTERM, which all threads block, and stops the server. Fits that exceed the stop time are
+/// stopped too. A second signal ends the process at once.
 class SignalWatch {
  public:
   SignalWatch(Server& server, FittingService& service, int stop_seconds)
@@ -135,12 +135,12 @@ class SignalWatch {
   std::thread thread_;
 };
 
-/// One line for each answer, without what was sent.
+/// Logs one line per answer, without the request's query and body.
 void Log(const Answered& answered) {
   constexpr std::size_t kMostShown = 200;
   std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMostShown));
   std::ranges::replace_if(
-      path, [](char c) { return c <= ' ' || c > '~'; }, '?');  // no terminal is to obey it
+      path, [](char c) { return c <= ' ' || c > '~'; }, '?');  // control characters could control a terminal
   SayAtTime(answered.peer + " " + answered.method + " " + path + " " + std::to_string(answered.status) + " " +
             std::to_string(answered.bytes) + " B " + std::to_string(answered.time.count() / 1000) + " ms");
 }
@@ -158,7 +158,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!options) return tl::unexpected(options.error());
   options->service.say = SayAtTime;
   const sigset_t signals = EndingSignals();
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before there are threads, which all inherit it
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread starts, so all threads inherit it
   auto store = FitStore::Open(options->store);
   if (!store) return tl::unexpected(store.error());
   const auto service = FittingService::Begin(options->service, *std::move(store));

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// A number that a flag gives, and what it may be.
+/// A number flag with its value and limits.
 struct NumberFlag {
   std::string_view name;
   int value, least, most;
@@ -72,7 +72,7 @@ ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
   server.max_buffered = std::max(server.max_buffered, kBodiesAtOnce * server.max_body);
   server.request_time = std::chrono::seconds(flags.request_seconds);
   server.wait_time = std::chrono::seconds(flags.fit_seconds);
-  constexpr std::chrono::seconds kLastAnswers{5};  // to those whose fits are stopped then
+  constexpr std::chrono::seconds kLastAnswers{5};  // for answers whose fits are stopped at the end
   server.stop_time = std::chrono::seconds(flags.stop_seconds) + kLastAnswers;
   return server;
 }

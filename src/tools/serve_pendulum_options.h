@@ -10,14 +10,14 @@
 
 namespace pendulum {
 
-/// The flags of serve_pendulum as they were given.
+/// The flags of serve_pendulum as given.
 struct ServePendulumFlags {
   int port = 8080;
   std::string address = "127.0.0.1";
   std::string store;
   int threads = 0;
   std::string token_file;
-  std::string allowed_hosts;  ///< Between commas.
+  std::string allowed_hosts;  ///< Separated by commas.
   int max_body_mb = 32;
   int max_samples = 200'000;
   int fit_seconds = 30;
@@ -27,22 +27,23 @@ struct ServePendulumFlags {
   int request_seconds = 30;
   int stop_seconds = 20;
   std::string live;
-  std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// What serve_pendulum is to do.
+/// The task of serve_pendulum.
 struct ServePendulumOptions {
   std::string store;  ///< Path.
   ServerOptions server;
   ServiceOptions service;
 };
 
-/// Turns flags into options; `token` is what the token file or the environment has, empty for none.
-/// kInvalidArgument: a flag is missing or wrong, or others than this machine could ask without a token.
+/// Converts flags to options. `token`: from the token file or the environment; empty: none. kInvalidArgument: a flag is
+/// missing or wrong, or other machines could use the service without a token.
 Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& flags, const std::string& token);
 
-/// The token that a file has in its first line, or else the environment's PENDULUM_TOKEN; empty: neither is there.
-/// kInvalidArgument: shorter than 16 characters, or with others than visible ASCII ones. Errors as ReadFile.
+/// The token in the first line of a file; without a file PENDULUM_TOKEN from the environment; empty if neither is
+/// given. kInvalidArgument: shorter than 16 characters, or with characters other than visible ASCII. Errors as
+/// ReadFile.
 Result<std::string> ReadToken(const std::string& token_file, const char* from_environment);
 
 }  // namespace pendulum

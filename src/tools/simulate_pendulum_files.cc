@@ -16,11 +16,11 @@
 namespace pendulum {
 namespace {
 
-constexpr int kBlock = 1000;  // Recordings that are checked at once, rows that are written at once.
+constexpr int kBlock = 1000;  // Recordings checked in one call; rows written in one call.
 
 int Blocks(int count) { return (count + kBlock - 1) / kBlock; }
 
-/// The outputs of a block of recordings, and the manifest, which must be none of them.
+/// The outputs of a block of recordings, and the manifest, which must be a different file.
 std::vector<NamedFile> OutputsOfBlock(const SimulateOptions& options, int block) {
   std::vector<NamedFile> outputs;
   for (int i = block * kBlock; i < std::min((block + 1) * kBlock, options.count); ++i) {
@@ -30,7 +30,7 @@ std::vector<NamedFile> OutputsOfBlock(const SimulateOptions& options, int block)
   return outputs;
 }
 
-/// Recordings differ in their numbers, so that two of them have no file in common.
+/// File names contain the recording's number, so two recordings have no file in common.
 Result<void> CheckAllOutputs(const SimulateOptions& options) {
   std::vector<NamedFile> inputs;
   if (!options.rig_path.empty()) inputs.push_back({"--rig", options.rig_path});
@@ -55,7 +55,7 @@ Result<void> WriteRecording(const SimulateOptions& all, int index) {
   return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
 }
 
-/// The error of the least number among those that several threads meet.
+/// Of the errors from several threads, keeps the one with the smallest index.
 class FirstError {
  public:
   explicit FirstError(int count) : index_(count) {}
@@ -77,7 +77,7 @@ class FirstError {
   Result<void> error_;
 };
 
-/// Numbers are taken in order, so that all below a failing one are made, whatever the number of threads.
+/// Numbers are taken in order, so all recordings below a failed one are made, with any number of threads.
 Result<void> WriteAllRecordings(const SimulateOptions& options) {
   FirstError first(options.count);
   ParallelFor(options.count, options.threads, [&](int index) {

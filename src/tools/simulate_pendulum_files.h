@@ -6,12 +6,13 @@
 
 namespace pendulum {
 
-/// Checks that the files of all recordings can be written, as CheckOutputs does, then makes the recordings on
-/// options.threads threads and at last the manifest. Memory does not grow with the number of recordings.
+/// Checks with CheckOutputs that all files can be written. Then it makes the recordings on options.threads threads, and
+/// finally the manifest. Memory does not grow with the number of recordings.
 ///
-/// Of one recording the files are synchronised with the disk as WriteOutputs does it, of several their file system is
-/// once all are written, before the manifest. Of several errors that of the first recording is returned; files of
-/// others may then have been made. Codes of CheckOutputs, WriteOutputs, SimulateRecording, SimulationOfRecording.
+/// The files of a single recording are synchronised as in WriteOutputs. For several recordings the file system is
+/// synchronised once after all files, before the manifest. Of several errors the one of the first recording is
+/// returned; files of other recordings may exist then. Codes of CheckOutputs, WriteOutputs, SimulateRecording,
+/// SimulationOfRecording.
 Result<void> WriteRecordings(const SimulateOptions& options);
 
 }  // namespace pendulum

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of a file without symbolic links, so that ".." leads back.
+/// The folder of a file with symbolic links resolved, so that ".." leads back.
 fs::path RealFolder(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   std::error_code error;
@@ -20,7 +20,7 @@ fs::path RealFolder(const std::string& path) {
   return error ? fs::absolute(folder, error) : real;
 }
 
-/// `folder` seen from another: "" for itself, else with a slash at its end.
+/// `folder` relative to `base`: "" for the same folder, otherwise with a slash at its end.
 std::string SeenFrom(const fs::path& base, const fs::path& folder) {
   const fs::path relative = folder.lexically_relative(base);
   return relative == "." ? "" : (relative / "").string();

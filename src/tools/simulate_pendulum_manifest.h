@@ -8,12 +8,12 @@
 
 namespace pendulum {
 
-/// The list of the recordings that were made: path, id, rig (with --rig), seed and the truth's parameters. A header,
-/// then a row for each, in lines that end with \n; paths are seen from the manifest's folder, or from the current one
-/// where it goes to standard output.
+/// The list of the simulated recordings: path, id, rig (with --rig), seed and the true parameters. A header, then one
+/// row per recording, in lines that end with \n. Paths are relative to the manifest's folder, or to the current folder
+/// if it goes to standard output.
 class Manifest {
  public:
-  /// Of options whose outputs have been checked, so that their folders are there; they must outlive it.
+  /// The options must have passed CheckOutputs, so that their folders exist, and must outlive the manifest.
   explicit Manifest(const SimulateOptions& options);
 
   /// "path,id,rig,seed,true_inertia,...".
@@ -24,8 +24,8 @@ class Manifest {
 
  private:
   const SimulateOptions& options_;
-  std::string folder_;  ///< Where the recordings are, "" or with a slash at its end.
-  std::string rig_;     ///< As a field; empty for none.
+  std::string folder_;  ///< Folder of the recordings: "" or with a slash at its end.
+  std::string rig_;     ///< As a CSV field; empty: none.
 };
 
 }  // namespace pendulum

@@ -8,7 +8,7 @@
 namespace pendulum {
 namespace {
 
-/// A plan goes to standard output and is of one recording, which is not made.
+/// A plan goes to standard output and covers one recording, which is not made.
 Result<void> CheckPlan(const SimulateFlags& flags) {
   const std::string makes_none = " contradicts --plan, which makes no recording; leave out one of them";
   if (!flags.out.empty()) return BadFlag("--out" + makes_none);

@@ -12,33 +12,33 @@
 
 namespace pendulum {
 
-/// The flags of simulate_pendulum as they were given.
+/// The flags of simulate_pendulum as given.
 struct SimulateFlags : SimulationFlags {
   int count = 1;
-  int threads = 0;                      ///< 0: as many as there are cores.
+  int threads = 0;                      ///< 0: one per core.
   bool plan = false;                    ///< Predict standard errors instead of making recordings.
-  std::string rig;                      ///< Path, or empty for none.
+  std::string rig;                      ///< Path; empty: none.
   std::string out;                      ///< Path, or "-" for stdout.
-  std::string truth;                    ///< Path, "-" for stdout, or empty for none.
-  std::string manifest;                 ///< Path, "-" for stdout, or empty for none.
-  std::vector<std::string> positional;  ///< What belongs to no flag: a mistake.
+  std::string truth;                    ///< Path, "-" for stdout; empty: none.
+  std::string manifest;                 ///< Path, "-" for stdout; empty: none.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// What simulate_pendulum is to do.
+/// The task of simulate_pendulum.
 struct SimulateOptions : Simulation {
-  bool plan = false;         ///< A plan on standard output, and no recording.
-  int count = 1;             ///< Recordings.
+  bool plan = false;         ///< A plan on standard output instead of recordings.
+  int count = 1;             ///< Number of recordings.
   int threads = 0;           ///< As in the flags.
-  std::string rig_path;      ///< As in the flags; empty for none.
+  std::string rig_path;      ///< As in the flags; empty: none.
   std::string out;           ///< As in the flags.
-  std::string truth_out;     ///< As in the flags; empty for none.
-  std::string manifest_out;  ///< As in the flags; empty for none.
+  std::string truth_out;     ///< As in the flags; empty: none.
+  std::string manifest_out;  ///< As in the flags; empty: none.
 
-  /// The files of recording `index` (0-based), with their flags: the recording, and the truth if it is wanted.
+  /// The files of recording `index` (0-based), with their flags: the recording, and the true values if requested.
   std::vector<NamedFile> Outputs(int index) const;
 };
 
-/// Checks the flags and turns them into what is to be done; `rig` is what --rig names, if anything.
+/// Checks the flags and converts them to options. `rig`: the rig from --rig, if given.
 ///
 /// kInvalidArgument: as MakeSimulation, or outputs that contradict each other; the message names the flag.
 Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const std::optional<Rig>& rig);

@@ -10,7 +10,7 @@
 namespace pendulum {
 namespace {
 
-/// An environment variable; empty when it is not set.
+/// An environment variable; empty if it is not set.
 std::string_view Environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? std::string_view() : value;

@@ -46,7 +46,7 @@ std::vector<SyntheticOptions> FiveRuns(std::uint64_t seed, double noise, Gravity
   return runs;
 }
 
-/// The same with a torque G θ, noise 2.5 counts.
+/// The same five releases with a torque G θ and noise of 2.5 counts.
 std::vector<SyntheticOptions> LinearRuns(std::uint64_t seed) { return FiveRuns(seed, 2.5 * kCount, Gravity::kLinear); }
 
 const AmplitudeDependence* DependenceOf(const Homogeneity& result, const std::string& name) {
@@ -54,10 +54,11 @@ const AmplitudeDependence* DependenceOf(const Homogeneity& result, const std::st
   return found == result.amplitude_dependence.end() ? nullptr : &*found;
 }
 
-// ---- What is there -------------------------------------------------------------------------------------------------
+// ---- Amplitude dependence present ----------------------------------------------------------------------------------
 
-// A sine's period is P(A) times that of small swings (MODEL.md eq. (20)); to have the period of G θ its inertia is I /
-// P(A)². P = 1 + A²/16 + ... : the slope is -I/8, and A⁴ changes it by less than 1 % below half a radian.
+// The period of a sine torque is P(A) times that of small swings (MODEL.md eq. (20)). To get the period of G θ its
+// inertia must be I / P(A)². P = 1 + A²/16 + ..., so the slope is -I/8; A⁴ changes it by less than 1 % below half a
+// radian.
 TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
   for (const std::uint64_t seed : {1, 11, 21}) {
     FittedAlone fits(LinearRuns(seed), RigOptions());
@@ -75,8 +76,8 @@ TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
   }
 }
 
-// From recording to recording as eq. (20) has it at the mean amplitudes of the motion, which weigh early swings less
-// than the estimates do: within a tenth.
+// The span between recordings follows eq. (20) at the mean amplitudes of the motion. The estimates weight early swings
+// more than these means do, hence the tolerance of a tenth.
 TEST(AmplitudeDependence, SpansThePeriodsOfSmallestAndLargestSwings) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();
@@ -87,7 +88,7 @@ TEST(AmplitudeDependence, SpansThePeriodsOfSmallestAndLargestSwings) {
 }
 
 TEST(AmplitudeDependence, IsTheSameBetweenRecordingsAlone) {
-  const FittedAlone fits(LinearRuns(1), RigOptions());  // nothing is known of the trends within
+  const FittedAlone fits(LinearRuns(1), RigOptions());  // the trends within recordings are unknown
   const Homogeneity result = TestHomogeneity(fits.Runs(), {"inertia"});
   const AmplitudeDependence* const inertia = DependenceOf(result, "inertia");
   ASSERT_NE(inertia, nullptr);
@@ -106,8 +107,8 @@ TEST(AmplitudeDependence, IsSaidWhereNoRecordingIsOnItsOwn) {
   EXPECT_THAT(result.verdict, HasSubstr("and nothing else differs"));
 }
 
-// With less noise three larger swings have errors as wide as what the sine leaves of them, and agree; the two small
-// ones do not. Amplitude explains all five, and none is to be left out.
+// With less noise the errors of the three larger swings cover the differences that the sine causes, so these three
+// agree. The two small swings do not. Amplitude explains all five, so no recording is to be left out.
 TEST(AmplitudeDependence, IsSaidWhereItExplainsThoseThatDisagree) {
   FittedAlone fits(FiveRuns(1, 0.002, Gravity::kLinear), RigOptions());
   fits.TestConstancies();
@@ -120,11 +121,11 @@ TEST(AmplitudeDependence, IsSaidWhereItExplainsThoseThatDisagree) {
   EXPECT_THAT(result.verdict, Not(HasSubstr("fit the others without")));
 }
 
-// ---- What is not there ---------------------------------------------------------------------------------------------
+// ---- Amplitude dependence absent -----------------------------------------------------------------------------------
 
 TEST(AmplitudeDependence, DoesNotExplainInertiaThatScatters) {
   std::vector<SyntheticOptions> runs = FiveRuns(31, 0.002, Gravity::kSine);
-  const double factors[] = {1.01, 0.99, 0.995, 0.985, 1.012};  // hardly with amplitude: a correlation of 0.08
+  const double factors[] = {1.01, 0.99, 0.995, 0.985, 1.012};  // almost independent of amplitude: a correlation of 0.08
   for (std::size_t k = 0; k < runs.size(); ++k) runs[k].parameters[0] *= factors[k];
   FittedAlone fits(runs, RigOptions());
   fits.TestConstancies();
@@ -138,8 +139,8 @@ TEST(AmplitudeDependence, DoesNotExplainInertiaThatScatters) {
   EXPECT_THAT(result.verdict, HasSubstr("inertia scatters by"));
 }
 
-// The test is never sharper than its errors: of 40 sets with a probability of 0.05 at most, more than 7 come below it
-// once in 700 times, and one below 0.001 once in 25.
+// The true rate of false alarms is at most p. Of 40 sets at p < 0.05, more than 7 alarms happen once in 700 times; one
+// alarm below 0.001 happens once in 25.
 TEST(AmplitudeDependence, IsRarelyFoundInRunsOfOneRig) {
   constexpr int kSets = 40;
   std::vector<double> p(kSets, 1.0);
@@ -151,12 +152,12 @@ TEST(AmplitudeDependence, IsRarelyFoundInRunsOfOneRig) {
   });
   EXPECT_LE(std::ranges::count_if(p, [](double one) { return one < 0.05; }), 7);
   EXPECT_LE(std::ranges::count_if(p, [](double one) { return one < 0.001; }), 1);
-  EXPECT_LT(std::ranges::count(p, 1.0), 5);  // it is made
+  EXPECT_LT(std::ranges::count(p, 1.0), 5);  // the test is made
 }
 
-// ---- A line through numbers ----------------------------------------------------------------------------------------
+// ---- Fit of a line to numbers --------------------------------------------------------------------------------------
 
-/// As TestHomogeneity would have it of runs alone, without windows: numbers with errors.
+/// A parameter as from TestHomogeneity for separate runs without windows: values with standard errors.
 SharedParameter Numbers(const std::vector<double>& value, const std::vector<double>& error) {
   SharedParameter parameter;
   parameter.name = "inertia";
@@ -171,7 +172,7 @@ SharedParameter Numbers(const std::vector<double>& value, const std::vector<doub
   return parameter;
 }
 
-/// The runs that the numbers are of; nothing else of them is used.
+/// Only the number of these runs matters; their data is not used.
 std::optional<AmplitudeDependence> TestNumbers(const std::vector<double>& value, const std::vector<double>& error,
                                                const std::vector<double>& amplitudes) {
   const FittedAlone fits(std::vector<SyntheticOptions>(value.size(), NoisyRun()), ModelOptions("coulomb"));
@@ -179,8 +180,8 @@ std::optional<AmplitudeDependence> TestNumbers(const std::vector<double>& value,
 }
 
 // Weighted straight line of values 1, 3, 2 at x = 1, 2, 3 with errors 1: slope 1/2 with error 1/√2. The residuals are
-// -1/2, 1, -1/2: χ² 1.5 for one degree of freedom, by which the error is larger; F = (2 - 1.5) / 1.5 = 1/3 has p = 2/3
-// under F(1, 1), for F(1,1) = (2/π) atan √F; and χ²(1) above 1.5 is 0.22067.
+// -1/2, 1, -1/2, so χ² is 1.5 for one degree of freedom, and the error grows by its root. F = (2 - 1.5) / 1.5 = 1/3 has
+// p = 2/3 under F(1, 1), because F(1,1) = (2/π) atan √F. χ²(1) above 1.5 has the probability 0.22067.
 TEST(AmplitudeDependence, IsAStraightLineInAmplitudeSquared) {
   const auto line = TestNumbers({1, 3, 2}, {1, 1, 1}, {1, std::sqrt(2.0), std::sqrt(3.0)});
   ASSERT_TRUE(line);

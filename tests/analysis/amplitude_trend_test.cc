@@ -38,7 +38,7 @@ SyntheticOptions RunOf(std::string_view model, double noise) {
   return run;
 }
 
-/// The release and the turning points, M + 1 ends of the first M half swings.
+/// The release and the turning points: M + 1 ends of the first M half swings.
 std::vector<double> FirstEnds(const Recording& recording, std::size_t half_swings) {
   std::vector<double> ends;
   for (const Extremum& turn : Must(FindExtrema(recording))) ends.push_back(turn.time);
@@ -72,7 +72,8 @@ TEST(CompareWindows, FindsNoTrendForTheRightLaw) {
   }
 }
 
-// T = T_0 (1 + A²/16 + 11 A⁴/3072 + ...), which linear gravity can only have of a larger inertia, I (1 + A²/8 + ...).
+// T = T_0 (1 + A²/16 + 11 A⁴/3072 + ...). Linear gravity can give this period only with a larger inertia, I (1 + A²/8 +
+// ...).
 TEST(CompareWindows, FindsInertiaGrowWithAmplitudeWhereGravityIsTakenForLinear) {
   FitOptions options = ModelOptions("viscous");
   options.gravity = Gravity::kLinear;
@@ -90,7 +91,7 @@ TEST(CompareWindows, FindsInertiaGrowWithAmplitudeWhereGravityIsTakenForLinear) 
   }
 }
 
-// And sine gravity of a linear swing a smaller one.
+// Sine gravity fitted to a linear swing needs a smaller inertia.
 TEST(CompareWindows, FindsInertiaFallWithAmplitudeWhereGravityIsLinear) {
   FitOptions options = ModelOptions("linear");
   options.gravity = Gravity::kSine;
@@ -99,8 +100,8 @@ TEST(CompareWindows, FindsInertiaFallWithAmplitudeWhereGravityIsLinear) {
   EXPECT_THAT(trends.found.trends[0].slope, DoubleNear(-kInertia0 / 8, 0.05 * kInertia0 / 8));
 }
 
-// Drag c ω² takes 8/3 c ω³ A³ a swing where viscous friction takes π b ω A²: b + 8 / (3π) c ω A in its stead (in this
-// swing ω falls by about 1 % below its small-angle value).
+// Drag c ω² takes 8/3 c ω³ A³ per swing, viscous friction π b ω A². A viscous fit therefore finds b + 8 / (3π) c ω A
+// (in this swing ω falls by about 1 % below its small-angle value).
 TEST(CompareWindows, FindsViscousFrictionGrowWithAmplitudeWhereThereIsDrag) {
   const double drag = 0.0005 / kTextbookTorque;
   SyntheticOptions run = RunOf("drag", 1e-4);
@@ -117,9 +118,9 @@ TEST(CompareWindows, FindsViscousFrictionGrowWithAmplitudeWhereThereIsDrag) {
   }
 }
 
-// Where one of two frictions is held at the whole fit's estimate, whose error all windows share: slopes over their
-// standard errors have a variance of 1: of 40, 0.52 to 1.67 in 99 of 100 cases (χ² of 40). Of 80 with a probability of
-// 0.05 more than 10 come once in 500 times (binomial).
+// One of two frictions is held at the whole fit's estimate, and all windows share its error. Slopes over their standard
+// errors must have a variance of 1: for 40 runs 0.52 to 1.67 in 99 of 100 cases (χ² of 40). Of 80 tests at p < 0.05,
+// more than 10 alarms happen once in 500 times (binomial).
 TEST(CompareWindows, HasTheErrorsThatItsSlopesShow) {
   std::vector<double> variance = {0, 0};
   int alarms = 0;
@@ -137,15 +138,15 @@ TEST(CompareWindows, HasTheErrorsThatItsSlopesShow) {
   EXPECT_THAT(alarms, Le(10));
 }
 
-// Friction near 0: the bound keeps many windows' estimates at 0, but not what their readings say, whose mean over 20
-// recordings is the truth.
+// Friction near 0: many windows' estimates are at the bound 0. The estimates without bounds average to the true value
+// over 20 recordings.
 TEST(CompareWindows, LooksBehindTheBoundOfFriction) {
   SyntheticOptions run = RunOf("viscous", 0.002);
   run.parameters[1] = 1e-5;
   std::vector<double> friction;
   for (run.seed = 1; run.seed <= 20; ++run.seed) {
     for (const AmplitudeRow& row : TrendsOf(run, ModelOptions("viscous")).found.windows) {
-      if (std::isnan(row.friction)) continue;  // the whole fit's is at its bound
+      if (std::isnan(row.friction)) continue;  // the whole fit's friction is at its bound
       friction.push_back((row.friction - 1e-5) / row.friction_std_error);
     }
   }
@@ -186,7 +187,8 @@ TEST(CompareWindows, FollowsOnlyWhatIsFree) {
   EXPECT_THAT(TrendsOf(FitTo(recording, options), options).reason, HasSubstr("there is no trend to look for"));
 }
 
-// Where the zero moves by 0.02 rad, windows that began at 0.012 rad would see other inertia and friction.
+// The zero moves by 0.02 rad. Windows that all started at a zero of 0.012 rad would give other values of inertia and
+// friction.
 TEST(CompareWindows, TakesADriftingZeroAlong) {
   Recording recording = Must(SimulateRecording(RunOf("viscous", 0.002)));
   recording.value += 0.001 * recording.time;
@@ -200,7 +202,7 @@ TEST(CompareWindows, TakesADriftingZeroAlong) {
   }
 }
 
-// A reading that stands still for four half swings of the second window.
+// The reading stays constant for four half swings of the second window.
 TEST(CompareWindows, SaysWhichWindowHasNoFit) {
   FittedRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
   const std::vector<double> ends = FirstEnds(run.recording, 24);

@@ -22,9 +22,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Le;
 
-// ---- Its scatter where the model is right --------------------------------------------------------------------------
+// ---- Scatter under the right model ---------------------------------------------------------------------------------
 
-/// 8 s at 50 Hz of a swing of 1 rad, friction four times the textbook's: tens of standard errors from its bound.
+/// 8 s at 50 Hz of a swing of 1 rad. Friction is four times the textbook's, tens of standard errors from its bound.
 SyntheticOptions ShortStrongRun(std::string_view model) {
   SyntheticOptions run = NoisyTextbookRun(model);
   run.release_angle = 1;
@@ -34,12 +34,12 @@ SyntheticOptions ShortStrongRun(std::string_view model) {
   return run;
 }
 
-/// z of the exact formulas over seeded recordings, by quantity.
+/// z of the exact formulas over recordings with different seeds, by quantity.
 std::map<std::string, std::vector<double>> Deviations(SyntheticOptions run, int count) {
   std::map<std::string, std::vector<double>> z;
   for (int i = 0; i < count; ++i) {
     ++run.seed;
-    run.zero += 1e-4;  // another place among the levels
+    run.zero += 1e-4;  // another position relative to the levels
     const CheckedRun checked = CheckRun(run, run.model.name);
     for (const ClosedFormRow& row : checked.check.rows) {
       if (row.quantity.ends_with("_turning_points")) z[row.quantity].push_back(row.z.value());
@@ -48,8 +48,9 @@ std::map<std::string, std::vector<double>> Deviations(SyntheticOptions run, int 
   return z;
 }
 
-// Errors of turning points are enlarged where they seem too small and never made smaller: z scatters by 0.9 to 1.0 over
-// 200 recordings. 40 give it to 11 %, three of which are allowed. |z| > 3 happens once in 370.
+// Errors of turning points that seem too small are enlarged; they are never reduced. z then has a standard deviation of
+// 0.9 to 1.0 over 200 recordings. 40 recordings determine it to 11 %; three times that is allowed. |z| > 3 happens once
+// in 370.
 void ExpectScatterOfOne(const SyntheticOptions& run) {
   constexpr int kCount = 40;
   for (const auto& [quantity, z] : Deviations(run, kCount)) {
@@ -73,20 +74,21 @@ TEST(ClosedFormRow, HasAZThatScattersByOneInWhiteNoise) {
 
 TEST(ClosedFormRow, HasAZThatScattersByOneOnCounts) {
   SyntheticOptions run = ShortStrongRun("coulomb");
-  run.resolution = kCount;  // noise of 0.6
+  run.resolution = kCount;  // noise of 0.6 counts
   ExpectScatterOfOne(run);
 }
 
-// Samples 10 ms apart that remember 0.1 s, less than a turning point's.
+// Samples 10 ms apart, autocorrelated over 0.1 s, which is less than the span of a turning point.
 TEST(ClosedFormRow, HasAZThatScattersByOneInNoiseThatRemembers) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.noise_correlation = 0.9;
   ExpectScatterOfOne(run);
 }
 
-// ---- Where it comes from -------------------------------------------------------------------------------------------
+// ---- Computation of z ----------------------------------------------------------------------------------------------
 
-// Of an efficient estimate and another one of the same data the variances subtract (Hausman 1978).
+// For an efficient estimate and another estimate from the same data, the variance of the difference is the difference
+// of the variances (Hausman 1978).
 TEST(ClosedFormRow, HasTheDifferenceOfTheVariancesInWhiteNoise) {
   const CheckedRun checked = CheckRun(ShortStrongRun("viscous"), "viscous");
   ASSERT_EQ(checked.run.fit.noise.memory.Name(), "white");
@@ -100,8 +102,8 @@ TEST(ClosedFormRow, HasTheDifferenceOfTheVariancesInWhiteNoise) {
   }
 }
 
-// The way over the readings' influence on both, told of a memory that is none, is the same: it knows nothing of either
-// standard error. The noise of turning points and of all samples differ by some percent.
+// z computed from each reading's influence on both estimates, with an autocorrelation of zero, must be the same. That
+// method uses neither standard error. The noise of turning points and the noise of all samples differ by some percent.
 TEST(ClosedFormRow, HasTheSameZByTheInfluenceOfEachReading) {
   for (const char* model : {"viscous", "drag"}) {
     for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
@@ -133,7 +135,7 @@ TEST(ClosedFormRow, AgreesWithinThree) {
                                   " closed forms agree with the fit within 3 standard deviations of the difference"));
 }
 
-// What was held has no error: all of the difference's is the closed form's.
+// A fixed parameter has no error: the deviation is the closed form's alone.
 TEST(ClosedFormRow, ComparesWithAFixedParameterAsItStands) {
   FitOptions options = ModelOptions("viscous");
   options.fixed["viscous"] = 0.003 / kTextbookTorque;
@@ -144,7 +146,7 @@ TEST(ClosedFormRow, ComparesWithAFixedParameterAsItStands) {
   EXPECT_EQ(row.agrees, true);
 }
 
-// Without friction the fit stops at 0, the turning points need not.
+// Without friction the fit stops at 0; the estimate from the turning points may be negative.
 TEST(ClosedFormRow, ComparesWithABoundAsItStands) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.parameters[1] = 0;
@@ -158,9 +160,9 @@ TEST(ClosedFormRow, ComparesWithABoundAsItStands) {
   }
 }
 
-// ---- The rig's inertia ---------------------------------------------------------------------------------------------
+// ---- Inertia of the rig --------------------------------------------------------------------------------------------
 
-/// A swing of a rod and bob as their geometry has it.
+/// Simulates a swing of a rod and bob with the inertia of their geometry, and checks the fit.
 CheckedRun CheckRodAndBob(const std::string& description) {
   const Rig rig = Must(ParseRig(description, "rig"));
   SyntheticOptions run = NoisyTextbookRun("viscous");
@@ -177,7 +179,8 @@ TEST(ClosedFormRow, SaysThatAPointMassWouldNotDoForAHeavyRod) {
   EXPECT_THAT(geometry.closed_form, DoubleNear(inertia, 1e-12));
   EXPECT_EQ(geometry.agrees, true);
   EXPECT_EQ(geometry.why, "");
-  // Of the point mass the length moves I by 2 I / l and the fit's by I / l; (M + m) / (M + m / 3) = 1.154.
+  // An error of the length l changes the point mass's I by 2 I / l and the fit's by I / l; (M + m) / (M + m / 3) =
+  // 1.154.
   const ClosedFormRow& point = checked.Row("inertia_point_mass");
   const double change = 0.001 / 0.43 * (2 * 0.475 * 0.43 * 0.43 - inertia);
   EXPECT_THAT(*point.z, DoubleNear((0.475 * 0.43 * 0.43 - inertia) / change, 0.02 * std::abs(*point.z)));
@@ -221,7 +224,7 @@ TEST(ClosedFormRow, IsNotThereForAnInertiaThatTheRigDoesNotGive) {
   EXPECT_FALSE(checked.Has("inertia_point_mass"));
 }
 
-// A clock 1 % fast by its own account: the fit's inertia is 2 % off and may be.
+// The clock is 1 % fast, with an uncertainty of that size: the fit's inertia is 2 % off and still agrees.
 TEST(ClosedFormRow, AllowsForTheClocksErrorBesideTheGeometry) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": 9.81})",
@@ -237,7 +240,7 @@ TEST(ClosedFormRow, AllowsForTheClocksErrorBesideTheGeometry) {
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true) << *checked.Row("inertia_geometry").z;
 }
 
-// The issue asks for words on the point mass, whichever way it comes out.
+// The text must mention the point mass in both cases: sufficient and insufficient.
 TEST(ClosedFormRow, SaysWhetherAPointMassWouldDoWhereItWould) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
@@ -248,7 +251,7 @@ TEST(ClosedFormRow, SaysWhetherAPointMassWouldDoWhereItWould) {
   EXPECT_THAT(checked.check.summary, HasSubstr("a point mass would do"));
 }
 
-// A fixed inertia has no error; the rig's is enough to judge by.
+// A fixed inertia has no error; the rig's error is enough for a verdict.
 TEST(ClosedFormRow, ComparesAFixedInertiaWithTheGeometryByTheRigsErrors) {
   FitOptions options = ModelOptions("viscous");
   options.rig = TextbookRig();
@@ -259,7 +262,7 @@ TEST(ClosedFormRow, ComparesAFixedInertiaWithTheGeometryByTheRigsErrors) {
 
 // ---- Fits without standard errors ----------------------------------------------------------------------------------
 
-/// The report as it is where the fit does not converge.
+/// The report with the state of a fit that did not converge.
 FitReport NotConverged(FitReport fit) {
   fit.termination = Termination::kNotConverged;
   for (ParameterEstimate& parameter : fit.parameters) {

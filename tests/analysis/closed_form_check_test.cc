@@ -31,7 +31,7 @@ constexpr const char* kSampling = "sampling";
 constexpr const char* kResolution = "the sensor's resolution";
 constexpr const char* kFrictionLaw = "the friction law";
 
-/// The part of a difference that a row puts down to a cause: the number before " by " and the cause.
+/// The part of a row's difference that is attributed to a cause: the number before " by " and the cause.
 double PartBy(const std::string& cause, const ClosedFormRow& row) {
   const std::size_t by = row.why.find(" by " + cause);
   if (by == std::string::npos) return std::numeric_limits<double>::quiet_NaN();
@@ -39,17 +39,17 @@ double PartBy(const std::string& cause, const ClosedFormRow& row) {
   return std::strtod(row.why.c_str() + number, nullptr);
 }
 
-/// Half swings from the release to the turning point that the linear formulas begin with.
+/// Number of half swings from the release to the first turning point of the linear formulas.
 int HalfSwingsBefore(const CheckedRun& checked) {
   const LogDecrement& linear = *checked.forms.linear;
   const double since = checked.forms.table.peaks[linear.first].time - 1.9;
   return static_cast<int>(std::lround(since / checked.forms.table.half_period));
 }
 
-// ---- Causes that are there by construction -------------------------------------------------------------------------
+// ---- Known causes --------------------------------------------------------------------------------------------------
 
-// The formula takes the longer period of large swings for inertia: I0 times the squared mean of T(A) / T(0), A from the
-// release angle by hand.
+// The formula attributes the longer period of large swings to inertia: I0 times the squared mean of T(A) / T(0). A is
+// computed from the release angle.
 TEST(CheckClosedForms, TracesTheInertiaOfLargeSwingsToFiniteAmplitude) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
   const double decay = std::exp(-kPi * 0.003 / (2 * std::sqrt(0.079 * kTextbookTorque)));
@@ -83,8 +83,8 @@ TEST(CheckClosedForms, AgreesInAllAtSmallAngles) {
             "7 of 7 closed forms agree with the fit within 3 standard deviations of the difference");
 }
 
-// Small swings with both frictions lose A -> (A - τ) e^(-π ζ) - τ each half swing (Feeny & Liang 1996); the log
-// decrement takes all of it for viscous.
+// Small swings with both frictions change by A -> (A - τ) e^(-π ζ) - τ per half swing (Feeny & Liang 1996). The log
+// decrement attributes all of the loss to viscous friction.
 TEST(CheckClosedForms, TracesTheLogDecrementOfDryFrictionToTheFormulasFriction) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb");
   const double sticking = 0.004 / kTextbookTorque;
@@ -118,8 +118,8 @@ TEST(CheckClosedForms, NamesTheFrictionLawWhereItIsWrong) {
   EXPECT_THAT(checked.Row("inertia_small_angle").why, HasSubstr(kFiniteAmplitude));
 }
 
-// Levels of 2 deg, noise of 1/70 of one: turning points stay on a level for many periods, and scatter by more than the
-// noise says; the errors say so.
+// Levels of 2 deg, noise of 1/70 of a level. Turning points stay on one level for many periods and scatter by more than
+// the noise; the errors must include that.
 TEST(CheckClosedForms, CoarseLevelsWidenTheErrors) {
   SyntheticOptions run = TextbookRun("viscous");
   run.noise = 0.0005;
@@ -131,7 +131,7 @@ TEST(CheckClosedForms, CoarseLevelsWidenTheErrors) {
   EXPECT_GT(*coarse.std_error, 5 * *fine.std_error);
 }
 
-// 12 samples a small-angle period: a polynomial over a third of it does not follow a swing of 1.5 rad.
+// 12 samples per small-angle period: a polynomial over a third of a period cannot follow a swing of 1.5 rad.
 TEST(CheckClosedForms, TracesTheInertiaFromSparseSamplesToTheSampling) {
   SyntheticOptions run = TextbookRun("viscous");
   run.release_angle = 1.5;
@@ -153,7 +153,7 @@ TEST(CheckClosedForms, LeavesToTheRecordingWhatAFixedParameterKeepsFromTheFit) {
   EXPECT_THAT(row.why, HasSubstr("by what the recording has beyond the fitted motion"));
 }
 
-// Noise that remembers 0.2 s, 8 s at 50 Hz: the law is right, its turning points are not independent.
+// Noise autocorrelated over 0.2 s, 8 s at 50 Hz: the law is right, but its turning points are not independent.
 TEST(CheckClosedForms, DoesNotExcludeTheRightLawInNoiseThatRemembers) {
   constexpr int kCount = 40;
   int excluded = 0, far = 0;
@@ -173,7 +173,7 @@ TEST(CheckClosedForms, DoesNotExcludeTheRightLawInNoiseThatRemembers) {
   EXPECT_THAT(far, Le(1));
 }
 
-// A zero that drifts by 10 mrad in 20 s, and is fitted so, with viscous friction alone.
+// The zero drifts by 10 mrad in 20 s and the fit includes the drift; only viscous friction acts.
 TEST(CheckClosedForms, DoesNotBlameTheFrictionForAZeroThatDrifts) {
   Recording recording = Must(SimulateRecording(NoisyTextbookRun("viscous")));
   recording.value.array() += 0.0005 * recording.time.array();
@@ -186,8 +186,8 @@ TEST(CheckClosedForms, DoesNotBlameTheFrictionForAZeroThatDrifts) {
   }
 }
 
-// From 2.6 rad on the corrected formula is 0.05 % off: it does not take small angles, it takes the amplitude of a
-// half swing for that of its middle.
+// From 2.6 rad on the corrected formula has an error of 0.05 %. Small angles are not the cause: the formula uses the
+// amplitude in the middle of a half swing for all of it.
 TEST(CheckClosedForms, DoesNotSayThatTheEllipticIntegralTakesSmallAngles) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.release_angle = 2.6;
@@ -249,7 +249,7 @@ TEST(CheckClosedForms, TakesARateForWhatItIs) {
   EXPECT_FALSE(checked.Has("zero_angle_turning_points"));
 }
 
-// A linear pendulum has one time scale and one damping ratio, whatever the angle's unit.
+// A linear pendulum has one time scale and one damping ratio in any unit of the angle.
 TEST(CheckClosedForms, NeedsNoCalibrationForTheLinearModel) {
   SyntheticOptions run = NoisyTextbookRun("linear");
   run.zero = 0;
@@ -271,7 +271,7 @@ TEST(CheckClosedForms, NeedsNoCalibrationForTheLinearModel) {
   }
 }
 
-// A clock that runs k times too fast: inertia goes with k², viscous friction with k, z with neither.
+// A clock that runs k times too fast: inertia changes with k², viscous friction with k, and z stays the same.
 TEST(CheckClosedForms, CountsInTrueSeconds) {
   const Recording recording = Must(SimulateRecording(NoisyTextbookRun("viscous")));
   Recording slow = recording;
@@ -285,12 +285,12 @@ TEST(CheckClosedForms, CountsInTrueSeconds) {
     EXPECT_THAT(*there.z, DoubleNear(*row.z, 0.02 * std::abs(*row.z) + 0.01)) << row.quantity;
   }
   const auto part = [](const CheckedRun& run) { return PartBy(kFiniteAmplitude, run.Row("inertia_small_angle")); };
-  EXPECT_THAT(part(checked) / part(file), DoubleNear(2.25, 0.03));  // of three digits
+  EXPECT_THAT(part(checked) / part(file), DoubleNear(2.25, 0.03));  // printed with three digits
 }
 
-// ---- The textbook's overlay ----------------------------------------------------------------------------------------
+// ---- Overlay of the textbook ---------------------------------------------------------------------------------------
 
-/// The recording without noise that a pendulum with the linear formulas' numbers makes from the fit's start.
+/// The noise-free recording of a pendulum with the linear formulas' numbers and the fit's start.
 Eigen::VectorXd TextbookSwing(const CheckedRun& checked, Gravity gravity) {
   SyntheticOptions run = TextbookRun("viscous");
   run.model.gravity = gravity;
@@ -311,7 +311,7 @@ TEST(TextbookOverlay, SwingsWithTheLinearFormulasNumbersFromTheFitsStart) {
   }
 }
 
-// The known effect: with parameters that were found by small-angle formulas the small-angle model fits better.
+// With parameters from small-angle formulas, the small-angle model fits better.
 TEST(TextbookOverlay, ExplainsWhyTheLinearModelLooksBetterAtLargeAngles) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous");
   const TextbookOverlay& overlay = checked.check.overlay;

@@ -23,7 +23,7 @@ ComparisonRow RowOf(int parameters, std::optional<double> log_likelihood) {
   return row;
 }
 
-// By hand of log L = -10, k = 3, N = 10, n = e²: 6 + 20; + 2 · 3 · 4 / 6; 3 · 2 + 20.
+// log L = -10, k = 3, N = 10, n = e²: AIC = 6 + 20, AICc adds 2 · 3 · 4 / 6, BIC = 3 · 2 + 20.
 TEST(SetCriteria, FollowsAkaikeHurvichAndSchwarz) {
   ComparisonRow row = RowOf(3, -10);
   SetCriteria(10, std::exp(2.0), row);
@@ -38,7 +38,7 @@ TEST(SetCriteria, HasNoneWithoutALikelihood) {
   EXPECT_FALSE(row.aic || row.aicc || row.bic);
 }
 
-// exp(0), exp(-1) over their sum: e / (1 + e) and 1 / (1 + e).
+// exp(0) and exp(-1) over their sum: e / (1 + e) and 1 / (1 + e).
 TEST(SetDifferences, AreToTheSmallestAndWeightsSumToOne) {
   std::vector<ComparisonRow> rows(3);
   rows[0].aicc = 102;
@@ -64,7 +64,7 @@ TEST(BestFit, IsTheConvergedOneOfTheSmallestAicc) {
   EXPECT_EQ(BestFit({}), nullptr);
 }
 
-// Free, fixed, at the bound 0 of a simpler law, and at a bound that has been used: two, and σ.
+// Four parameters: free, fixed, at the bound 0 of a simpler law, and at another bound. Two of them and σ count.
 TEST(DescribeFit, CountsWhatIsFreeAndTheNoise) {
   FitReport fit;
   fit.termination = Termination::kConverged;
@@ -84,7 +84,7 @@ TEST(DescribeFit, CountsWhatIsFreeAndTheNoise) {
 
 // ---- Likelihood ----------------------------------------------------------------------------------------------------
 
-/// Residuals of 1 mrad that remember.
+/// Autocorrelated residuals of 1 mrad.
 FitReport Remembering() {
   FitReport fit;
   fit.model = {"coulomb", "coulomb", Gravity::kSine};
@@ -138,7 +138,7 @@ TEST(PerCount, TurnsDensitiesIntoProbabilitiesOfLevels) {
   Recording recording;
   recording.time = Eigen::VectorXd::LinSpaced(10, 0, 9);
   EXPECT_EQ(PerCount(recording), 0);
-  recording.resolution = std::exp(-2.0);  // a density of 1 / rad per level of exp(-2) rad, ten times
+  recording.resolution = std::exp(-2.0);  // a density of 1 / rad per level of exp(-2) rad, for ten samples
   EXPECT_DOUBLE_EQ(PerCount(recording), -20);
 }
 

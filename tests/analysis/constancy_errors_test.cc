@@ -17,8 +17,8 @@ constexpr int kSeeds = 40;
 
 struct Alarms {
   int tested = 0;
-  int halves = 0, inertia = 0, friction = 0;  // p < 0.05
-  int certain = 0;                            // any p < kNotConstant
+  int halves = 0, inertia = 0, friction = 0;  // number with p < 0.05
+  int certain = 0;                            // number with any p < kNotConstant
 };
 
 Alarms CountAlarms(SyntheticOptions run) {
@@ -26,7 +26,7 @@ Alarms CountAlarms(SyntheticOptions run) {
   const FitOptions options = ModelOptions(run.model.name);
   for (int i = 0; i < kSeeds; ++i) {
     ++run.seed;
-    run.zero += 1e-4;  // another place among the levels
+    run.zero += 1e-4;  // another position relative to the levels
     const FittedRun fitted = FitTo(Must(SimulateRecording(run)), options);
     const Constancy constancy = TestConstancy(fitted.recording, fitted.fit, options);
     if (!constancy.halves_p || constancy.trends.size() != 2) continue;
@@ -39,7 +39,8 @@ Alarms CountAlarms(SyntheticOptions run) {
   return alarms;
 }
 
-// Of 40 with a probability of 0.05 more than 8 come once in 1500 times (binomial); 2 of 120 below 0.001 once in 150.
+// Of 40 tests at p < 0.05, more than 8 alarms happen once in 1500 times (binomial). Of 120 at p < 0.001, two alarms
+// happen once in 150.
 void ExpectFewAlarms(const SyntheticOptions& run) {
   SCOPED_TRACE(std::string(run.model.name));
   const Alarms alarms = CountAlarms(run);

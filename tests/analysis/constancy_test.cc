@@ -38,7 +38,7 @@ Constancy TestRun(const SyntheticOptions& run, std::string_view model, const std
   return TestFit(FitTo(run, model, rig), ModelOptions(model));
 }
 
-/// Two recordings one after the other; in the second the inertia is so many times as large.
+/// Two recordings joined; the second has `second_inertia` times the inertia.
 Recording JoinedAt(double second_inertia) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.duration = 12;
@@ -73,7 +73,7 @@ TEST(Constancy, IsFoundWhereTheLawHolds) {
   }
 }
 
-// I_O 0.079 kg m² is what the recording was made with; rows are in SI.
+// The recording has I_O = 0.079 kg m²; rows are in SI.
 TEST(Constancy, HasRowsInTheUnitsOfTheFit) {
   const Constancy constancy = TestRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
   ASSERT_THAT(constancy.halves, ElementsAre(Field(&HalvesRow::name, "inertia"), Field(&HalvesRow::name, "viscous")));
@@ -92,7 +92,8 @@ TEST(Constancy, HasRowsInTheUnitsOfTheFit) {
   }
 }
 
-// Equal information: errors of the halves' inertia within a factor of 1.5 though the amplitude falls.
+// Equal information: the errors of the halves' inertia differ by less than a factor of 1.5 although the amplitude
+// falls.
 TEST(Constancy, HasHalvesThatTellEquallyMuch) {
   const Constancy constancy = TestRun(NoisyTextbookRun("viscous"), "viscous");
   const HalvesRow& inertia = constancy.halves.at(0);
@@ -107,7 +108,7 @@ TEST(Constancy, MissesAnInertiaThatChangesHalfWay) {
   EXPECT_TRUE(TestFit(FitTo(JoinedAt(1), ModelOptions("viscous")), ModelOptions("viscous")).constant());
 }
 
-// Of dry friction viscous friction sees τ_c 4 / (π A ω): more, the smaller the swing.
+// A viscous fit to dry friction finds τ_c 4 / (π A ω), which is larger for smaller swings.
 TEST(Constancy, MissesFrictionOfAnotherLaw) {
   const Constancy constancy = TestRun(NoisyTextbookRun("coulomb"), "viscous");
   ASSERT_THAT(constancy.trends, SizeIs(2));
@@ -116,7 +117,7 @@ TEST(Constancy, MissesFrictionOfAnotherLaw) {
   EXPECT_THAT(constancy.verdict, HasSubstr("viscous rises by"));
 }
 
-// Linear gravity's period does not grow with amplitude, by 1 + A²/16: its inertia must, by A²/8.
+// Linear gravity's period does not grow with amplitude by 1 + A²/16. Its inertia must grow by A²/8 instead.
 TEST(Constancy, MissesAPeriodThatDependsOnAmplitude) {
   FitOptions options = ModelOptions("viscous");
   options.gravity = Gravity::kLinear;
@@ -150,7 +151,7 @@ TEST(Constancy, LeavesOutWhatIsFixed) {
   EXPECT_FALSE(nothing.halves_p);
 }
 
-// A release that is fixed belongs to the whole, not to its parts.
+// A fixed release applies to the whole recording, not to its parts.
 TEST(Constancy, KnowsAFixedRelease) {
   FitOptions options = ModelOptions("viscous");
   options.fixed = {{"release_angle", 0.423}};
@@ -182,12 +183,12 @@ TEST(Constancy, IsNotTestedWhereTheFitDidNotConverge) {
 TEST(Constancy, IsNotTestedWhereTurningPointsCannotBeSeen) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   FittedRun fitted = FitTo(run, "viscous", {});
-  run.sample_rate = 3;  // 4 in a period
+  run.sample_rate = 3;  // 4 samples per period
   fitted.recording = Must(SimulateRecording(run));
   EXPECT_THAT(TestFit(fitted, ModelOptions("viscous")).reason, HasSubstr("sampled too slowly"));
 }
 
-// Stopped at about 41 s; all half swings are before that.
+// The pendulum stops at about 41 s; all half swings are before that.
 TEST(Constancy, IsTestedOnTheMotionBeforeTheRest) {
   SyntheticOptions run = NoisyTextbookRun("coulomb");
   run.duration = 60;
@@ -198,7 +199,7 @@ TEST(Constancy, IsTestedOnTheMotionBeforeTheRest) {
   EXPECT_THAT(constancy.windows.back().to, Lt(42));
 }
 
-// A file whose seconds are 1.02 true ones tells the same.
+// One second of the file is 1.02 true seconds; the results must not change.
 TEST(Constancy, DoesNotDependOnTheClock) {
   FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
   const Constancy plain = TestFit(run, ModelOptions("viscous"));

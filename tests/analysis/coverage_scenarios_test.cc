@@ -30,7 +30,7 @@ CoverageScenario Scenario(const std::string& name) {
   return found->front();
 }
 
-/// The motion without noise and levels, at the samples.
+/// The motion at the samples, without noise and levels.
 Eigen::VectorXd Motion(SyntheticOptions run) {
   run.noise = run.time_noise = run.resolution = run.zero = 0;
   run.rows = RowTiming::kEven;
@@ -138,7 +138,8 @@ TEST(ScenarioRun, DrawsZeroAndReleaseEvenlyWithinACountAndASample) {
     zero_square += z * z / kRuns;
     release_square += t * t / kRuns;
   }
-  // A uniform variable has mean 0 ± 1/sqrt(12 n) and mean square 1/12 ± 1/sqrt(180 n); five of these.
+  // A uniform variable has mean 0 ± 1/sqrt(12 n) and mean square 1/12 ± 1/sqrt(180 n); the tolerance is five standard
+  // deviations.
   EXPECT_THAT(zero, DoubleNear(0, 5 / std::sqrt(12.0 * kRuns)));
   EXPECT_THAT(release, DoubleNear(0, 5 / std::sqrt(12.0 * kRuns)));
   EXPECT_THAT(zero_square, DoubleNear(1.0 / 12, 5 / std::sqrt(180.0 * kRuns)));

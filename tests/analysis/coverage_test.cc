@@ -41,7 +41,7 @@ CoverageRow Row(const CoverageStudy& study, const std::string& parameter) {
 
 // ---- The binomial interval -----------------------------------------------------------------------------------------
 
-// None of n: the upper end u has (1 - u)^n = 0.025. All of n: the mirror image.
+// No success in n trials: the upper end u satisfies (1 - u)^n = 0.025. n successes give the mirror image.
 TEST(BinomialInterval95, HasClosedFormsForNoneAndAll) {
   const double end = 1 - std::pow(0.025, 1.0 / 20);
   const BinomialInterval none = BinomialInterval95(0, 20);
@@ -52,7 +52,7 @@ TEST(BinomialInterval95, HasClosedFormsForNoneAndAll) {
   EXPECT_EQ(all.upper, 1);
 }
 
-// Each end p of the interval leaves 2.5 % to what was seen and beyond, summed by hand.
+// At each end p of the interval the observed or more extreme counts have a probability of 2.5 %, summed by hand.
 TEST(BinomialInterval95, LeavesTwoAndAHalfPercentOnEitherSide) {
   constexpr int kTrials = 10, kSuccesses = 7;
   const auto at_least = [](int successes, double p) {
@@ -70,7 +70,7 @@ TEST(BinomialInterval95, LeavesTwoAndAHalfPercentOnEitherSide) {
 
 // ---- Studies -------------------------------------------------------------------------------------------------------
 
-// Least squares reach the bound in white noise of 2.5 counts, and their intervals are right.
+// Least squares reach the bound in white noise of 2.5 counts, and their intervals have the right coverage.
 TEST(StudyCoverage, FindsNothingAmissInWhiteNoise) {
   constexpr int kCount = 200;
   const CoverageStudy study = Study(Scenario("white_2.5"), Options(kCount));
@@ -85,7 +85,7 @@ TEST(StudyCoverage, FindsNothingAmissInWhiteNoise) {
     EXPECT_EQ(row.without_interval, 0);
     EXPECT_THAT(row.coverage, DoubleNear(0.95, 4 * std::sqrt(0.95 * 0.05 / kCount)));  // 4 σ of a binomial share
     EXPECT_THAT(row.error_over_bound.value(),
-                DoubleNear(1, 4 / std::sqrt(2.0 * kCount)));  // 4 σ of a deviation's scatter
+                DoubleNear(1, 4 / std::sqrt(2.0 * kCount)));  // 4 σ of the scatter of a standard deviation
     EXPECT_THAT(row.std_error_over_error.value(), DoubleNear(1, 4 / std::sqrt(2.0 * kCount)));
   }
 }
@@ -151,7 +151,7 @@ TEST(StudyCoverage, DoesNotCompareErrorsWithABoundWhereTheTruthIsAtItsOwn) {
   EXPECT_TRUE(Row(study, "coulomb").error_over_bound);
 }
 
-// Another start has other parameters: nothing is said of those of the truth.
+// Another start has other parameters: the report lacks those of the true start.
 TEST(StudyCoverage, TakesAParameterThatIsNotReportedForNotCovered) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.release_time = 0;
@@ -165,7 +165,7 @@ TEST(StudyCoverage, TakesAParameterThatIsNotReportedForNotCovered) {
   EXPECT_FALSE(row.rms_error);
 }
 
-// Noise of ten times the swing leaves nothing that converges.
+// With noise of ten times the swing no fit converges.
 TEST(StudyCoverage, CountsFitsThatDoNotConvergeAndGoesOn) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.duration = 4;
@@ -181,8 +181,8 @@ TEST(StudyCoverage, CountsFitsThatCannotBeMade) {
   EXPECT_EQ(Study(scenario, Options(3)).failed, 3);
 }
 
-// When a count changes says at least as much as what it is every millisecond. Over 300 recordings, which share the
-// errors of their edges, the ratio of rms errors is known to some 5 %.
+// The times of count changes contain at least as much information as counts every millisecond. Over 300 recordings with
+// shared edge errors, the ratio of rms errors is known to about 5 %.
 TEST(StudyCoverage, KnowsTheSwingByEventsAtLeastAsWellAsByReadingsAt1KHz) {
   constexpr int kCount = 300;
   constexpr double kChance = 1.1;

@@ -73,7 +73,7 @@ std::vector<double> BoundsFromCovariance(const SyntheticOptions& run, const Eige
   return {bounds.begin(), bounds.end()};
 }
 
-/// σ² r^|i - j|, and `white` more on the diagonal.
+/// σ² r^|i - j|, plus `white` on the diagonal.
 Eigen::MatrixXd Covariance(const SyntheticOptions& run, double white) {
   const Eigen::Index count = Times(run).size();
   Eigen::MatrixXd covariance(count, count);
@@ -88,14 +88,14 @@ Eigen::MatrixXd Covariance(const SyntheticOptions& run, double white) {
   return covariance;
 }
 
-/// Ratios of bounds, which a tolerance can be set to.
+/// Ratios of bounds, for comparison with one tolerance.
 std::vector<double> Ratios(const std::vector<double>& bounds, const std::vector<double>& expected) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < expected.size(); ++i) ratios.push_back(bounds.at(i) / expected[i]);
   return ratios;
 }
 
-// Differences of step 1e-5 are good to some 1e-4, where a reversal passes a sample.
+// Differences with a step of 1e-5 are accurate to about 1e-4 where a reversal passes a sample.
 constexpr double kDifferences = 1e-3;
 
 TEST(CramerRaoBounds, AreTheInverseOfTheInformationOfWhiteNoise) {
@@ -116,7 +116,7 @@ TEST(CramerRaoBounds, AreThoseOfTheWholeCovarianceForCorrelatedNoise) {
   }
 }
 
-// Noise of 1.5 counts or more sees counts as white noise of variance q²/12.
+// With noise of 1.5 counts or more, counts act as white noise of variance q²/12.
 TEST(CramerRaoBounds, GrowWithCountsByTheirTwelfth) {
   SyntheticOptions run = ShortRun();
   run.noise = 1.5 * kCount;
@@ -125,11 +125,12 @@ TEST(CramerRaoBounds, GrowWithCountsByTheirTwelfth) {
   EXPECT_THAT(Ratios(Bounds(run), fine), Each(DoubleNear(std::sqrt(1 + 1 / (12 * 1.5 * 1.5)), 1e-3)));
 }
 
-// Each sample tells [1, 0; 0, 1] of (its mean, log σ) by ReadingInformation, and its mean is that of the trajectory.
+// Each sample has the ReadingInformation of (its mean, log σ), and its mean is that of the trajectory.
 TEST(CramerRaoBounds, CountTheNoisesSizeAmongTheUnknowns) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.15 * kCount;
-  run.zero = 0.2 * kCount - run.release_angle;  // a hold off the middle of its count, where x and σ are mixed up
+  run.zero = 0.2 * kCount - run.release_angle;  // a hold away from the middle of its count, where x and σ are
+                                                // correlated
   run.resolution = kCount;
   const Eigen::MatrixXd jacobian = JacobianByDifferences(run);
   SyntheticOptions clean = run;
@@ -146,10 +147,10 @@ TEST(CramerRaoBounds, CountTheNoisesSizeAmongTheUnknowns) {
   const Eigen::VectorXd expected = information.fullPivLu().inverse().diagonal().cwiseSqrt().head(size);
   const Eigen::VectorXd known = information.topLeftCorner(size, size).fullPivLu().inverse().diagonal().cwiseSqrt();
   EXPECT_THAT(Ratios(Bounds(run), {expected.begin(), expected.end()}), Each(DoubleNear(1, kDifferences)));
-  EXPECT_GT(Bounds(run)[3] / known[3], 1.01);  // the difference it makes to the release angle
+  EXPECT_GT(Bounds(run)[3] / known[3], 1.01);  // effect of an unknown σ on the release angle
 }
 
-// A hold in the middle of a count tells nothing more than that count: the held angle is known only from the swing.
+// A hold in the middle of a count shows only that count: the held angle is known only from the swing.
 TEST(CramerRaoBounds, TakeNothingFromAHoldInTheMiddleOfACount) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.1 * kCount;
@@ -159,13 +160,13 @@ TEST(CramerRaoBounds, TakeNothingFromAHoldInTheMiddleOfACount) {
   const std::vector<double> middle = Bounds(run);
   run.release_time += 10;
   run.duration += 10;
-  EXPECT_THAT(Ratios(Bounds(run), middle), Each(DoubleNear(1, 0.1)));  // other samples of the swing, as many
+  EXPECT_THAT(Ratios(Bounds(run), middle), Each(DoubleNear(1, 0.1)));  // an equal number of other samples of the swing
   SyntheticOptions edge = run;
   edge.release_angle += 0.5 * kCount;
   EXPECT_LT(Bounds(edge)[3], 0.5 * middle[3]);
 }
 
-// Readings that are cut off on one side tell less, and still something.
+// Readings that are cut off on one side contain less information, but still some.
 TEST(CramerRaoBounds, GrowWhenARangeCutsThePeaksOff) {
   SyntheticOptions run = ShortRun();
   run.resolution = kCount;
@@ -180,7 +181,7 @@ TEST(CramerRaoBounds, ShrinkWithHeavyTailsOfTheSameScaleAsTheirInformation) {
   SyntheticOptions run = ShortRun();
   const std::vector<double> gaussian = Bounds(run);
   run.noise_freedom = 3;
-  // But for rounding, amplified by the inverse of the information.
+  // The tolerance is rounding, amplified by the inverse of the information.
   EXPECT_THAT(Ratios(Bounds(run), gaussian), Each(DoubleNear(std::sqrt(6.0 / 4.0), 1e-11)));
 }
 
@@ -208,7 +209,7 @@ TEST(CramerRaoBounds, AreAbsentWhereTheyAreNotKnown) {
 TEST(CramerRaoBounds, AreAbsentWhenTheMotionCannotBeTraced) {
   SyntheticOptions run = ShortRun();
   const Eigen::VectorXd time = Times(run);
-  run.parameters[2] = 1;  // friction holds it
+  run.parameters[2] = 1;  // friction holds the pendulum
   EXPECT_THAT(CramerRaoBounds(run, time), Each(Eq(std::nullopt)));
 }
 

@@ -22,14 +22,15 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// ---- The parts of a difference -------------------------------------------------------------------------------------
+// ---- Parts of a difference -----------------------------------------------------------------------------------------
 
 FormulaStages Stages(double small_angles, double drifting, double own_gravity, double own_instants, double own_levels) {
   const auto pair = [](double value) { return Eigen::VectorXd(Eigen::Vector2d(-7, value)); };
   return {pair(small_angles), pair(drifting), pair(own_gravity), pair(own_instants), pair(own_levels)};
 }
 
-// Each stage less the one before; the first less the fit, the recording less the last.
+// Each part is a stage minus the previous stage. The first part subtracts the fit; the last part is the recording minus
+// the last stage.
 TEST(SplitDifference, GivesEachStageItsPart) {
   const DifferenceCauses causes = SplitDifference(Stages(11, 7, 10, 9, 14), 1, 1, 16, 9);
   EXPECT_EQ(causes.formula, 2);
@@ -59,9 +60,9 @@ TEST(SplitDifference, HasPartsThatSumToTheDifference) {
   }
 }
 
-// ---- In words ------------------------------------------------------------------------------------------------------
+// ---- Sentences -----------------------------------------------------------------------------------------------------
 
-/// formula, amplitude, sampling, resolution, recording.
+/// parts: formula, amplitude, sampling, resolution, recording.
 std::string Described(const std::vector<double>& parts, double std_dev = 1e-3, const std::string& unit = "s") {
   const CauseNames names = {"a spring", "a slope", "a shadow"};
   return DescribeCauses({parts[0], 0, parts[1], parts[2], parts[3], parts[4]}, std_dev, unit, names);
@@ -94,7 +95,7 @@ TEST(DescribeCauses, LeavesOutPartsOfLessThanAFifth) {
   EXPECT_THAT(Described({0, -7.9, 0, -2.1, 0}), HasSubstr("; -2.1 by the sensor's resolution"));
 }
 
-// What noise alone explains at three standard deviations is noise, on both sides.
+// A difference of up to three standard deviations of noise, of either sign, is called noise.
 TEST(DescribeCauses, SaysNoiseWhereTheRecordingsPartIsWithinThreeDeviations) {
   for (const double sign : {1.0, -1.0}) {
     EXPECT_THAT(Described({0, 0, 0, 0, sign * 2.9}, 1), HasSubstr("by noise"));
@@ -109,15 +110,15 @@ TEST(DescribeCauses, HasThreeDigitsAndTheUnit) {
   EXPECT_THAT(Described({0, 0.00123456, 0, 0, 0}, 1, "1"), StartsWith("differs by +0.00123: +0.00123 by"));
 }
 
-// ---- The stages ----------------------------------------------------------------------------------------------------
+// ---- Stages --------------------------------------------------------------------------------------------------------
 
-/// What a formula was applied to.
+/// The recording and the gravity that a formula was applied to.
 struct Applied {
   Recording recording;
   Gravity gravity;
 };
 
-/// The lowest reading, once the pendulum is free.
+/// A formula for the tests: the lowest reading of the recording.
 std::optional<Eigen::VectorXd> Lowest(const Recording& recording, Gravity) {
   return Eigen::VectorXd::Constant(1, recording.value.minCoeff());
 }
@@ -157,7 +158,7 @@ TEST(ApplyInStages, TakesLinearGravityOnlyForSmallAngles) {
   EXPECT_THAT(gravities, ElementsAre(Gravity::kLinear, Gravity::kSine, Gravity::kSine, Gravity::kSine));
 }
 
-// 1.3152 s at small angles: 200 samples of 6.6 ms; the recording's own are 10 ms apart.
+// 1.3152 s at small angles: 200 samples of 6.6 ms; the recording's own samples are 10 ms apart.
 TEST(ApplyInStages, TakesFineInstantsFirstAndThenTheRecordings) {
   const StagedRun run(WideSwing());
   const std::vector<Applied> seen = run.Seen();
@@ -165,7 +166,7 @@ TEST(ApplyInStages, TakesFineInstantsFirstAndThenTheRecordings) {
   const double fine = 2 * kPi * std::sqrt(0.079 / kTextbookTorque) / 200;
   for (const std::size_t stage : {0, 1}) {
     const Recording& recording = seen[stage].recording;
-    EXPECT_THAT((recording.time[1] - recording.time[0]) / fine, DoubleNear(1, 2e-3));  // a whole number of them
+    EXPECT_THAT((recording.time[1] - recording.time[0]) / fine, DoubleNear(1, 2e-3));  // a whole number of samples
     EXPECT_THAT(recording.time[recording.size() - 1], DoubleNear(9.99, 1e-9));
   }
   for (const std::size_t stage : {2, 3}) {
@@ -174,7 +175,7 @@ TEST(ApplyInStages, TakesFineInstantsFirstAndThenTheRecordings) {
   }
 }
 
-// Levels pass through the recording's own readings, which are no multiples of the resolution.
+// Levels include the recording's own readings, which are not multiples of the resolution.
 TEST(ApplyInStages, PutsReadingsOnTheSensorsLevelsWithinItsRange) {
   SyntheticOptions options = WideSwing();
   options.resolution = 0.05;
@@ -194,7 +195,7 @@ TEST(ApplyInStages, PutsReadingsOnTheSensorsLevelsWithinItsRange) {
   }
 }
 
-// What a sparse recording misses of a trough of angle A: at most A (1 - cos(ω Δt / 2)).
+// Error of a sparse recording at a trough of angle A: at most A (1 - cos(ω Δt / 2)).
 TEST(ApplyInStages, FindsWhatSparseSamplesMiss) {
   SyntheticOptions options = WideSwing();
   options.sample_rate = 8;
@@ -212,7 +213,7 @@ TEST(ApplyInStages, FindsWhatSparseSamplesMiss) {
 TEST(ApplyInStages, FindsWhatLevelsMake) {
   SyntheticOptions options = WideSwing();
   options.resolution = 0.3;
-  options.noise = 0.1;  // so that a fit sees through the levels
+  options.noise = 0.1;  // so that the fit averages over the levels
   const StagedRun run(options);
   const DifferenceCauses causes = SplitDifference(run.Apply(Lowest).value(), 0, 1, 0, 0);
   // The lowest reading is -0.97 and the nearest level -0.9.
@@ -220,7 +221,7 @@ TEST(ApplyInStages, FindsWhatLevelsMake) {
   EXPECT_THAT(causes.sampling, DoubleNear(0, 1e-3));  // A (ω Δt)² / 8
 }
 
-/// The textbook's inertia over 4 periods from 3 s on: from the second turning point after the release.
+/// The textbook's inertia over 4 periods, from the first turning point after 3 s on (the second one after the release).
 std::optional<Eigen::VectorXd> SmallAngleInertia(const Recording& recording, Gravity gravity) {
   const PeakTable table = Must(LocatePeaks(recording));
   std::size_t first = 0;
@@ -229,7 +230,8 @@ std::optional<Eigen::VectorXd> SmallAngleInertia(const Recording& recording, Gra
   return Eigen::VectorXd::Constant(1, linear.value().inertia.value);
 }
 
-// Over n periods the formula finds I0 times the squared mean of T(A) / T(0), here over half swings of a decay by hand.
+// Over n periods the formula finds I0 times the squared mean of T(A) / T(0); here that mean is computed over half
+// swings of the decay.
 TEST(ApplyInStages, FindsTheFiniteAmplitudesPartOfTheInertia) {
   const StagedRun run(WideSwing());
   const double inertia = run.run.fit.Find("inertia")->estimate;
@@ -263,7 +265,7 @@ TEST(ApplyInStages, GivesNothingWhereAFormulaCannotBeApplied) {
 
 TEST(ApplyInStages, GivesNothingWhereTheMotionCannotBeTraced) {
   FittedRun run = FitTo(NoisyRun("coulomb"), "coulomb", {});
-  run.fit.parameters[2].estimate = 1;  // friction holds it
+  run.fit.parameters[2].estimate = 1;  // friction holds the pendulum
   EXPECT_FALSE(ApplyInStages(FittedMotion(run.recording, run.fit, {}), run.recording, Gravity::kSine, Lowest));
 }
 

@@ -43,7 +43,8 @@ TEST(FitModels, OfOneModelIsFitRecording) {
   EXPECT_EQ(fitted.fits[0].Find("inertia")->estimate, alone.Find("inertia")->estimate);
 }
 
-// Viscous friction alone leaves residuals of more than a count, coulomb's are a quarter: one family for both.
+// Viscous friction alone leaves residuals of more than a count; coulomb leaves a quarter of a count. Both fits must use
+// one family.
 TEST(FitModels, GivesAllTheNoiseFamilyOfTheSmallestResiduals) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.duration = 60;
@@ -63,7 +64,7 @@ TEST(FitModels, BeginsAllAlike) {
   }
 }
 
-// Sampled once a second, 0.76 Hz: a frequency between samples that every model has to find anew.
+// Sampled once per second at 0.76 Hz: every model must search the aliased frequency itself.
 TEST(FitModels, OfAnUndersampledSwingFindTheSameFrequency) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.sample_rate = 1;
@@ -74,7 +75,7 @@ TEST(FitModels, OfAnUndersampledSwingFindTheSameFrequency) {
   FitOptions options;
   options.rig = Rig{};
   options.rig->gravity_torque = {kTextbookTorque, 0};
-  options.rig->inertia = RigValue{0.0761, 0};  // kg m^2, of the geometry: 4 % off
+  options.rig->inertia = RigValue{0.0761, 0};  // kg m^2, from the geometry: 4 % off
   const ChosenSwings swings = Must(ChooseSwings(recording, {}, options.rig));
   const FreeSwing& swing = swings.found.at(static_cast<std::size_t>(swings.chosen.at(0) - 1));
   ASSERT_TRUE(swing.undersampled);

@@ -18,10 +18,10 @@ namespace {
 
 using testing::DoubleNear;
 
-// The fit's trajectory is traced to 1e-8 rad, the motion's to 1e-10 a step.
+// The fit's trajectory has an error of 1e-8 rad, the motion's 1e-10 per step.
 constexpr double kTraceError = 3e-8;
 
-/// θ of small swings with viscous friction, released from rest (units of G).
+/// θ of small swings with viscous friction, released at rest (units of G).
 double ViscousSwing(double time, double inertia, double viscous, double angle) {
   const double decay = viscous / (2 * inertia);
   const double frequency = std::sqrt(1 / inertia - decay * decay);
@@ -29,7 +29,7 @@ double ViscousSwing(double time, double inertia, double viscous, double angle) {
   return angle * std::exp(-decay * std::max(time, 0.0)) * (std::cos(phase) + decay / frequency * std::sin(phase));
 }
 
-/// A fit's report as it would be for the truth of a recording.
+/// The report of a fit that found the true values of a recording.
 FitReport TrueReport(const SyntheticOptions& run) {
   FitReport fit;
   fit.model = run.model;
@@ -67,7 +67,7 @@ void ExpectJacobianOfDifferences(const FittedRun& run) {
     const double estimate = run.fit.parameters[i].estimate;
     const Eigen::VectorXd expected = Difference(run, i, 1e-5 * std::max(std::abs(estimate), 1e-3));
     const Eigen::VectorXd column = jacobian.col(static_cast<Eigen::Index>(i));
-    // Where a reversal or the release passes a sample a difference is off by some 1e-4 of the column.
+    // If a reversal or the release passes a sample, a difference is off by about 1e-4 of the column.
     EXPECT_LT((column - expected).norm(), 2e-3 * expected.norm()) << run.fit.parameters[i].info.name;
   }
 }
@@ -101,7 +101,7 @@ TEST(FittedMotion, CountsInstantsInTrueSecondsFromTheFirstSample) {
   const FittedRun run = FitTo(recording, ModelOptions("coulomb"));
   const FittedMotion motion(run.recording, run.fit, {});
   EXPECT_EQ(motion.instants()[0], 0);
-  EXPECT_THAT(motion.instants()[100], DoubleNear(1.02, 1e-9));  // 1 s of the file's
+  EXPECT_THAT(motion.instants()[100], DoubleNear(1.02, 1e-9));  // 1 s on the file's clock
   EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError);
   ExpectJacobianOfDifferences(run);
 }
@@ -148,7 +148,7 @@ TEST(FittedMotion, HasTheSmallAnglePeriodOfItsInertia) {
   EXPECT_THAT(FittedMotion(recording, fit, TextbookRig()).small_angle_period(), DoubleNear(expected, 1e-12));
 }
 
-// From the same start and zero the small-angle pendulum has a closed form.
+// With linear gravity the same start and zero give a motion in closed form.
 TEST(FittedMotion, SwingsAsTheDampedCosineWithLinearGravity) {
   const SyntheticOptions options = TextbookRun("viscous");
   const FittedMotion motion(Must(SimulateRecording(options)), TrueReport(options), {});
@@ -161,7 +161,7 @@ TEST(FittedMotion, SwingsAsTheDampedCosineWithLinearGravity) {
   }
 }
 
-// Coulomb and quadratic friction are gone, the start and the zero stay, the report's units do not matter.
+// Coulomb and quadratic friction are removed; start and zero stay; the report's units do not matter.
 TEST(FittedMotion, SwingsWithTheInertiaAndTheViscousFrictionItIsGiven) {
   const SyntheticOptions options = TextbookRun("drag");
   const Recording recording = Must(SimulateRecording(options));
@@ -179,7 +179,8 @@ TEST(FittedMotion, SwingsWithTheInertiaAndTheViscousFrictionItIsGiven) {
   }
 }
 
-// With sine gravity instead the first period is longer by the elliptic integral's ratio, but for 1e-3 of damping.
+// With sine gravity the first period is longer by the ratio of the elliptic integral, to within 1e-3 because of
+// damping.
 TEST(FittedMotion, KeepsSineGravityWithOtherFriction) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.release_angle = 1.5;
@@ -197,7 +198,7 @@ TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
   const SyntheticOptions options = TextbookRun("coulomb");
   const Recording recording = Must(SimulateRecording(options));
   FitReport fit = TrueReport(options);
-  fit.parameters[2].estimate = 1;  // dry friction holds it
+  fit.parameters[2].estimate = 1;  // dry friction holds the pendulum
   const FittedMotion motion(recording, fit, {});
   EXPECT_FALSE(motion.Readings(motion.instants()));
 }

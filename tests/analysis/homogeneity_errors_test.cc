@@ -33,7 +33,7 @@ constexpr int kRuns = 5;
 const std::vector<std::string> kShared = {"inertia", "viscous", "coulomb"};
 constexpr std::array<double, 3> kTruth = {0.079, 0.003, 0.004};  // SI, of the scenarios
 
-/// Recordings of one rig and the fits to each alone.
+/// Recordings of one rig and the separate fit to each of them.
 struct Set {
   FitOptions options;
   std::vector<Recording> recordings;
@@ -56,7 +56,7 @@ struct Set {
 
 CoverageScenario ScenarioOf(const std::string& name) { return Must(FindCoverageScenarios(name)).front(); }
 
-/// Five releases of 0.35 to 0.55 rad; run `other`, if there is one, has so many times the inertia.
+/// Five releases from 0.35 to 0.55 rad. Run `other`, if there is one, has `factor` times the inertia.
 Set MakeSet(const CoverageScenario& scenario, int number, int other = -1, double factor = 1) {
   Set set{scenario.fit, {}, {}};
   set.options.interval = IntervalMethod::kCovariance;
@@ -70,7 +70,7 @@ Set MakeSet(const CoverageScenario& scenario, int number, int other = -1, double
   return set;
 }
 
-/// Errors by information that adds up: of (Σ C⁻¹)⁻¹. Empty where a recording alone has no such covariance.
+/// Errors from added information: of (Σ C⁻¹)⁻¹. Empty if a recording alone has no such covariance.
 Eigen::VectorXd AddedErrors(const Set& set) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const FitReport& fit : set.alone) {
@@ -80,12 +80,12 @@ Eigen::VectorXd AddedErrors(const Set& set) {
   return information.inverse().diagonal().cwiseSqrt();
 }
 
-/// What one set says.
+/// Result of one set.
 struct Outcome {
   bool converged = false, disagrees = false;
   std::array<bool, 3> covered = {};
-  Eigen::VectorXd joint_error, added_error;  // 3, or none
-  double single_error = 0;                   // of inertia, mean of the recordings
+  Eigen::VectorXd joint_error, added_error;  // 3, or empty
+  double single_error = 0;                   // standard error of inertia, mean over the recordings
 };
 
 Outcome Judge(const Set& set) {
@@ -105,11 +105,11 @@ Outcome Judge(const Set& set) {
   return outcome;
 }
 
-/// Over sets.
+/// Sums over sets.
 struct Tally {
   int converged = 0, disagree = 0;
   std::array<int, 3> covered = {};
-  int with_errors = 0;  // where all have all covariances; means of these
+  int with_errors = 0;  // sets in which all recordings have covariances; the means are over these
   Eigen::Array3d joint_over_added = Eigen::Array3d::Zero();
   double inertia_over_single = 0;
 };
@@ -133,7 +133,7 @@ Tally TallySets(const std::string& scenario_name, int count) {
   return tally;
 }
 
-/// Sets of five in which one has 3 % more inertia: how often it, and no other, is named.
+/// Sets of five recordings, one of which has 3 % more inertia: counts how often only that one is named.
 int CountNamed(const std::string& scenario_name, int count) {
   const CoverageScenario scenario = ScenarioOf(scenario_name);
   std::vector<char> named(static_cast<std::size_t>(count));
@@ -145,9 +145,9 @@ int CountNamed(const std::string& scenario_name, int count) {
   return static_cast<int>(std::ranges::count(named, 1));
 }
 
-// Of 200 with a probability of 1 % more than 7 come once in 1000 times; of 200 with 95 % fewer than 180 or more than
-// 199 once in 300. Information adds up; inertia, which friction hardly trades with, is told √5 times as well, but for
-// the angles' ratio of 1.6, by which the mean of single errors is that of unequal ones.
+// Of 200 trials at 1 %, more than 7 hits happen once in 1000 times; of 200 at 95 %, fewer than 180 or more than 199
+// once in 300. Information adds up. Inertia hardly correlates with friction, so its error falls by √5. The ratio of the
+// release angles, 1.6, makes the single errors unequal, so their mean is not exactly √5 times as large.
 TEST(HomogeneityErrors, AreRightInWhiteNoise) {
   const Tally tally = TallySets("white_2.5", 200);
   EXPECT_EQ(tally.converged, 200);
@@ -158,8 +158,8 @@ TEST(HomogeneityErrors, AreRightInWhiteNoise) {
   EXPECT_THAT(tally.inertia_over_single, AllOf(Ge(0.38), Le(1 / std::sqrt(5.0))));
 }
 
-// Of 100 with a probability of 1 % more than 5 come once in 2000 times. At a correlation of 0.9 intervals of single
-// recordings cover 91 % or more (coverage_scenarios.h): of 100 with 91 % fewer than 82 come once in 400 times.
+// Of 100 trials at 1 %, more than 5 hits happen once in 2000 times. At a correlation of 0.9 intervals of single
+// recordings cover 91 % or more (coverage_scenarios.h): of 100, fewer than 82 happen once in 400 times.
 TEST(HomogeneityErrors, AreRightInNoiseThatRemembers) {
   const Tally tally = TallySets("ar_0.9", 100);
   EXPECT_EQ(tally.converged, 100);
@@ -170,7 +170,7 @@ TEST(HomogeneityErrors, AreRightInNoiseThatRemembers) {
   EXPECT_THAT(tally.inertia_over_single, AllOf(Ge(0.38), Le(0.46)));
 }
 
-/// Two recordings of white noise and three that remember, on one rig.
+/// Two recordings with white noise and three with autocorrelated noise, of one rig.
 Set MakeMixedSet(int number) {
   Set set = MakeSet(ScenarioOf("ar_0.9"), number);
   const Set white = MakeSet(ScenarioOf("white_0.5"), number);
@@ -181,7 +181,7 @@ Set MakeMixedSet(int number) {
   return set;
 }
 
-// Deviations over errors have an rms of 1, of 100 sets ± 7 %; three of these.
+// Deviations over errors have an rms of 1 ± 7 % for 100 sets; the tolerance is three times that.
 TEST(HomogeneityErrors, AreHonestWhereSomeRecordingsRemember) {
   constexpr int kSets = 100;
   std::vector<double> squares(kSets, 0.0);

@@ -25,7 +25,7 @@ using testing::StartsWith;
 
 const std::vector<std::string> kShared = {"inertia", "viscous", "coulomb"};
 
-/// In SI, intervals from covariances.
+/// Options in SI with intervals from covariances.
 FitOptions RigOptions(std::string_view model = "coulomb") {
   FitOptions options = ModelOptions(model);
   options.interval = IntervalMethod::kCovariance;
@@ -38,14 +38,14 @@ Homogeneity TestRuns(const std::vector<SyntheticOptions>& runs) {
   return TestHomogeneity(alone.Runs(), kShared);
 }
 
-/// `count` runs, one of which has so many times the inertia.
+/// `count` runs; run `other` has `factor` times the inertia.
 std::vector<SyntheticOptions> WithOther(int count, std::uint64_t seed, std::size_t other, double factor) {
   std::vector<SyntheticOptions> runs = SeveralRuns(count, seed);
   runs[other].parameters[0] *= factor;
   return runs;
 }
 
-// ---- One rig -------------------------------------------------------------------------------------------------------
+// ---- Runs of one rig -----------------------------------------------------------------------------------------------
 
 TEST(Homogeneity, IsFoundInRunsOfOneRig) {
   const Homogeneity result = TestRuns(SeveralRuns(5, 1));
@@ -77,8 +77,8 @@ Alone ValuesOf(const FittedAlone& fits, std::size_t count) {
   return alone;
 }
 
-// Generalised least squares: Σ (p - m)' C⁻¹ (p - m) about m = (Σ C⁻¹)⁻¹ Σ C⁻¹ p. Student's t of 2000 samples reaches
-// 1.001 times as far as a normal variable, by which the errors may be larger and the sum smaller by 0.002.
+// Generalised least squares: Σ (p - m)' C⁻¹ (p - m) about m = (Σ C⁻¹)⁻¹ Σ C⁻¹ p. Student's t of 2000 samples is 1.001
+// times as wide as a normal distribution. The errors may be larger by that factor, and the sum smaller by 0.002.
 TEST(Homogeneity, HasTheChiSquareOfFullCovariances) {
   const FittedAlone fits(WithOther(4, 7, 1, 1.005), RigOptions());
   const Alone alone = ValuesOf(fits, 4);
@@ -129,7 +129,7 @@ TEST(Homogeneity, HasEachRunsDistanceFromTheMeanOfTheOthers) {
   }
 }
 
-// Cochran (1954), of one parameter; the truth is 0.079 kg m².
+// Cochran (1954), for one parameter; the true value is 0.079 kg m².
 TEST(Homogeneity, DescribesEachParameter) {
   const Homogeneity result = TestRuns(SeveralRuns(5, 21));
   const SharedParameter& inertia = result.parameters.at(0);
@@ -146,7 +146,7 @@ TEST(Homogeneity, DescribesEachParameter) {
   EXPECT_THAT(inertia.mean, DoubleNear(0.079, 4 * inertia.std_error));
 }
 
-// ---- Not one rig ---------------------------------------------------------------------------------------------------
+// ---- Runs of different rigs ----------------------------------------------------------------------------------------
 
 TEST(Homogeneity, NamesTheOneOfOtherInertia) {
   for (const std::size_t other : {0, 2, 4}) {
@@ -176,7 +176,7 @@ TEST(Homogeneity, NamesNeitherOfTwoThatDiffer) {
   EXPECT_THAT(result.verdict, HasSubstr("inertia"));
 }
 
-// Where each has its own inertia there is no majority: 3 % about the rig's, far beyond the errors.
+// Each run has a different inertia, with a scatter of 3 % far above the errors. There is no majority.
 TEST(Homogeneity, NamesNobodyWhereAllScatter) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 61);
   const double factors[] = {1.00, 0.96, 1.03, 0.985, 1.05};
@@ -184,13 +184,13 @@ TEST(Homogeneity, NamesNobodyWhereAllScatter) {
   const Homogeneity result = TestRuns(runs);
   EXPECT_FALSE(result.agrees());
   EXPECT_THAT(result.disagreeing, IsEmpty()) << result.verdict;
-  // Standard deviation of the factors: 0.0357.
+  // The standard deviation of the factors is 0.0357.
   const RandomEffects& scatter = result.parameters.at(0).scatter;
   EXPECT_THAT(scatter.between / 0.079, DoubleNear(0.0357, 0.001));
   EXPECT_THAT(result.verdict, HasSubstr("between recordings inertia scatters by 3.6 %"));
 }
 
-// Four that scatter by a thousandth, many of their errors, and one that is thirty times as far away.
+// Four runs scatter by a thousandth, many times their errors; one is thirty times as far away.
 TEST(Homogeneity, NamesTheOneFarFromTheScatterOfTheOthers) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 65);
   const double factors[] = {1.001, 0.9995, 1.03, 0.9985, 1.0005};
@@ -199,9 +199,9 @@ TEST(Homogeneity, NamesTheOneFarFromTheScatterOfTheOthers) {
   EXPECT_THAT(result.disagreeing, ElementsAre(2)) << result.verdict;
 }
 
-// ---- Bounds, and what is not told ----------------------------------------------------------------------------------
+// ---- Bounds and undetermined parameters ----------------------------------------------------------------------------
 
-/// Runs without viscous friction: in half of them the readings alone would have it negative.
+/// Runs without viscous friction: in half of them the estimate without bounds is negative.
 std::vector<SyntheticOptions> WithoutViscous(int count, std::uint64_t seed) {
   std::vector<SyntheticOptions> runs = SeveralRuns(count, seed);
   for (SyntheticOptions& run : runs) run.parameters[1] = 0;
@@ -263,7 +263,8 @@ TEST(Homogeneity, IsTestedOnThoseThatTell) {
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   EXPECT_EQ(result.dof, 6);
   EXPECT_FALSE(result.parameters.at(0).runs[0].value);
-  EXPECT_THAT(result.disagreeing, ElementsAre(3));  // of all recordings, not of those that tell
+  EXPECT_THAT(result.disagreeing, ElementsAre(3));  // index among all recordings, not among those that determine the
+                                                    // parameter
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Homogeneity Example(double p) {
   return result;
 }
 
-/// The sentences, of fits that warn or do not.
+/// The sentences for fits with or without the warning of a lack of fit.
 std::string WordsOf(const Homogeneity& result, bool lack_of_fit = false) {
   const Recording recording;
   const FitOptions options;
@@ -84,7 +84,7 @@ TEST(DescribeHomogeneity, NamesTheOutlierAndHowFarItIsFromTheOthers) {
   EXPECT_THAT(words, StartsWith("the recordings do not agree on inertia, viscous (chi-square 12.5, "));
   EXPECT_THAT(words, HasSubstr("; recording 3 disagrees with the others: its inertia is 3 % larger"));
   EXPECT_THAT(words, EndsWith("; fit the others without it"));
-  EXPECT_THAT(WordsOf(result, true), Not(HasSubstr("fit the others")));  // the law may be what is wrong
+  EXPECT_THAT(WordsOf(result, true), Not(HasSubstr("fit the others")));  // the law may be wrong
   result.parameters[0].runs[2].value = 0.98;
   EXPECT_THAT(WordsOf(result), HasSubstr("its inertia is 2 % smaller"));
 }
@@ -129,7 +129,7 @@ TEST(DescribeHomogeneity, TellsThatInertiasSoDifferentAreNotOfOneRig) {
       "one length";
   EXPECT_THAT(WordsOf(result), EndsWith(words));
   result.amplitude_dependence = {{"inertia", "kg m^2", 0.1, 0.01, 0.0025, -0.02, 0.5}};
-  EXPECT_THAT(WordsOf(result), EndsWith(words));  // no law's
+  EXPECT_THAT(WordsOf(result), EndsWith(words));  // no other law is recommended
   result.disagreeing = {2};
   result.parameters[0].runs[2].value = 2.06;
   EXPECT_THAT(WordsOf(result), HasSubstr("its inertia is 106 % larger"));

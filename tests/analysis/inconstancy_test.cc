@@ -32,7 +32,7 @@ FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
   return options;
 }
 
-/// The fit, with what is not constant counted.
+/// The fit, with inconstancy added to its errors.
 FittedRun Counted(const SyntheticOptions& simulated, const FitOptions& options) {
   FittedRun run = FitTo(Must(SimulateRecording(simulated)), options);
   CountInconstancy(TestConstancy(run.recording, run.fit, options), run.fit);
@@ -64,12 +64,12 @@ TEST(Inconstancy, IsTheStandardDeviationOfTheWindowsAboutTheWhole) {
   const double expected = std::sqrt(sum_of_squares / static_cast<double>(constancy.windows.size() - 1));
   CountInconstancy(constancy, run.fit);
   EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
-  EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // Without it the windows would contradict the whole.
+  EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // Otherwise the windows would contradict the whole fit.
   EXPECT_EQ(run.fit.Find("inertia")->std_error, whole.std_error);
 }
 
-// What is it for: a run of smaller swings, by the same law that does not hold, differs by many standard errors, and by
-// no more than the errors together.
+// The purpose: a run of smaller swings, fitted with the same wrong law, differs by many standard errors. The difference
+// must be within the combined total errors.
 TEST(Inconstancy, ExplainsHowRunsOfOtherAmplitudesDiffer) {
   const FitOptions options = WithLinearGravity({});
   const ParameterEstimate first = *Counted(NoisyTextbookRun("viscous"), options).fit.Find("inertia");
@@ -91,7 +91,7 @@ TEST(Inconstancy, IsSaidWithItsSize) {
   EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("beyond the errors: inertia by 0.000"));
 }
 
-// The rig's error is a factor that all torques share; this is the inertia's own.
+// The rig's error is a factor common to all torques; the inconstancy belongs to inertia alone.
 TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", TextbookRig()).fit;
   const double of_rig = *fit.Find("inertia")->systematic_std_error;
@@ -116,7 +116,7 @@ TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
 TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   Constancy constancy;
-  // Friction by two of its errors: that may be chance.
+  // Friction differs by two of its errors, which may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   constancy.halves_p = 0;
   const double whole = fit.Find("inertia")->estimate;
@@ -126,7 +126,7 @@ TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
   EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves; another run"));
 }
 
-// Windows that zigzag have no slope, and what they hold may differ between halves.
+// Windows that alternate have no slope, and the parameters they hold may differ between halves.
 TEST(Inconstancy, NeedsNoTrend) {
   FitReport fit = FitTo(NoisyTextbookRun("coulomb"), "coulomb", {}).fit;
   Constancy constancy;
@@ -139,7 +139,7 @@ TEST(Inconstancy, NeedsNoTrend) {
                       {"coulomb", "1", 0.001, 0.003, 1e-5, 1e-5, 140}};
   CountInconstancy(constancy, fit);
   EXPECT_THAT(fit.systematic_names, ElementsAre("coulomb", "viscous"));
-  // Of coulomb what the windows say, 1e-4 in the middle one; of viscous what the halves say.
+  // coulomb has the windows' scatter, 1e-4 from the middle one; viscous has the halves' scatter.
   EXPECT_THAT(SystematicError(fit, "coulomb"), AllOf(Gt(5e-5), Lt(2e-4)));
   EXPECT_THAT(SystematicError(fit, "viscous"), AllOf(Gt(0.001), Lt(0.003)));
 }

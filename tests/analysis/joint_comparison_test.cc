@@ -34,7 +34,7 @@ Compared Compare(const std::vector<Recording>& recordings, const std::vector<std
   return {std::move(joint), std::move(comparison)};
 }
 
-/// log L of Gaussian residuals with their likeliest σ.
+/// log L of Gaussian residuals with their most likely σ.
 double GaussianLogLikelihood(const Eigen::VectorXd& residual) {
   const auto n = static_cast<double>(residual.size());
   return -0.5 * n * (std::log(2 * kPi * residual.squaredNorm() / n) + 1);
@@ -42,8 +42,8 @@ double GaussianLogLikelihood(const Eigen::VectorXd& residual) {
 
 // ---- Criteria ------------------------------------------------------------------------------------------------------
 
-// As of one recording (model_comparison_test.cc), summed over three of 1000 samples; each has two of its start, a zero
-// and a σ. Without memory all samples count.
+// As for one recording (model_comparison_test.cc), summed over three recordings of 1000 samples. Each has two
+// parameters of its start, a zero and a σ. Without autocorrelation all samples count.
 TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
   const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "coulomb", 1)), {"viscous", "coulomb"});
   ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);
@@ -62,7 +62,7 @@ TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
   EXPECT_THAT(comparison.criterion, HasSubstr(", of all recordings"));
 }
 
-// The same recording twice has its optimum where one has it, and twice the likelihood.
+// The same recording used twice has the same optimum and twice the log-likelihood.
 TEST(CompareJointModels, OfARecordingTwiceHasTwiceItsLogLikelihood) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const auto [joint, comparison] = Compare({recording, recording}, kThreeLaws);
@@ -116,7 +116,7 @@ TEST(CompareJointModels, JudgesOnlyWhatConverged) {
 
 // ---- Nested tests --------------------------------------------------------------------------------------------------
 
-// One term is added, whatever the number of recordings: half χ²(0), half χ²(1), whose tail is erfc(√(x/2)) / 2.
+// One term is added, for any number of recordings: half χ²(0), half χ²(1), with the tail erfc(√(x/2)) / 2.
 TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
   for (const std::uint64_t seed : {11, 21, 31}) {
     const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", seed)), {"viscous", "coulomb"});
@@ -136,8 +136,8 @@ TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
   }
 }
 
-// Three recordings of too little each tell together what is in all of them: statistics of independent recordings of one
-// truth add up, but for what they disagree about, of expectation 2 and hardly ever above 20.
+// Three recordings with too little information each determine the common term together. Statistics of independent
+// recordings of one rig add up, except for a part from their disagreement, with expectation 2 and rarely above 20.
 TEST(CompareJointModels, AddsUpWhatRecordingsTellOfATerm) {
   std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 41);
   for (SyntheticOptions& run : runs) run.noise = 0.006;
@@ -160,12 +160,12 @@ TEST(CompareJointModels, TestsNothingThatEachRecordingAddsForItself) {
   ASSERT_THAT(comparison.tests, SizeIs(1));
   EXPECT_FALSE(comparison.tests[0].p);
   EXPECT_EQ(comparison.tests[0].reason, "what is added is not shared: each recording adds its own");
-  EXPECT_EQ(comparison.rows[1].parameters, 2 + 2 * (1 + 3 + 1));  // a dry friction of its own in each
+  EXPECT_EQ(comparison.rows[1].parameters, 2 + 2 * (1 + 3 + 1));  // each recording has a separate dry friction
 }
 
-// ---- Noise that remembers ------------------------------------------------------------------------------------------
+// ---- Autocorrelated noise ------------------------------------------------------------------------------------------
 
-/// Noise-free recordings of dry friction with AR(1) noise of 0.9, 4 mrad.
+/// Recordings of dry friction with AR(1) noise of correlation 0.9 and 4 mrad, without other noise.
 std::vector<Recording> RememberingRecordings(int count, std::uint64_t seed) {
   std::vector<SyntheticOptions> runs = ShortRuns(count, "coulomb", seed);
   for (SyntheticOptions& run : runs) {
@@ -179,8 +179,8 @@ std::vector<Recording> RememberingRecordings(int count, std::uint64_t seed) {
   return recordings;
 }
 
-// Innovations of an AR(1) of 0.9 are sqrt(1 - 0.81) of its standard deviation: ln L of N samples is larger by
-// -N/2 ln 0.19, of all recordings together. Each has a memory of its own, one parameter or more.
+// Innovations of an AR(1) with 0.9 are sqrt(1 - 0.81) of its standard deviation. ln L of all N samples together is
+// larger by -N/2 ln 0.19. Each recording has a separate autocorrelation of one or more parameters.
 TEST(CompareJointModels, TakesTheMemoryOfEachRecordingIntoAccount) {
   const auto [joint, comparison] = Compare(RememberingRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
@@ -194,7 +194,7 @@ TEST(CompareJointModels, TakesTheMemoryOfEachRecordingIntoAccount) {
   EXPECT_EQ(comparison.recommended, "coulomb") << comparison.reason;
 }
 
-// Twice the same memory and the same optimum: twice the likelihood.
+// Two copies have the same autocorrelation and the same optimum: twice the log-likelihood.
 TEST(CompareJointModels, OfARememberingRecordingTwiceHasTwiceItsLogLikelihood) {
   const Recording recording = RememberingRecordings(1, 9).front();
   const auto [joint, comparison] = Compare({recording, recording}, {"viscous", "coulomb"});
@@ -227,7 +227,7 @@ TEST(CompareJointModels, PredictsEachRecordingFromItself) {
   EXPECT_EQ(comparison.recommended, "coulomb");
 }
 
-// An angle and a rate have no common unit; over their σ the true law's residuals have an rms of 1.
+// An angle and a rate have no common unit. The true law's residuals over their σ have an rms of 1.
 TEST(CompareJointModels, HasResidualsOverTheirDeviationWhereUnitsDiffer) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 61);
   runs[1].quantity = Quantity::kRate;

@@ -36,7 +36,7 @@ TEST(FitTogether, FitsEveryModelToAllRecordings) {
   }
 }
 
-// TextbookParameters (fit_support.h): the truth in units of G.
+// TextbookParameters (fit_support.h): the true values in units of G.
 TEST(FitTogether, FindsTheTruthOfTheTrueLaw) {
   const std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 4);
   const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
@@ -50,7 +50,7 @@ TEST(FitTogether, FindsTheTruthOfTheTrueLaw) {
   EXPECT_FALSE(joint.joint[0].whole.Warns("recordings_disagree"));
 }
 
-// What is shared is the same in all recordings, and what is not, is not.
+// Shared parameters are equal in all recordings; the others differ.
 TEST(FitTogether, HasTheSharedEstimatesInEveryRecording) {
   const JointModels joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 7)), {"coulomb"}, PlainOptions());
   const FitReport& whole = joint.joint[0].whole;
@@ -96,7 +96,7 @@ TEST(FitTogether, SaysWhichRecordingKeepsItFromConverging) {
   EXPECT_THAT(joint.homogeneity[0].disagreeing, ElementsAre(1));
 }
 
-// ---- What cannot be made -------------------------------------------------------------------------------------------
+// ---- Impossible joint fits -----------------------------------------------------------------------------------------
 
 TEST(FitTogether, HasFailedWhereAModelHasNothingThatIsShared) {
   const std::vector<std::string> models = {"coulomb", "drag"};

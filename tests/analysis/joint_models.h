@@ -21,7 +21,7 @@ inline FitOptions PlainOptions() {
   return options;
 }
 
-/// Every model fitted to each recording alone.
+/// Fits every model to each recording alone.
 inline std::vector<RunModels> FitEach(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
                                       const FitOptions& options) {
   std::vector<RunModels> runs;
@@ -38,7 +38,7 @@ inline std::vector<Recording> Simulate(const std::vector<SyntheticOptions>& runs
   return recordings;
 }
 
-/// 10 s each of releases at 0.4, 0.5 ... rad.
+/// Runs of 10 s each, released at 0.4, 0.5 ... rad.
 inline std::vector<SyntheticOptions> ShortRuns(int count, std::string_view model, std::uint64_t seed) {
   std::vector<SyntheticOptions> runs = SeveralRuns(count, seed, model);
   for (SyntheticOptions& run : runs) {
@@ -48,7 +48,7 @@ inline std::vector<SyntheticOptions> ShortRuns(int count, std::string_view model
   return runs;
 }
 
-/// All physical parameters shared.
+/// Joint fits with all physical parameters shared.
 inline JointModels FitJointModels(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
                                   const FitOptions& options) {
   return FitTogether(FitEach(recordings, models, options), options, models, PhysicalNames(models));

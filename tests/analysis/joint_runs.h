@@ -13,7 +13,7 @@
 
 namespace pendulum {
 
-/// 20 s of the rig released at that angle, white noise of 2 mrad.
+/// 20 s of the rig released at `angle`, with white noise of 2 mrad.
 inline SyntheticOptions ReleasedRun(std::string_view model, double angle, std::uint64_t seed) {
   SyntheticOptions run = TextbookRun(model);
   run.release_angle = angle;
@@ -31,7 +31,7 @@ inline std::vector<SyntheticOptions> SeveralRuns(int count, std::uint64_t seed, 
   return runs;
 }
 
-/// Recordings with a fit of each, as TestHomogeneity takes them. It stays where it is: runs refer to it.
+/// Recordings with a fit each, as input of TestHomogeneity. The object cannot be moved: runs refer to it.
 class FittedAlone {
  public:
   explicit FittedAlone(FitOptions options) : options_(std::move(options)) {}

@@ -15,7 +15,7 @@ namespace {
 using testing::DoubleNear;
 using testing::ElementsAre;
 
-// S. G. Self & K.-Y. Liang, JASA 82:605 (1987), cases 5 and 7: one bounded parameter, and two.
+// S. G. Self & K.-Y. Liang, JASA 82:605 (1987), cases 5 and 7: one and two bounded parameters.
 TEST(WeightsAtBound, AreThoseOfSelfAndLiang) {
   EXPECT_THAT(WeightsAtBound(0, 1), ElementsAre(0, 1));
   EXPECT_THAT(WeightsAtBound(1, 0), ElementsAre(0.5, 0.5));
@@ -23,7 +23,7 @@ TEST(WeightsAtBound, AreThoseOfSelfAndLiang) {
   EXPECT_THAT(WeightsAtBound(2, 0, 0.0), ElementsAre(0.25, 0.5, 0.25));
 }
 
-// 5 % points: of χ²(1) 3.8415; of half χ²(0), half χ²(1) 2.7055; of the quarters 4.2306 (Self & Liang).
+// 5 % points: 3.8415 for χ²(1); 2.7055 for half χ²(0), half χ²(1); 4.2306 for weights 1/4, 1/2, 1/4 (Self & Liang).
 TEST(ChiBarTail, HasTheTabulatedFivePercentPoints) {
   EXPECT_THAT(ChiBarTail(WeightsAtBound(0, 1), 3.841459), DoubleNear(0.05, 1e-6));
   EXPECT_THAT(ChiBarTail(WeightsAtBound(1, 0), 2.705543), DoubleNear(0.05, 1e-6));
@@ -35,8 +35,8 @@ TEST(ChiBarTail, IsOneForNothingGained) {
   EXPECT_EQ(ChiBarTail(WeightsAtBound(2, 0, 0.3), -1), 1);
 }
 
-// The statistic of two bounded means of a normal pair with known covariance, by trying the four faces of the quadrant:
-// an independent simulation of what the weights say.
+// The statistic of two bounded means of a normal pair with known covariance, computed from the four faces of the
+// quadrant. It is an independent simulation of the weights.
 TEST(ChiBarTail, IsTheTailOfASimulatedProjectionOnTheQuadrant) {
   for (const double correlation : {-0.9, 0.0, 0.6}) {
     std::mt19937_64 generator(7);
@@ -48,7 +48,7 @@ TEST(ChiBarTail, IsTheTailOfASimulatedProjectionOnTheQuadrant) {
       const double a = normal(generator);
       const double b = correlation * a + other * normal(generator);
       const double both = (a * a - 2 * correlation * a * b + b * b) / (other * other);
-      // What is left when the one is held at 0 and the other follows.
+      // The remaining distance when one mean is held at 0 and the other is fitted.
       const double held_a = b - correlation * a, held_b = a - correlation * b;
       const double left_b = held_a > 0 ? a * a : both, left_a = held_b > 0 ? b * b : both;
       const double left = a > 0 && b > 0 ? 0 : std::min({left_a, left_b, both});

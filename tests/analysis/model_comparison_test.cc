@@ -36,13 +36,13 @@ Compared Compare(const Recording& recording, const std::vector<std::string>& mod
 
 constexpr CompareOptions kCriteriaOnly = {.predict = false};
 
-/// Gaussian noise of that standard deviation on no levels.
+/// A recording with Gaussian noise and without levels.
 Recording GaussianRecording(std::string_view model, std::uint64_t seed = 1) {
   return Must(SimulateRecording(NoisyRun(model, seed)));
 }
 
-// AIC = 2 k - 2 log L, BIC = k ln N - 2 log L with k parameters, σ among them; log L of Gaussian residuals with the
-// likeliest σ is -N/2 (ln(2π RSS/N) + 1).
+// AIC = 2 k - 2 log L, BIC = k ln N - 2 log L with k parameters including σ. log L of Gaussian residuals with the most
+// likely σ is -N/2 (ln(2π RSS/N) + 1).
 TEST(CompareModels, HasTheTextbooksCriteria) {
   const auto [fitted, comparison] = Compare(GaussianRecording("coulomb"), {"viscous", "coulomb"}, kCriteriaOnly);
   ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);
@@ -74,7 +74,7 @@ TEST(CompareModels, HasWeightsThatAddUpToOneAndDifferencesToTheBest) {
   EXPECT_EQ(least, 0);
 }
 
-// The richer law contains the simpler: it cannot fit worse.
+// The richer law contains the simpler one and cannot fit worse.
 TEST(CompareModels, NestsLikelihoods) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto [fitted, comparison] =
@@ -97,7 +97,7 @@ TEST(CompareModels, PredictsBetterWithTheRightLaw) {
   EXPECT_THAT(rows[1].cross_validation.standardized, DoubleNear(1, 0.1));
 }
 
-/// The same with AR(1) noise of that standard deviation [rad], on levels of the given resolution.
+/// The same recording with AR(1) noise of that standard deviation [rad], on levels of the given resolution.
 Recording CorrelatedRecording(double sigma, double resolution, std::uint64_t seed) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 0;
@@ -116,13 +116,14 @@ TEST(CompareModels, TakesMemoryIntoAccount) {
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   EXPECT_LT(comparison.effective_samples, 0.5 * static_cast<double>(fitted.used.size()));
   EXPECT_THAT(comparison.criterion, HasSubstr("remember"));
-  // An AR(1) of 0.9 has innovations of sqrt(1 - 0.81) of its standard deviation: ln L is larger by -N/2 ln(0.19).
+  // An AR(1) with 0.9 has innovations of sqrt(1 - 0.81) of its standard deviation: ln L is larger by -N/2 ln(0.19).
   const double n = static_cast<double>(fitted.used.size());
   const double gained = *comparison.rows[1].log_likelihood - fitted.fits[1].statistics.log_likelihood;
   EXPECT_NEAR(gained, -0.5 * n * std::log(0.19), 0.1 * n);
 }
 
-// Memory taken for none makes the criterion see laws in it; with it, viscous and dry friction stand.
+// If autocorrelation is ignored, the criterion finds additional laws in it. If it is included, viscous and dry friction
+// are recommended.
 TEST(CompareModels, RecommendsTheTrueLawUnderNoiseThatRemembers) {
   int right = 0;
   constexpr int kSeeds = 10;

@@ -35,8 +35,8 @@ TEST(TestNested, TestsOneBoundedTermAgainstHalfAChiSquare) {
   EXPECT_LT(tests[0].p.value_or(1), 1e-10);
 }
 
-// Two terms at their bound beside each other: w_2 = 1/4 + asin ρ / 2π is no larger than 1/2. More of both, dry friction
-// and drag, is made up for by less viscous friction, which is between them in the power of the rate: ρ > 0, w_0 < 1/4.
+// Two terms at their bound: w_2 = 1/4 + asin ρ / 2π is at most 1/2. Dry friction and drag together can be replaced by
+// less viscous friction, because its power of the rate lies between theirs. Therefore ρ > 0 and w_0 < 1/4.
 TEST(TestNested, TestsTwoBoundedTermsAgainstAMixtureOfThree) {
   const auto tests = TestsOf(Must(SimulateRecording(NoisyRun("viscous"))), {"viscous", "drag"});
   ASSERT_EQ(tests.size(), 1);
@@ -48,7 +48,7 @@ TEST(TestNested, TestsTwoBoundedTermsAgainstAMixtureOfThree) {
 }
 
 // With viscous friction alone the p of "viscous in coulomb" is 1 in half of the recordings and uniform below 1/2 in the
-// others: of 60 some 3 are below 0.05 (1 to 7 in 97 of 100 runs), some 30 are 1.
+// others. Of 60 about 3 are below 0.05 (1 to 7 in 97 of 100 runs) and about 30 are 1.
 TEST(TestNested, HasUniformProbabilitiesUnderTheSimplerLaw) {
   constexpr int kSeeds = 60;
   int below = 0, one = 0;
@@ -65,8 +65,8 @@ TEST(TestNested, HasUniformProbabilitiesUnderTheSimplerLaw) {
   EXPECT_LE(one, 42);
 }
 
-// Under the simpler law p is uniform where stiction comes out above coulomb, and the test is not made elsewhere: of 30
-// recordings none is expected to be below 0.001 (3 in 100 runs have one), some 1.5 below 0.05 (5 or more: 2 in 100).
+// Under the simpler law p is uniform if the stiction estimate is above coulomb; otherwise the test is not made. Of 30
+// recordings none is expected below 0.001 (3 in 100 runs have one), and about 1.5 below 0.05 (5 or more: 2 in 100).
 TEST(TestNested, SimulatesWhereTheSimplerLawHasNoSuchParameter) {
   int below = 0, far_below = 0, made = 0;
   for (int seed = 1; seed <= 30; ++seed) {

@@ -33,7 +33,7 @@ auto RelativelyNear(double expected, double tolerance) { return DoubleNear(expec
 
 double EstimateOf(const PartFit& part, std::string_view name) { return part.fit.Find(name)->estimate; }
 
-/// With noise of a millionth of the swing: the tolerances below are some hundred times its effect.
+/// Noise of a millionth of the swing: the tolerances below are some hundred times its effect.
 SyntheticOptions QuietRun(std::string_view model) {
   SyntheticOptions run = TextbookRun(model);
   run.noise = 4e-7;
@@ -54,7 +54,7 @@ MatrixXd Normal(Index rows, Index columns, unsigned seed) {
   return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
 }
 
-/// AR(1) of variance 1 and this correlation.
+/// AR(1) noise of variance 1 with this correlation.
 VectorXd Remembering(Index size, double correlation, unsigned seed) {
   VectorXd z = Normal(size, 1, seed);
   for (Index i = 1; i < size; ++i) z[i] = correlation * z[i - 1] + std::sqrt(1 - correlation * correlation) * z[i];
@@ -82,7 +82,7 @@ TEST(Parts, RecoverTheTruthFromANoiseFreePart) {
   const std::vector<double> truth = TextbookParameters(run.model);
   for (std::size_t i = 0; i < truth.size(); ++i)
     EXPECT_THAT(part.fit.parameters[i].estimate, RelativelyNear(truth[i], 1e-4)) << part.fit.parameters[i].info.name;
-  // 7.13 s at 100 Hz is the first sample within.
+  // 7.13 s is the first sample inside the part, at 100 Hz.
   EXPECT_EQ(part.first, 713);
   EXPECT_EQ(part.part.size(), 688);
   EXPECT_THAT(EstimateOf(part, "initial_angle"), DoubleNear(MotionOf(run).Angle(7.13), 1e-6));
@@ -101,7 +101,7 @@ TEST(Parts, HoldWhatTheyAreToldAndWhatTheWholeFitHeld) {
   EXPECT_FALSE(part.fit.Find("inertia")->fixed);
 }
 
-// Zero 0.012 rad and 0.001 rad/s: at 8 s it is at 0.020 rad.
+// The zero is 0.012 rad and drifts by 0.001 rad/s: at 8 s it is 0.020 rad.
 TEST(Parts, TakeADriftingZeroFromWhereItIsAtTheirBegin) {
   Recording recording = Must(SimulateRecording(QuietRun("viscous")));
   recording.value += 0.001 * recording.time;
@@ -123,7 +123,7 @@ TEST(Parts, SayWhyOneIsNotFitted) {
   EXPECT_THAT(parts.Fit(45, 60, {}).reason, HasSubstr("swing"));
 }
 
-// A pendulum without friction keeps A whatever the law of gravity: energy is conserved.
+// A pendulum without friction keeps its amplitude A under either gravity, because energy is conserved.
 TEST(Parts, SeeTheAmplitudeOfAnUndampedSwing) {
   for (const char* model : {"linear", "viscous"}) {
     SyntheticOptions run = QuietRun(model);
@@ -150,7 +150,7 @@ TEST(Parts, KnowTheSensorsRangeWhereItCutsReadingsOff) {
   run.range = SensorRange{-0.3, 0.3};
   const FittedRun cut = FitTo(run, "coulomb", {});
   const NoiseModel noise = Parts(cut.recording, cut.fit, ModelOptions("coulomb")).NoiseOf(cut.fit);
-  // A millionth of the range within its ends, so that rounding hides none.
+  // Inside the range by a millionth of it, so that rounding does not hide a clipped reading.
   EXPECT_THAT(noise.low, DoubleNear(-0.3, 2e-6));
   EXPECT_THAT(noise.high, DoubleNear(0.3, 2e-6));
   EXPECT_EQ(noise.sigma, cut.fit.noise.sigma);
@@ -158,7 +158,7 @@ TEST(Parts, KnowTheSensorsRangeWhereItCutsReadingsOff) {
 
 // ---- CutEvenly -----------------------------------------------------------------------------------------------------
 
-/// Linear gravity with viscous friction: A = A_0 exp(-t / τ) of t after the release, τ = 2 I / b.
+/// Linear gravity with viscous friction: A = A_0 exp(-t / τ), t after the release, τ = 2 I / b.
 struct ExponentialDecay {
   explicit ExponentialDecay(double decay_time) {
     SyntheticOptions run = QuietRun("linear");
@@ -174,7 +174,8 @@ struct ExponentialDecay {
   std::vector<double> ends;
 };
 
-// ∫ A^(2/3) dt to t is 1.5 τ (1 - exp(-t / (1.5 τ))): a third of the whole is reached where that is. Cuts are at ends.
+// ∫ A^(2/3) dt up to t is 1.5 τ (1 - exp(-t / (1.5 τ))). The test computes where it reaches thirds of the whole. Cuts
+// are at ends of half swings.
 TEST(CutEvenly, MakesEqualIntegralsOfAKnownDecay) {
   const double decay = 12;
   const ExponentialDecay swing(decay);
@@ -190,7 +191,8 @@ TEST(CutEvenly, MakesEqualIntegralsOfAKnownDecay) {
   EXPECT_EQ(cuts.back(), swing.ends.size() - 1);
 }
 
-// A decay within two periods has told half of all after one: three periods are the least.
+// In a decay within two periods, half of the integral is reached after one period. A part must still have three
+// periods.
 TEST(CutEvenly, LeavesThreePeriodsToEachPart) {
   const ExponentialDecay swing(2.6);
   const Parts parts(swing.whole.recording, swing.whole.fit, ModelOptions("linear"));
@@ -237,7 +239,7 @@ TEST(ScoreCovariance, OfNoiseThatRemembersHasItsCorrelations) {
   EXPECT_THAT(covariance(0, 0), RelativelyNear(expected, 1e-9));
 }
 
-// Fisher's information of a location of Student's t is (ν + 1) / (ν + 3) / scale²; 20000 draws give it to 1 %.
+// Fisher's information of the location of Student's t is (ν + 1) / (ν + 3) / scale²; 20000 draws reproduce it to 1 %.
 TEST(ScoreCovariance, OfStudentsNoiseIsItsInformation) {
   NoiseModel noise;
   noise.family = NoiseFamily::kStudent;
@@ -268,7 +270,7 @@ TEST(ScoreCovariance, OfCoarseLevelsIsTheInformationThatTheyLeave) {
   EXPECT_THAT(covariance(0, 0) / 20000, RelativelyNear(expected / 0.25, 0.02));
 }
 
-// Of residuals about the mean of N correlated values, 4000 times: their variance, mended, is 1 within 3 %.
+// Residuals about the mean of N correlated values, 4000 times: their corrected variance is 1 within 3 %.
 TEST(Inflation, MendsTheVarianceOfResidualsAboutAMean) {
   constexpr Index kCount = 50;
   double lost = 0;  // the mean's variance over that of independent values
@@ -283,7 +285,7 @@ TEST(Inflation, MendsTheVarianceOfResidualsAboutAMean) {
   EXPECT_THAT(variance * Inflation({}, kCount, 1, lost), DoubleNear(1, 0.03));
 }
 
-// A likelihood's σ² is RSS / N, short by (N - k) / N when residuals are independent.
+// A likelihood's σ² is RSS / N; for independent residuals it is too small by (N - k) / N.
 TEST(Inflation, CountsParametersOnce) {
   EXPECT_DOUBLE_EQ(Inflation({}, 100, 5, 5), 1);
   NoiseModel quantized;
@@ -329,7 +331,7 @@ TEST(Linearize, PredictsTheRefitAfterASmallChange) {
   EXPECT_THAT(predicted[0], Not(DoubleNear(0, 0.05 * *before.fit.parameters[0].std_error)));
 }
 
-// The errors that the fit reports are of another implementation.
+// The fit's reported errors come from another implementation.
 TEST(Linearize, HasTheErrorsOfTheFitOnItsDiagonal) {
   const FittedRun run = FitTo(NoisyRun(), "coulomb", {});
   const LinearFit linear = LinearOf(run, true);
@@ -340,7 +342,7 @@ TEST(Linearize, HasTheErrorsOfTheFitOnItsDiagonal) {
   }
 }
 
-// Two independent values of errors s and s make one of s / √2: a prior that is as good as the data.
+// A prior as accurate as the data: two independent values with errors s have a mean with error s / √2.
 TEST(Linearize, CountsPriors) {
   const FittedRun run = FitTo(NoisyRun(), "coulomb", {});
   const double alone = std::sqrt(LinearOf(run, true).inverse(0, 0));
@@ -348,7 +350,7 @@ TEST(Linearize, CountsPriors) {
   EXPECT_THAT(std::sqrt(LinearOf(run, true, priors).inverse(0, 0)), RelativelyNear(alone / std::sqrt(2.0), 1e-6));
 }
 
-// Dry friction fitted to a recording that has none is at 0 in about half of all.
+// Dry friction fitted to a recording without it is at 0 in about half of the recordings.
 TEST(Linearize, FreesWhatABoundHoldsWhenAsked) {
   SyntheticOptions run = NoisyRun("viscous");
   FittedRun fitted;
@@ -367,9 +369,9 @@ TEST(Linearize, IsNothingWithoutAMotion) {
   EXPECT_FALSE(Linearize(run.recording, run.fit, {}, terms, {}, true));
 }
 
-// ---- Words and numbers ---------------------------------------------------------------------------------------------
+// ---- Sentences and numbers -----------------------------------------------------------------------------------------
 
-// Tables of the normal distribution.
+// Values from tables of the normal distribution.
 TEST(TwoSidedP, IsThatOfTheNormalDistribution) {
   EXPECT_THAT(TwoSidedP(1.959963985), DoubleNear(0.05, 1e-9));
   EXPECT_THAT(TwoSidedP(-3.290526731), DoubleNear(0.001, 1e-10));

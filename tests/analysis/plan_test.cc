@@ -28,7 +28,7 @@ using testing::HasSubstr;
 constexpr double kFrequency = 5;  // rad/s
 constexpr double kInertiaOverTorque = 1 / (kFrequency * kFrequency);
 
-/// 40 s of a swing that begins with the recording, at 100 Hz, with white noise: 32 periods.
+/// A swing that begins with the recording: 40 s at 100 Hz with white noise, 32 periods.
 SyntheticOptions LightRun(std::string_view model, double viscous = 0) {
   SyntheticOptions run;
   run.model = Must(FindMotionModel(model));
@@ -52,7 +52,7 @@ std::vector<double> Values(const Plan& plan, std::string_view factor) {
   return values;
 }
 
-/// Standard errors of parameter i in the rows of a factor, each over that of the row before.
+/// Ratios of the standard errors of parameter i between successive rows of a factor.
 std::vector<double> Steps(const Plan& plan, std::string_view factor, std::size_t i) {
   const std::vector<PlanRow> rows = Rows(plan, factor);
   std::vector<double> steps;
@@ -77,14 +77,14 @@ std::vector<double> BaseErrors(const SyntheticOptions& run) {
 
 double Bias(const SyntheticOptions& run) { return LinearInertiaBias(run, run.start_time + run.duration).value(); }
 
-/// Square of an undamped pendulum's period over its small-angle period, less 1.
+/// Squared ratio of an undamped pendulum's period to its small-angle period, minus 1.
 double PeriodExcess(double amplitude) {
   const double ratio = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * amplitude));
   return ratio * ratio - 1;
 }
 
-/// Least relative standard error of inertia, twice that of the frequency of a sinusoid in white noise of many periods
-/// (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, example 3.14).
+/// Smallest relative standard error of inertia: twice that of the frequency of a sinusoid in white noise over many
+/// periods (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, example 3.14).
 double SinusoidError(const SyntheticOptions& run, double amplitude) {
   const double count = run.duration * run.sample_rate;
   return 2 * std::sqrt(24 / count) * run.noise / (amplitude * run.duration * kFrequency);
@@ -107,7 +107,7 @@ TEST(MakePlan, VariesOneFactorAtATimeAndKeepsTheBaseInEach) {
   EXPECT_EQ(plan.physical, 2);
 }
 
-// A range that cuts one side off tells a release on that side from one on the other.
+// A range that cuts off one side gives different results for releases on the two sides.
 TEST(MakePlan, HasRowsThatAreTheBasesOfTheirOwnPlans) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.release_angle = -0.4;
@@ -139,15 +139,15 @@ TEST(MakePlan, HasNoResolutionToVaryWithoutOne) {
   EXPECT_THAT(Values(Must(MakePlan(LightRun("viscous"))), "resolution"), ElementsAre());
 }
 
-// Readings of a linear pendulum are the amplitude times a function of I and b, besides the zero.
+// Readings of a linear pendulum are the amplitude times a function of I and b, plus the zero.
 TEST(MakePlan, HalvesTheErrorOfInertiaWhenTheAmplitudeDoubles) {
   const Plan plan = Must(MakePlan(LightRun("linear", 0.001)));
   EXPECT_THAT(Steps(plan, "release_angle", 0), Each(DoubleNear(0.5, 1e-6)));
   EXPECT_THAT(Steps(plan, "release_angle", 1), Each(DoubleNear(0.5, 1e-6)));
-  EXPECT_THAT(Steps(plan, "release_angle", 2), Each(DoubleNear(1, 1e-6)));  // that of the release angle stays
+  EXPECT_THAT(Steps(plan, "release_angle", 2), Each(DoubleNear(1, 1e-6)));  // the error of the release angle stays
 }
 
-// Of 16, 32, 64 and 128 whole periods; with fewer the sinusoid's ends show.
+// For 16, 32, 64 and 128 whole periods; with fewer the ends of the sinusoid matter.
 TEST(MakePlan, GivesTheErrorOfASinusoidsFrequency) {
   const SyntheticOptions run = LightRun("linear");
   const Plan plan = Must(MakePlan(run));
@@ -157,7 +157,8 @@ TEST(MakePlan, GivesTheErrorOfASinusoidsFrequency) {
   EXPECT_THAT(Steps(plan, "rate", 0), Each(DoubleNear(0.5, 0.005)));
 }
 
-// Where noise drowns levels, they add their twelfth (Widrow & Kollár): 1/4, 1 and 4 of half the noise.
+// If noise is larger than the levels, they add a variance of q²/12 (Widrow & Kollár); levels are 1/4, 1 and 4 of half
+// the noise.
 TEST(MakePlan, LetsErrorsGrowWithTheResolution) {
   SyntheticOptions run = LightRun("linear");
   run.resolution = 0.5 * run.noise;
@@ -170,7 +171,7 @@ TEST(MakePlan, TakesLevelsWithoutNoiseForWhiteNoiseOfTheirRounding) {
   SyntheticOptions levels = LightRun("viscous", 0.001);
   levels.noise = 0;
   levels.resolution = kCount;
-  levels.noise_correlation = 0.5;  // of none
+  levels.noise_correlation = 0.5;  // correlation without noise
   SyntheticOptions noisy = levels;
   noisy.noise = kCount / std::sqrt(12.0);
   noisy.resolution = noisy.noise_correlation = 0;
@@ -191,14 +192,15 @@ TEST(MakePlan, CountsAHoldWithoutNoiseAsOneReading) {
   }
 }
 
-/// |bias| of the linear formulas over the standard error of inertia at the amplitude where they are found equal.
+/// |bias| of the linear formulas over the standard error of inertia, at the amplitude where the plan says they are
+/// equal.
 double BiasOverErrorWhereEqual(SyntheticOptions run) {
   run.release_angle = Must(MakePlan(run)).amplitude_of_equal_bias.value();
   const Plan there = Must(MakePlan(run));
   return std::abs(Base(there).linear_bias.value()) / (Base(there).std_errors[0].value() / run.parameters[0]);
 }
 
-// They go as the amplitude's square and its inverse, and the amplitude is good to 1e-4.
+// The bias is proportional to the amplitude's square, the error to its inverse; the amplitude is accurate to 1e-4.
 TEST(MakePlan, FindsTheAmplitudeWhereTheLinearFormulasErrAsMuchAsNoiseDoes) {
   for (const std::string_view model : {"viscous", "drag"}) {
     SyntheticOptions run = TextbookRun(model);
@@ -207,7 +209,7 @@ TEST(MakePlan, FindsTheAmplitudeWhereTheLinearFormulasErrAsMuchAsNoiseDoes) {
   }
 }
 
-// Dry friction leaves less than a whole period below some amplitude, and errors of the decrement above it.
+// Below some amplitude dry friction leaves less than a whole period; above it the decrement has errors.
 TEST(MakePlan, FindsNoAmplitudeBelowThatOfAWholePeriod) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 1e-5;
@@ -218,7 +220,7 @@ TEST(MakePlan, FindsNoAmplitudeBelowThatOfAWholePeriod) {
   EXPECT_LT(LinearInertiaBias(run, 20).value(), -0.01);
 }
 
-// A²/8 = SinusoidError(A), which goes as 1/A.
+// A²/8 = SinusoidError(A), which is proportional to 1/A.
 TEST(MakePlan, FindsThatAmplitudeOfAnUndampedPendulum) {
   const SyntheticOptions run = LightRun("viscous");
   const double expected = std::cbrt(8 * SinusoidError(run, 1));
@@ -256,7 +258,7 @@ TEST(MakePlan, ScalesAngleAndRateOfALinearMovingStart) {
 TEST(MakePlan, LeavesTheAmplitudeOfATumblingPendulumAlone) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.start = StartKind::kMoving;
-  run.initial_rate = 2.1 * kFrequency;  // over the top above 2 ω0
+  run.initial_rate = 2.1 * kFrequency;  // goes over the top above 2 ω0
   const Plan plan = Must(MakePlan(run));
   EXPECT_THAT(Values(plan, "amplitude"), ElementsAre());
   EXPECT_EQ(plan.amplitude_of_equal_bias, std::nullopt);
@@ -318,17 +320,18 @@ TEST(LinearInertiaBias, IsTheSquareOfThePeriodsRatioWithoutFriction) {
     run.release_angle = amplitude;
     EXPECT_THAT(Bias(run) / PeriodExcess(amplitude), DoubleNear(1, 1e-5)) << amplitude;  // 1e-10 of the inertia
   }
-  EXPECT_THAT(PeriodExcess(0.1) / (0.1 * 0.1 / 8), DoubleNear(1, 1e-2));  // what the textbook knows of it
+  EXPECT_THAT(PeriodExcess(0.1) / (0.1 * 0.1 / 8), DoubleNear(1, 1e-2));  // the textbook's approximation
 }
 
-// The formulas are exact for the pendulum they are made for, even a strongly damped one.
+// The formulas are exact for a linear pendulum with viscous friction, even if it is strongly damped.
 TEST(LinearInertiaBias, IsNoneForALinearPendulumWithViscousFriction) {
   for (const double damping_ratio : {0.0, 0.004, 0.3}) {
     EXPECT_THAT(Bias(LightRun("linear", 2 * damping_ratio / kFrequency)), DoubleNear(0, 1e-10)) << damping_ratio;
   }
 }
 
-// Dry friction leaves the period of a linear pendulum alone and takes 2 τ_c / G off each turning point: -ζ² is left.
+// Dry friction does not change the period of a linear pendulum and reduces each turning point by 2 τ_c / G: the bias is
+// -ζ².
 TEST(LinearInertiaBias, IsThatOfTheDecrementForDryFrictionAndLinearGravity) {
   SyntheticOptions run = LightRun("coulomb");
   run.model.gravity = Gravity::kLinear;
@@ -341,7 +344,7 @@ TEST(LinearInertiaBias, IsThatOfTheDecrementForDryFrictionAndLinearGravity) {
   EXPECT_THAT(Bias(run) / (-square / (4 * kPi * kPi + square)), DoubleNear(1, 1e-5));
 }
 
-// Sum of the periods at the amplitudes on the way, by another way through the half swings.
+// Sum of the periods at the decreasing amplitudes, computed independently from the half swings.
 TEST(LinearInertiaBias, IsTheMeanOfThatOfAllPeriodsWithFriction) {
   SyntheticOptions run = TextbookRun("drag");
   const std::vector<double> friction(run.parameters.begin() + 1, run.parameters.end());

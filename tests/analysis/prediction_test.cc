@@ -30,7 +30,8 @@ using testing::Lt;
 
 constexpr double kSigma = 0.002;  // rad
 
-// Of 1700 independent residuals the rms scatters by 1.7 %, of 700 by 2.7 %, and extrapolated parameters add to that.
+// The rms of 1700 independent residuals scatters by 1.7 %, of 700 by 2.7 %; errors of extrapolated parameters add to
+// that.
 const auto kAboutOne = AllOf(Ge(0.9), Le(1.1));
 
 SyntheticOptions Noisy(SyntheticOptions run, double noise = kSigma) {
@@ -56,9 +57,9 @@ Predictions Predict(const SyntheticOptions& run, const FitOptions& options) {
 
 Predictions Predict(const SyntheticOptions& run, std::string_view model) { return Predict(run, ModelOptions(model)); }
 
-/// Means over seeds 1 to `count`; each cross-validation must be about 1 on its own.
+/// Means over seeds 1 to `count`; each cross-validation alone must be about 1.
 struct Means {
-  double across = 0, forward = 0;  // standardized
+  double across = 0, forward = 0;  // standardized rms
   double across_rms = 0, forward_rms = 0;
 };
 
@@ -79,7 +80,7 @@ Means MeansOver(int count, SyntheticOptions run, const FitOptions& options) {
   return means;
 }
 
-/// `noise`: what a reading differs by from the trajectory. The trajectory's own error is up to 10 % of that.
+/// `noise`: difference between a reading and the trajectory. The trajectory's own error is up to 10 % of that.
 void ExpectForeseen(const SyntheticOptions& run, const FitOptions& options, double noise) {
   constexpr int kSeeds = 8;
   const Means means = MeansOver(kSeeds, run, options);
@@ -109,7 +110,7 @@ TEST(Prediction, OfTheRightModelOfAGyroIsOffByTheNoise) {
   }
 }
 
-// Quantized: σ is without the rounding. Gaussian: σ has it already.
+// A quantized σ does not include the rounding; a Gaussian σ does.
 TEST(Prediction, CountsTheRoundingOnceForBothFamilies) {
   for (const auto& [counts, family] :
        {std::pair(0.3, NoiseFamily::kQuantized), std::pair(2.0, NoiseFamily::kGaussian)}) {
@@ -120,7 +121,8 @@ TEST(Prediction, CountsTheRoundingOnceForBothFamilies) {
   }
 }
 
-// Gaussian noise asked for where the rounding is half of it, and the other way round: σ has the rounding, or has not.
+// Gaussian noise is requested where rounding is half of it, and quantized noise in the opposite case. σ includes the
+// rounding only for Gaussian noise.
 TEST(Prediction, KnowsWhatSigmaOfTheFamilyAskedForHolds) {
   for (const auto& [counts, noise] :
        {std::pair(0.3, NoiseFamily::kGaussian), std::pair(1.5, NoiseFamily::kQuantized)}) {
@@ -132,7 +134,7 @@ TEST(Prediction, KnowsWhatSigmaOfTheFamilyAskedForHolds) {
   }
 }
 
-// Where the residuals are a count, some parts alone would be taken for the other family than the whole.
+// With residuals of about a count some parts alone would get another noise family than the whole fit.
 TEST(Prediction, KeepsTheFamilyOfTheFit) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"), 0.957 * kCount);
   run.resolution = kCount;
@@ -146,7 +148,7 @@ TEST(Prediction, KeepsTheFamilyOfTheFit) {
   }
 }
 
-// Student's t of 4 degrees of freedom has the variance 2 (times its scale squared).
+// Student's t with 4 degrees of freedom has the variance 2 (times its scale squared).
 TEST(Prediction, ComparesWithTheWholeScatterOfARobustFamily) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   run.noise_freedom = 4;
@@ -159,9 +161,9 @@ TEST(Prediction, ComparesWithTheWholeScatterOfARobustFamily) {
   }
 }
 
-// From some 40 readings at 11 a period the parameters are known so badly that the trajectory adds more than a quarter
-// to the variance. With σ² from 34 degrees of freedom the mean square of t is 34/32, and errors of few parameters
-// scatter.
+// About 40 readings at 11 per period determine the parameters so badly that the trajectory adds more than a quarter to
+// the variance. With σ² from 34 degrees of freedom the mean square of t is 34/32. The errors of few parameters scatter,
+// too.
 TEST(PredictForward, CountsTheErrorsOfTheParameters) {
   constexpr int kSeeds = 100;
   SyntheticOptions run = Noisy(MovingRun("coulomb"));
@@ -179,9 +181,9 @@ TEST(PredictForward, CountsTheErrorsOfTheParameters) {
   EXPECT_THAT(standardized, AllOf(Ge(0.85), Le(1.25)));
 }
 
-// ---- What is left out ----------------------------------------------------------------------------------------------
+// ---- Left-out readings ---------------------------------------------------------------------------------------------
 
-// From a period after the release to the end; 40 % of what follows the release.
+// Cross-validation covers one period after the release to the end; forward prediction the last 40 % after the release.
 TEST(Prediction, IsOfWhatFollowsTheFirstPeriodOrTheFirstPart) {
   const Predictions released = Predict(Noisy(TextbookRun("coulomb")), "coulomb");
   const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
@@ -201,11 +203,11 @@ TEST(PredictForward, IsTheTrajectoryOfAFitToTheFirstPart) {
   const Eigen::VectorXd residual = used.value - motion.Readings(used.time).value();
   const Eigen::Index rest = used.size() - part.recording.size();
   const double rms = std::sqrt(residual.tail(rest).squaredNorm() / static_cast<double>(rest));
-  // The fitted release differs from 1.9 s by less than the interval between samples: one sample more or less.
+  // The fitted release differs from 1.9 s by less than a sampling interval: one sample more or less.
   EXPECT_THAT(predictions.forward.rms, DoubleNear(rms, 2e-3 * rms));
 }
 
-// With every parameter held at the truth the predictions are the truth, and the errors the noise itself.
+// With every parameter fixed at the true value the predictions are exact, and the errors are the noise.
 TEST(CrossValidate, LeavesFixedParametersFixed) {
   const SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   FitOptions options = ModelOptions("coulomb");
@@ -217,7 +219,7 @@ TEST(CrossValidate, LeavesFixedParametersFixed) {
   const auto count = predictions.across.samples;
   const Eigen::VectorXd noise = (predictions.run.recording.value - clean.value).tail(count);
   const double rms = std::sqrt(noise.squaredNorm() / static_cast<double>(count));
-  EXPECT_THAT(predictions.across.rms, DoubleNear(rms, 1e-5 * rms));  // traced to 1e-8 rad
+  EXPECT_THAT(predictions.across.rms, DoubleNear(rms, 1e-5 * rms));  // trajectory accurate to 1e-8 rad
   EXPECT_THAT(predictions.across.standardized, kAboutOne);
 }
 
@@ -235,7 +237,7 @@ TEST(Prediction, HoldsWhatTheOptionsHold) {
 TEST(Prediction, SkipsWhatWasNotRecorded) {
   const Recording whole = Must(SimulateRecording(Noisy(TextbookRun("coulomb"))));
   Recording recording = whole;
-  const Eigen::Index before = 900, after = 500;  // nothing from 9 to 15 s: more than a stretch
+  const Eigen::Index before = 900, after = 500;  // no samples from 9 to 15 s: longer than a block
   recording.time.resize(before + after);
   recording.value.resize(before + after);
   recording.time << whole.time.head(before), whole.time.tail(after);
@@ -294,7 +296,7 @@ TEST(Prediction, FollowsAZeroThatDrifts) {
   EXPECT_THAT(predictions.forward.standardized, AllOf(Ge(0.8), Le(1.2)));
 }
 
-// Where its friction has no dry part coulomb is at its bound, or near it, in each of the fits.
+// A recording without dry friction: coulomb is at its bound, or near it, in every fit.
 TEST(Prediction, IsMadeWithAParameterAtItsBound) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SyntheticOptions run = Noisy(TextbookRun("viscous"));
@@ -307,7 +309,7 @@ TEST(Prediction, IsMadeWithAParameterAtItsBound) {
 
 // ---- Wrong models and no predictions -------------------------------------------------------------------------------
 
-// Viscous friction alone cannot follow an envelope that falls in a straight line.
+// Viscous friction alone cannot follow an envelope that falls linearly.
 TEST(Prediction, OfTheWrongModelIsOffByMuchMore) {
   for (SyntheticOptions run : {Noisy(TextbookRun("coulomb")), Noisy(MovingRun("coulomb"))}) {
     for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
@@ -332,14 +334,14 @@ void ExpectNothing(const Prediction& prediction, const std::string& reason) {
 
 TEST(Prediction, NeedsThreePeriods) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
-  run.duration = 5;  // 3.1 s of swing, of 1.315 s each
+  run.duration = 5;  // 3.1 s of swing, with a period of 1.315 s
   const Predictions predictions = Predict(run, "coulomb");
   const std::string reason = "swings for 2.3 periods; at least 3";
   ExpectNothing(predictions.across, reason);
   ExpectNothing(predictions.forward, reason);
 }
 
-// Less than one sample a period: the fit is one of an apparent swing.
+// Less than one sample per period: the fit follows an aliased swing.
 TEST(Prediction, SaysThatSamplesAreTooFarApart) {
   SyntheticOptions run = Noisy(MovingRun("coulomb"));
   run.sample_rate = 0.9;
@@ -349,7 +351,7 @@ TEST(Prediction, SaysThatSamplesAreTooFarApart) {
   ExpectNothing(predictions.forward, "too far apart");
 }
 
-// At 160 degrees the small-angle model leaves most of the variance: its fits do not converge, and have no errors.
+// At 160 degrees the small-angle model leaves most of the variance: its fits do not converge and have no errors.
 TEST(Prediction, HasNoStandardDeviationsWithoutErrors) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   run.release_angle = 2.8;
@@ -362,16 +364,16 @@ TEST(Prediction, HasNoStandardDeviationsWithoutErrors) {
   }
 }
 
-// Starts that no trajectory has, as of a fit that failed.
+// Start values without a possible trajectory, as after a failed fit.
 TEST(Prediction, SaysThatAFitToTheRestCannotBeMade) {
   FittedRun run = FitTo(Noisy(TextbookRun("coulomb")), "coulomb", {});
   FitOptions options = ModelOptions("coulomb");
-  options.fixed["coulomb"] = run.fit.parameters[2].estimate = 1;  // holds it for ever
+  options.fixed["coulomb"] = run.fit.parameters[2].estimate = 1;  // holds the pendulum forever
   ExpectNothing(CrossValidate(run.recording, run.fit, options), "cannot be made");
   ExpectNothing(PredictForward(run.recording, run.fit, options), "cannot be made");
 }
 
-// Readings of numbers, not of a sensor: the errors of both are the trajectory's.
+// Noise-free readings: both prediction errors are the trajectory's numerical error.
 TEST(Prediction, IsFiniteWithoutNoise) {
   const Predictions predictions = Predict(TextbookRun("coulomb"), "coulomb");
   EXPECT_THAT(predictions.across.rms, Lt(1e-7));

@@ -27,14 +27,14 @@ constexpr int kSets = 100;
 constexpr int kRuns = 5;
 constexpr double kInertia = 0.079;  // kg m², of CoverageScenarios
 
-/// How often intervals of the rig's inertia contain it, of sets of recordings whose inertia scatters about it.
+/// Counts of intervals that contain the rig's inertia, over sets of recordings whose inertia scatters about it.
 struct Covered {
   std::atomic<int> by_mean = 0, by_joint = 0, between = 0;
 };
 
 bool Contains(double lower, double upper, double value) { return lower <= value && value <= upper; }
 
-/// One set: each recording has an inertia of its own, drawn about the rig's with that relative standard deviation.
+/// One set: each recording has a separate inertia, drawn about the rig's with that relative standard deviation.
 void CountSet(const CoverageScenario& scenario, double scatter, std::uint64_t set, Covered& covered) {
   std::mt19937_64 generator(900 + set);
   boost::random::normal_distribution<double> normal;

@@ -32,7 +32,7 @@ VectorXd Five(const std::array<double, 5>& numbers) {
   return five;
 }
 
-/// Five runs with errors of their own that scatter by some seven times these.
+/// Five runs that scatter by about seven times their errors.
 Effects Scattered() { return {Five({1.00, 1.07, 0.93, 1.12, 0.98}), Five({0.010, 0.012, 0.008, 0.020, 0.015})}; }
 
 /// Five runs that differ by less than their errors: Q = 1.4 for 4 degrees of freedom.
@@ -47,7 +47,7 @@ double MeanAt(const Effects& effects, double between_squared) {
   return (weight * effects.value.array()).sum() / weight.sum();
 }
 
-/// Q of Cochran with weights 1 / (std_error² + between²).
+/// Cochran's Q with weights 1 / (std_error² + between²).
 double StatisticAt(const Effects& effects, double between_squared) {
   const double mean = MeanAt(effects, between_squared);
   return (WeightsAt(effects, between_squared) * (effects.value.array() - mean).square()).sum();
@@ -57,7 +57,7 @@ RandomEffects Summarize(const Effects& effects) { return SummarizeScatter(effect
 
 // ---- Defining equations --------------------------------------------------------------------------------------------
 
-// Paule & Mandel (1982): Q is what is expected of it, K - 1.
+// Paule & Mandel (1982): Q equals its expectation, K - 1.
 TEST(SummarizeScatter, SolvesTheEquationOfPauleAndMandel) {
   const RandomEffects effects = Summarize(Scattered());
   EXPECT_GT(effects.between, 0);
@@ -66,7 +66,7 @@ TEST(SummarizeScatter, SolvesTheEquationOfPauleAndMandel) {
   EXPECT_THAT(effects.mean, DoubleNear(MeanAt(Scattered(), squared), 1e-12));
 }
 
-// Viechtbauer (2007): Q at the ends is the 97.5 % and the 2.5 % point of χ²(4), 11.143287 and 0.484419 (any table).
+// Viechtbauer (2007): at the ends Q is the 97.5 % and the 2.5 % point of χ²(4), 11.143287 and 0.484419 (from tables).
 TEST(SummarizeScatter, HasAnIntervalBetweenPointsOfChiSquare) {
   const RandomEffects effects = Summarize(Scattered());
   EXPECT_THAT(StatisticAt(Scattered(), std::pow(effects.between_lower95, 2)), DoubleNear(11.143287, 1e-5));
@@ -94,24 +94,24 @@ TEST(SummarizeScatter, OfRunsThatAgreeHasNoScatterAndTheWeightedMean) {
   EXPECT_THAT(effects.std_error, DoubleNear(1 / std::sqrt(WeightsAt(Agreeing(), 0).sum()), 1e-14));
 }
 
-// Runs that happen to agree to the last digit have errors nevertheless: 0.01 / √3, without any scatter.
+// Runs that agree to the last digit still have errors: 0.01 / √3, without any scatter.
 TEST(SummarizeScatter, OfEqualValuesHasTheErrorOfTheirErrors) {
   const RandomEffects effects = SummarizeScatter(VectorXd::Constant(3, 2.5), VectorXd::Constant(3, 0.01));
   EXPECT_DOUBLE_EQ(effects.mean, 2.5);
   EXPECT_THAT(effects.std_error, DoubleNear(0.01 / std::sqrt(3.0), 1e-15));
   EXPECT_EQ(effects.between, 0);
-  EXPECT_TRUE(std::isnan(effects.between_upper95));  // so little scatter has no end that it excludes
+  EXPECT_TRUE(std::isnan(effects.between_upper95));  // scatter this small excludes no upper end
 }
 
-// Two runs a distance d apart of errors s: Q = (d² / 2) / (s² + between²) = 1, so between² = d²/2 - s².
+// Two runs with errors s at a distance d: Q = (d² / 2) / (s² + between²) = 1, so between² = d²/2 - s².
 TEST(SummarizeScatter, OfTwoRunsHasTheScatterOfTheirDistance) {
   const RandomEffects effects = SummarizeScatter(Eigen::Vector2d(1, 1.3), Eigen::Vector2d(0.1, 0.1));
   EXPECT_THAT(effects.between * effects.between, DoubleNear(0.09 / 2 - 0.01, 1e-10));
   EXPECT_THAT(effects.mean, DoubleNear(1.15, 1e-14));
-  EXPECT_THAT(effects.std_error, DoubleNear(0.15, 1e-9));  // of the mean of two: half their distance
+  EXPECT_THAT(effects.std_error, DoubleNear(0.15, 1e-9));  // error of the mean of two values: half their distance
 }
 
-// With scatter far above the errors all runs count alike: mean, and standard deviation over √K.
+// With scatter far above the errors all runs have equal weight: the mean, and the standard deviation over √K.
 TEST(SummarizeScatter, FarAboveTheErrorsIsTheMeanOfTheRuns) {
   Effects runs = Scattered();
   runs.std_error *= 1e-4;
@@ -156,8 +156,8 @@ TEST(SummarizeScatter, DoesNotDependOnTheOrderOfRuns) {
 
 // ---- Published data ------------------------------------------------------------------------------------------------
 
-/// 13 trials of the BCG vaccine: with tuberculosis and without among the vaccinated, then among the others (G. A.
-/// Colditz et al., J. Am. Med. Assoc. 271:698, 1994; dat.bcg of W. Viechtbauer's metafor).
+/// 13 trials of the BCG vaccine: vaccinated people with and without tuberculosis, then the same for the control group
+/// (G. A. Colditz et al., J. Am. Med. Assoc. 271:698, 1994; dat.bcg of W. Viechtbauer's metafor).
 constexpr std::array<std::array<double, 4>, 13> kVaccine = {{{4, 119, 11, 128},
                                                              {6, 300, 29, 274},
                                                              {3, 228, 11, 209},
@@ -200,7 +200,7 @@ TEST(SummarizeScatter, HasTheScatterPublishedOfTheVaccine) {
   EXPECT_THAT(effects.between * effects.between, DoubleNear(0.3180, 2e-4));
 }
 
-// metafor-project.org, analyses:vanhouwelingen2002, of the log odds ratios: Q-profile 0.1302 to 1.1812.
+// Log odds ratios, Q-profile interval 0.1302 to 1.1812 (metafor-project.org, analyses:vanhouwelingen2002).
 TEST(SummarizeScatter, HasTheIntervalPublishedOfTheVaccine) {
   const RandomEffects effects = Summarize(LogOddsRatios());
   EXPECT_THAT(std::pow(effects.between_lower95, 2), DoubleNear(0.1302, 1e-4));
@@ -210,7 +210,7 @@ TEST(SummarizeScatter, HasTheIntervalPublishedOfTheVaccine) {
 // ---- Coverage ------------------------------------------------------------------------------------------------------
 
 struct Coverage {
-  double mean = 0, between = 0;  // shares of intervals that hold the truth
+  double mean = 0, between = 0;  // shares of intervals that contain the true value
 };
 
 Coverage CoverageOf(const VectorXd& std_error, double between, int draws) {
@@ -241,16 +241,17 @@ TEST(SummarizeScatter, CoversTheMeanOfRunsThatScatter) {
   }
 }
 
-// The error is never below that of runs that agree and its reach is Student's t(4): a normal mean is within 2.776 of
-// its standard deviations in 99.45 of 100 draws, and with an error that is now and then larger a little more often.
+// The error is never below that of runs that agree, and its factor is that of Student's t(4). A normal mean is within
+// 2.776 of its standard deviations in 99.45 of 100 draws, and slightly more often because the error is sometimes
+// larger.
 TEST(SummarizeScatter, CoversTheMeanOfRunsThatDoNotScatterTooOften) {
   for (const VectorXd& errors : {kEqualErrors, kUnequalErrors}) {
     EXPECT_THAT(CoverageOf(errors, 0, 2000).mean, AllOf(Ge(0.985), Le(0.9995)));
   }
 }
 
-// Q at the truth is χ²(4) whatever the errors are. Of 2000 draws 95 % ± 4 · 0.5 %; where nothing scatters the interval
-// holds 0 unless Q is beyond 97.5 %.
+// Q at the true value is χ²(4) for any errors. For 2000 draws 95 % ± 4 · 0.5 %. Without scatter the interval contains 0
+// unless Q is above the 97.5 % point.
 TEST(SummarizeScatter, CoversTheScatterBetweenRuns) {
   for (const double between : {1.0, 5.0}) {
     EXPECT_THAT(CoverageOf(kUnequalErrors, between, 2000).between, DoubleNear(0.95, 0.02)) << between;
@@ -258,9 +259,9 @@ TEST(SummarizeScatter, CoversTheScatterBetweenRuns) {
   EXPECT_THAT(CoverageOf(kUnequalErrors, 0, 2000).between, AllOf(Gt(0.95), Le(0.99)));
 }
 
-// ---- By chance -----------------------------------------------------------------------------------------------------
+// ---- Probability by chance -----------------------------------------------------------------------------------------
 
-// χ² of two degrees of freedom is above x with probability exp(-x / 2); here x = 2 · 2.5².
+// χ² with two degrees of freedom exceeds x with probability exp(-x / 2); here x = 2 · 2.5².
 TEST(ScatterP, HasAClosedFormForThreeValues) {
   const VectorXd value = Eigen::Vector3d(1 - 0.025, 1, 1 + 0.025), std_error = Eigen::Vector3d::Constant(0.01);
   EXPECT_THAT(ScatterP(value, std_error), DoubleNear(std::exp(-2.5 * 2.5), 1e-12));
@@ -272,9 +273,9 @@ TEST(ScatterP, IsNoNumberWithoutErrors) {
   EXPECT_TRUE(std::isnan(ScatterP(value, Eigen::Vector3d(0.1, 0, 0.1))));
 }
 
-// ---- About a known centre -------------------------------------------------------------------------------------------
+// ---- Scatter about a known centre ----------------------------------------------------------------------------------
 
-// Equal errors: K - 1 = Σ (value - centre)² / (error² + τ²) has a closed form.
+// With equal errors K - 1 = Σ (value - centre)² / (error² + τ²) has a closed form.
 TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
   const VectorXd value = Five({1.00, 1.07, 0.93, 1.12, 0.98});
   const VectorXd std_error = VectorXd::Constant(5, 0.01);
@@ -285,10 +286,10 @@ TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
 TEST(ScatterAbout, IsZeroWhereErrorsExplainAll) {
   const Effects agreeing = Agreeing();
   EXPECT_EQ(ScatterAbout(1, agreeing.value, agreeing.std_error), 0);
-  EXPECT_THAT(ScatterAbout(1.1, agreeing.value, agreeing.std_error), Gt(0.09));  // All lie 0.1 below.
+  EXPECT_THAT(ScatterAbout(1.1, agreeing.value, agreeing.std_error), Gt(0.09));  // All values are 0.1 below the centre.
 }
 
-// Its defining equation, with errors that differ.
+// The defining equation with unequal errors.
 TEST(ScatterAbout, MakesTheStatisticOneLessThanTheNumberOfValues) {
   const Effects effects = Scattered();
   const double about = ScatterAbout(1.05, effects.value, effects.std_error);

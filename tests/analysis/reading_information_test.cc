@@ -19,7 +19,7 @@ using testing::DoubleNear;
 
 constexpr SensorRange kNarrow = {-1, 2};  // levels -1, 0, 1, 2 at a resolution of 1
 
-/// The probability of each reading, by Boost's normal distribution and the readings of SensorReading.
+/// The probability of each reading, from Boost's normal distribution and the levels of SensorReading.
 std::map<double, double> Probabilities(double x, double sigma, const std::optional<SensorRange>& range) {
   const boost::math::normal noise(x, sigma);
   std::map<double, double> probabilities;
@@ -73,7 +73,7 @@ TEST(ReadingInformation, IsTheSumOverAllReadingsOfTheirProbabilitysSlopes) {
       for (const double x : {-2.0, -1.3, 0.0, 0.2, 0.49, 1.7, 3.1}) {
         const Eigen::Matrix2d expected = InformationByDifferences(x, sigma, range);
         const Eigen::Matrix2d information = ReadingInformation(x, sigma, 1, range);
-        // Differences of probabilities of 1e-16 rounding, twice divided by a step of 1e-5 σ.
+        // Differences of probabilities have rounding errors of 1e-16, divided twice by a step of 1e-5 σ.
         const double tolerance = 1e-6 * std::max(1.0, 1 / (sigma * sigma));
         EXPECT_TRUE(information.isApprox(expected, 1e-6) || (information - expected).norm() < tolerance)
             << "x " << x << ", sigma " << sigma << "\n"
@@ -84,8 +84,8 @@ TEST(ReadingInformation, IsTheSumOverAllReadingsOfTheirProbabilitysSlopes) {
   }
 }
 
-// Levels finer than the noise cost what white noise of variance q²/12 would (Widrow & Kollar, Quantization Noise,
-// 2008); the next term is of the order (q/σ)⁴ / 288, 2e-4 at σ = 2 q.
+// Levels finer than the noise lose as much information as white noise of variance q²/12 (Widrow & Kollar, Quantization
+// Noise, 2008). The next term is of the order (q/σ)⁴ / 288, 2e-4 at σ = 2 q.
 TEST(ReadingInformation, LosesTwelfthsOfASquaredLevelToFineLevels) {
   const Eigen::Matrix2d information = ReadingInformation(0.37, 2, 1, {});
   EXPECT_THAT(information(0, 0) * (4 + 1.0 / 12), DoubleNear(1, 3e-4));

@@ -17,7 +17,7 @@
 
 namespace pendulum {
 
-/// A law that recordings are simulated with: friction in SI on the textbook's rig (N m s/rad, N m, N m s²/rad², rad/s).
+/// A law for simulated recordings: friction in SI on the textbook's rig (N m s/rad, N m, N m s²/rad², rad/s).
 struct TrueLaw {
   std::string_view model;
   std::vector<double> friction;
@@ -28,7 +28,7 @@ inline const std::array<TrueLaw, 4> kTrueLaws = {{{"viscous", {0.003}},
                                                   {"drag", {0.001, 0.002, 0.002}},
                                                   {"stribeck", {0.002, 0.004, 0.008, 0.4}}}};
 
-/// Held at 0.423 rad for 1.9 s, 100 Hz, 0.1985 degrees a count; the noise is given in counts.
+/// Held at 0.423 rad for 1.9 s, 100 Hz, 0.1985 degrees per count; the noise is given in counts.
 inline SyntheticOptions LawRun(const TrueLaw& law, double duration, double noise_counts) {
   SyntheticOptions run = TextbookRun(law.model);
   const std::vector<ParameterInfo> infos = PhysicalParameters(run.model);
@@ -41,8 +41,8 @@ inline SyntheticOptions LawRun(const TrueLaw& law, double duration, double noise
   return run;
 }
 
-/// How often each law is recommended, of all registered; the name is empty where none is. Predictions are not made:
-/// they count where more than noise is left, and here nothing else is.
+/// Number of recommendations of each registered law; an empty name means no recommendation. Predictions are skipped:
+/// they count only if more than noise is left, and here only noise is left.
 using Recommendations = std::map<std::string, int>;
 
 inline Recommendations CountRecommendations(SyntheticOptions run, int count, std::uint64_t first_seed) {

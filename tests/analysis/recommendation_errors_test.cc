@@ -8,7 +8,7 @@
 namespace pendulum::recommendation_errors_test {
 namespace {
 
-/// At a true share of 95 % chance makes more than 2 of 12 wrong in 2 of 100 runs.
+/// With a true share of 95 %, more than 2 of 12 are wrong in 2 of 100 runs.
 constexpr int kSeeds = 12;
 constexpr int kMostWrong = 2;
 

@@ -21,7 +21,7 @@ void PrintCase(const TrueLaw& law, double duration, double noise, int count) {
   std::cout << " " << (none == counts.end() ? 0 : none->second) << " |" << std::endl;
 }
 
-/// Of all laws, or of the one named.
+/// Prints the study of all laws, or of the law `only`.
 void PrintStudy(int count, std::string_view only) {
   std::cout << "| law | seconds | noise, counts |";
   for (const std::string_view name : FrictionModels::kNames) std::cout << " " << name << " |";
@@ -33,7 +33,7 @@ void PrintStudy(int count, std::string_view only) {
     for (const double noise : {0.25, 1.0, 2.5}) PrintCase(law, 20, noise, count);
   }
   if (!only.empty() && only != "stribeck") return;
-  // What tells Stribeck friction is the slow end of the swing.
+  // The slow end of the swing identifies Stribeck friction.
   for (const double noise : {0.25, 1.0, 2.5}) PrintCase(kTrueLaws.back(), 60, noise, count);
 }
 

@@ -26,7 +26,7 @@ struct Compared {
   Comparison comparison;
 };
 
-/// Models as CompareModels leaves them, with these criteria.
+/// A comparison with these criteria, in the state that CompareModels passes to Recommend.
 Compared Make(const std::vector<Case>& cases) {
   Compared made;
   double smallest = cases.front().bic;
@@ -54,7 +54,8 @@ Comparison Recommended(const std::vector<Case>& cases) {
   return made.comparison;
 }
 
-// Simplest within 2 of the smallest BIC: Kass & Raftery, JASA 90:773 (1995), call less "not worth a bare mention".
+// Simplest within 2 of the smallest BIC: Kass & Raftery, JASA 90:773 (1995), call a smaller difference "not worth a
+// bare mention".
 TEST(Recommend, TakesTheSimplestWithinTwoOfTheSmallestBic) {
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "coulomb");
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 52.1, 1}, {"drag", 50, 1}}).recommended, "drag");
@@ -88,7 +89,7 @@ TEST(Recommend, SaysWhatIsMissing) {
               HasSubstr("but more than noise is left (lag-1 correlation 0.6): something else is missing"));
 }
 
-// Where more than noise is left the smaller BIC alone does not do: the law must predict what it was not fitted to.
+// If more than noise is left, a smaller BIC is not enough: the law must predict readings that were not fitted.
 TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
   Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 0.69}});
   Recommend(made.fitted.fits, made.comparison);
@@ -109,7 +110,7 @@ TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
   EXPECT_EQ(made.comparison.recommended, "stribeck");
 }
 
-// BIC's penalty is ln n a parameter and AIC's 2: they may differ.
+// The penalty per parameter is ln n for BIC and 2 for AIC, so they may disagree.
 TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
   Compared made = Make({{"coulomb", 50, 1}, {"drag", 53, 1}});
   made.comparison.rows[0].aicc = 24;
@@ -119,7 +120,7 @@ TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
   EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would take drag"));
 }
 
-// Beside a law that is refuted the others' weights may all be 0 in double precision.
+// Next to a refuted law, the weights of the others may all be 0 in double precision.
 TEST(Recommend, TakesAiccsOpinionOnlyAmongWhatIsNotRefuted) {
   Compared made = Make({{"viscous", 4000, 1}, {"coulomb", 3000, 1}, {"drag", 50, 1}});
   for (ComparisonRow& row : made.comparison.rows) {

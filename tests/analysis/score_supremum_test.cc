@@ -26,25 +26,25 @@ MatrixXd Seeded(Eigen::Index rows, Eigen::Index columns) {
 /// Three standard deviations of a share p of 19999 draws.
 double Scatter(double p) { return 3 * std::sqrt(p * (1 - p) / 19'999); }
 
-// One shape: half χ²(1), whose 5 % point is 2.7055.
+// One shape: half χ²(1), with the 5 % point 2.7055.
 TEST(SupremumTail, OfOneShapeIsThatOfHalfAChiSquare) {
   const MatrixXd shapes = Seeded(50, 1);
   EXPECT_THAT(SupremumTail(MatrixXd(50, 0), shapes, 2.705543, 1), DoubleNear(0.05, Scatter(0.05)));
 }
 
-// Shapes at right angles are independent: 1 - Φ(√u)^G.
+// Orthogonal shapes are independent: 1 - Φ(√u)^G.
 TEST(SupremumTail, OfIndependentShapesIsTheTailOfTheirMaximum) {
   const double expected = 1 - std::pow(0.5 * std::erfc(-2 / std::sqrt(2.0)), 5);
   EXPECT_THAT(SupremumTail(MatrixXd(9, 0), MatrixXd::Identity(9, 5), 4, 2), DoubleNear(expected, Scatter(expected)));
 }
 
-// Beside the nuisance (1, 0, ...) both shapes are (0, 1, ...): one shape.
+// Without the direction of the nuisance (1, 0, ...) both shapes are (0, 1, ...): one shape.
 TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
   MatrixXd nuisance = MatrixXd::Zero(4, 1);
   nuisance(0, 0) = 7;
   MatrixXd shapes = MatrixXd::Zero(4, 2);
   shapes.col(0) << 3, 1, 0, 0;
-  shapes.col(1) << -5, 2, 0, 0;  // the same direction beside the nuisance
+  shapes.col(1) << -5, 2, 0, 0;  // the same direction after removal of the nuisance
   EXPECT_THAT(SupremumTail(nuisance, shapes, 2.705543, 3), DoubleNear(0.05, Scatter(0.05)));
 }
 

@@ -6,7 +6,7 @@
 
 namespace pendulum {
 
-/// All of a recording as the window that was asked for.
+/// A free swing whose window is the whole recording.
 inline FreeSwing Whole(const Recording& recording) {
   FreeSwing swing;
   swing.from = recording.time[0];

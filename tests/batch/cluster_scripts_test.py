@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/cluster without a cluster: what is refused, which tool is taken, what sbatch is told and what a task does.
+"""Tests scripts/cluster without a cluster: refused input, the chosen tool, the arguments of sbatch, and the work of a task.
 
-Slurm's commands and refit_pendulums are stand-ins that write down how they were called.
+Slurm's commands and refit_pendulums are replaced by programs that record their arguments.
 """
 
 import os
@@ -159,7 +159,7 @@ class SubmissionTest(ScriptCase):
 
         folder.mkdir()
         shard.touch()
-        check(False)  # nobody knows of which request
+        check(False)  # the request is unknown
         check(True)
         check(False, "--all")
         check(True)
@@ -198,12 +198,12 @@ class SubmissionTest(ScriptCase):
 
 
 class TaskTest(ScriptCase):
-    """refit_task as Slurm runs it, with a squeue and a scontrol that answer from the environment."""
+    """refit_task in the environment of Slurm, with a squeue and a scontrol that answer from environment variables."""
 
     def setUp(self):
         super().setUp()
         self.make("squeue", 'echo "$STATE"')
-        self.make("scontrol", "kill $PPID")  # a job that is put back into the queue is ended
+        self.make("scontrol", "kill $PPID")  # a requeued job is terminated
         self.environment |= {"SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": "3", "SLURM_JOB_ID": "12",
                              "SLURM_CPUS_PER_TASK": "2", "STATE": "RUNNING"}
         self.arguments = ["refit_task", SCRIPTS, "shard", self.folder, "8", self.tool, "--models", "viscous"]
@@ -257,4 +257,4 @@ class TaskTest(ScriptCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])  # not the tool that every process test is given
+    unittest.main(argv=sys.argv[:1])  # unittest must not parse the tool's path, which every process test gets

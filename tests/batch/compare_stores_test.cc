@@ -26,7 +26,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// A fit by model coulomb with a parameter or without.
+/// A fit of model coulomb with or without a parameter.
 struct Fit {
   std::string id;
   Json estimate, std_error;
@@ -35,7 +35,7 @@ struct Fit {
   std::string data = "data", cpu = "cpu";
 };
 
-/// The result of one parameter, in the shape of result.schema.json.
+/// A result with one parameter in the form of result.schema.json.
 RunOutcome OutcomeOf(const Fit& fit) {
   RunOutcome outcome;
   outcome.provenance = {fit.data, "", "", "options", "0.1.0", fit.cpu};
@@ -79,7 +79,7 @@ class CompareStoresTest : public testing::Test {
     return comparison.value_or(StoreComparison());
   }
 
-  /// What the parameter of one run moved.
+  /// Comparison of two stores with one run whose parameter changes.
   StoreComparison Move(const Json& estimate, const Json& std_error, const Json& estimate_after,
                        const Json& std_error_after) const {
     return Compare({{"a", estimate, std_error}}, {{"a", estimate_after, std_error_after}});
@@ -110,7 +110,7 @@ TEST_F(CompareStoresTest, TellsRoundingFromWhatMovedWithinErrors) {
   EXPECT_EQ(Move(1.0, 0.1, 1.0, 0.1).identical, 1);
   EXPECT_EQ(Move(1.0, 0.1, 1.0000000000000002, 0.1).rounding, 1);  // the next double
   EXPECT_EQ(Move(1.0, 0.1, 1.0, 0.10000000000000002).rounding, 1);
-  EXPECT_EQ(Move(1.0, 0.1, 1 + 0.9e-10, 0.1).rounding, 1);  // 0.9e-9 errors
+  EXPECT_EQ(Move(1.0, 0.1, 1 + 0.9e-10, 0.1).rounding, 1);  // 0.9e-9 standard errors
   EXPECT_EQ(Move(1.0, 0.1, 1 + 1.1e-10, 0.1).within_errors, 1);
   EXPECT_EQ(Move(1.0, 0.1, 0.901, 0.1).within_errors, 1);
   EXPECT_EQ(Move(1.0, 0.1, 0.901, 0.1).moved, 0);
@@ -149,7 +149,8 @@ TEST_F(CompareStoresTest, ListsTheHundredThatMovedMostTheFarthestFirst) {
   std::vector<Fit> before, after;
   for (int i = 1; i <= 130; ++i) {
     before.push_back({"run " + std::to_string(i), 0.0, 1.0});
-    after.push_back({"run " + std::to_string(i), 37 * i % 131 + 1.0, 1.0});  // 2 to 131, each once, as 131 is prime
+    after.push_back({"run " + std::to_string(i), 37 * i % 131 + 1.0, 1.0});  // 2 to 131, each once, because 131 is
+                                                                             // prime
   }
   const StoreComparison comparison = Compare(before, after);
   EXPECT_EQ(comparison.moved, 130);

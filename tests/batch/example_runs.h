@@ -14,10 +14,10 @@
 #include "pendulum/batch/source.h"
 #include "pendulum/batch/store.h"
 
-/// Batches without files, and outcomes to put into a store.
+/// Batches without files, and outcomes for a store.
 namespace pendulum::example_runs {
 
-/// A source of entries that has no files; the first is of line 2.
+/// A source of entries without files; the first entry is on line 2.
 inline Source SourceOf(std::vector<ManifestEntry> entries) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i].position = static_cast<std::int64_t>(i);
@@ -33,7 +33,7 @@ inline Source SourceOf(std::vector<ManifestEntry> entries) {
           [](const std::string& path) -> Result<std::string> { return Error(StatusCode::kNotFound, path); }};
 }
 
-/// Entries with these ids, whose files are ID.csv.
+/// Entries with these ids and the files ID.csv.
 inline Source SourceOfIds(const std::vector<std::string>& ids) {
   std::vector<ManifestEntry> entries;
   for (const std::string& id : ids) {
@@ -44,7 +44,7 @@ inline Source SourceOfIds(const std::vector<std::string>& ids) {
   return SourceOf(entries);
 }
 
-/// What a refit of datasets/runs_1.csv by two models gives.
+/// The outcome of a refit of datasets/runs_1.csv with two models.
 inline const RunOutcome& RefittedOutcome() {
   static const RunOutcome outcome = [] {
     RefitOptions options;
@@ -58,7 +58,7 @@ inline const RunOutcome& RefittedOutcome() {
   return outcome;
 }
 
-/// What a refit by the same models gives of a file that is not there.
+/// The outcome of a refit of a missing file with the same models.
 inline RunOutcome UnfittedOutcome() {
   RunOutcome outcome;
   outcome.provenance = {"", "rig", "", "options", "0.1.0", "cpu"};
@@ -68,7 +68,7 @@ inline RunOutcome UnfittedOutcome() {
   return outcome;
 }
 
-/// A store that was just made, for the entries of that source.
+/// A new store for the entries of that source.
 inline Store StoreOf(const std::string& path, const Source& source) {
   Store store = Store::Open(path, Store::Mode::kWrite).value();
   const auto begun = store.Begin(source, std::nullopt, "{}");

@@ -32,9 +32,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-using Row = std::map<std::string, std::string>;  // fields by their columns
+using Row = std::map<std::string, std::string>;  // fields by column name
 
-/// CSV as RFC 4180 has it, letter by letter.
+/// Parses CSV by RFC 4180, character by character.
 std::vector<std::vector<std::string>> Rfc4180Rows(const std::string& text) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> row = {""};
@@ -55,7 +55,7 @@ std::vector<std::vector<std::string>> Rfc4180Rows(const std::string& text) {
     }
   }
   EXPECT_FALSE(quoted);
-  EXPECT_THAT(row, ElementsAre(""));  // the last row ends with a line
+  EXPECT_THAT(row, ElementsAre(""));  // the last row ends with a line end
   return rows;
 }
 
@@ -102,7 +102,7 @@ std::string CsvOf(Store& store) {
   return text;
 }
 
-/// The rows of a store's CSV, each as long as its header, whose names are all different.
+/// The rows of a store's CSV. Checks that each is as long as the header and that the column names are unique.
 std::vector<Row> RowsOf(Store& store) {
   const auto rows = Rfc4180Rows(CsvOf(store));
   std::vector<Row> named;
@@ -116,7 +116,7 @@ std::vector<Row> RowsOf(Store& store) {
   return named;
 }
 
-/// A field is the shortest text of the double, so that it reads back as the same.
+/// Checks that a field is the shortest text of the double, so that it reads back exactly.
 void ExpectNumber(const std::string& field, const Json& number, const std::string& name) {
   if (number.is_null()) {
     EXPECT_EQ(field, "") << name;
@@ -211,7 +211,7 @@ TEST_F(ExportTest, WritesNumbersThatReadBackBitForBit) {
   }
   EXPECT_EQ(rows[0].at("model"), "coulomb");
   EXPECT_EQ(rows[0].at("recommended") == "1", RefittedOutcome().result["comparison"]["recommended"] == "coulomb");
-  EXPECT_EQ(rows[1].at("coulomb"), "");  // model viscous has none
+  EXPECT_EQ(rows[1].at("coulomb"), "");  // model viscous does not have it
   EXPECT_EQ(rows[1].at("coulomb_unit"), "");
 }
 

@@ -22,7 +22,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 
-/// A folder with folders, found under names from there on.
+/// A folder with subfolders; expected names are relative to it.
 class FindRecordingsTest : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
@@ -35,7 +35,7 @@ class FindRecordingsTest : public testing::Test {
     }
   }
 
-  /// What a pattern in the folder finds, without the folder.
+  /// The paths that a pattern finds in the folder, relative to it.
   std::vector<std::string> Find(const std::string& pattern) const {
     auto found = FindRecordings((folder_ / pattern).string());
     EXPECT_TRUE(found) << found.error().message;
@@ -77,7 +77,7 @@ TEST_F(FindRecordingsTest, NamesFilesAsTheFolderWasNamed) {
   EXPECT_THAT(FindRecordings("datasets").value(), Contains("datasets/coulomb.csv"));
 }
 
-// glob(3) knows the same patterns, but for **.
+// glob(3) has the same patterns except **.
 TEST_F(FindRecordingsTest, AgreesWithGlobOnPatterns) {
   Make({"a1.csv", "a2.csv", "b1.csv", "a[1].csv", "a-.csv", ".hidden.csv", "x/a1.csv", "y/a1.csv", "y/.a1.csv",
         ".z/a1.csv", "x/y/a1.csv", "a1.txt", "ä1.csv", "a.csv"});
@@ -91,7 +91,7 @@ TEST_F(FindRecordingsTest, AgreesWithGlobOnPatterns) {
       if (fs::is_regular_file(path)) expected.push_back(path.substr(folder_.string().size() + 1));
     }
     ::globfree(&paths);
-    std::ranges::sort(expected);  // glob sorts as the locale does
+    std::ranges::sort(expected);  // glob sorts by the locale
     EXPECT_THAT(Find(pattern), ElementsAreArray(expected)) << pattern;
   }
 }
@@ -102,7 +102,7 @@ TEST_F(FindRecordingsTest, TakesTwoAsterisksForAnyNumberOfFolders) {
   EXPECT_THAT(Find("a/**/p?.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/p1.csv", "a/p2.csv"));
   EXPECT_THAT(Find("**/b/*.csv"), ElementsAre("a/b/p1.csv"));
   EXPECT_THAT(Find("**/b/**/p1.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv"));
-  EXPECT_THAT(Find("**/**/p2.csv"), ElementsAre("a/p2.csv"));  // once
+  EXPECT_THAT(Find("**/**/p2.csv"), ElementsAre("a/p2.csv"));  // only once
   EXPECT_THAT(Find("a/b/**"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/b/q.txt"));
 }
 
@@ -115,7 +115,7 @@ TEST_F(FindRecordingsTest, LeavesHiddenFilesAndFoldersAlone) {
   Make({"a.csv", ".b.csv", ".c/d.csv", "e/.f.csv", "e/.g/h.csv"});
   EXPECT_EQ(FindRecordings(folder_.string()).value().size(), 1);
   EXPECT_THAT(Find("**/*"), ElementsAre("a.csv"));
-  EXPECT_THAT(Find(".c"), ElementsAre(".c/d.csv"));  // a folder that is named
+  EXPECT_THAT(Find(".c"), ElementsAre(".c/d.csv"));  // a named hidden folder
   EXPECT_THAT(Find("**/.g/*.csv"), ElementsAre("e/.g/h.csv"));
 }
 
@@ -173,7 +173,7 @@ TEST_F(FindRecordingsTest, RefusesAFolderThatCannotBeLookedInto) {
   fs::permissions(folder_, fs::perms::all);
   fs::permissions(folder_ / "locked", fs::perms::none);
   const uid_t self = ::geteuid();
-  constexpr uid_t kNobody = 65534;  // root looks into everything
+  constexpr uid_t kNobody = 65534;  // root can read every folder
   if (self == 0) {
     ASSERT_EQ(::seteuid(kNobody), 0);
   }

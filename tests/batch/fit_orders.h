@@ -11,7 +11,7 @@
 #include "pendulum/batch/fit_store.h"
 #include "tests/batch/small_batch.h"
 
-/// What a service is asked for, made by hand, and a store to keep it in.
+/// Requests to a service made by hand, and a store for them.
 namespace pendulum::fit_orders {
 
 inline constexpr const char* kCreated = "2026-11-23T21:40:05Z";
@@ -27,7 +27,7 @@ inline std::vector<FitOrder> OrdersOf(const std::vector<std::string>& ids) {
   return orders;
 }
 
-/// A store in a folder of its own, and another connection to its file.
+/// A store in a separate folder, and another connection to its file.
 class FitStoreFolder : public testing::Test {
  protected:
   FitStore& Store() {
@@ -44,7 +44,7 @@ class FitStoreFolder : public testing::Test {
 
   void Close() { store_.reset(); }
 
-  /// What a reader who comes from outside sees.
+  /// The number that another reader of the file gets.
   std::int64_t NumberOutside(const std::string& query) const {
     return SQLite::Database(path_, SQLite::OPEN_READONLY).execAndGet(query).getInt64();
   }

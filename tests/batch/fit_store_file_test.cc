@@ -49,7 +49,7 @@ class FitStoreFileTest : public fit_orders::FitStoreFolder {
     ASSERT_TRUE(added) << added.error().message;
   }
 
-  /// The ids in a copy of what is on the disk now, which is what a machine without power would leave at worst.
+  /// The ids in a copy of the current files on disk: the worst state after a loss of power.
   std::vector<std::string> IdsInACopy() const {
     const small_batch::Folder other("fit_store_copy");
     for (const char* end : {"", "-wal"}) {
@@ -124,7 +124,7 @@ TEST_F(FitStoreFileTest, RefusesOneOfManyAloneForItsOwnFault) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM requests"), 1 + kThreads * kRuns / 2);
 }
 
-// ---- Beside others -------------------------------------------------------------------------------------------------
+// ---- Other processes -----------------------------------------------------------------------------------------------
 
 TEST_F(FitStoreFileTest, LetsNoOtherWriterIn) {
   Add("a");
@@ -141,14 +141,14 @@ TEST_F(FitStoreFileTest, IsNotHinderedByReaders) {
   const SQLite::Database reader(path_, SQLite::OPEN_READONLY);
   SQLite::Statement rows(reader, "SELECT id FROM runs ORDER BY run");
   ASSERT_TRUE(rows.executeStep());
-  Add("b");  // while it is on its way
+  Add("b");  // while the read is in progress
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs"), 2);
-  EXPECT_FALSE(rows.executeStep());  // which sees what there was when it began
+  EXPECT_FALSE(rows.executeStep());  // it sees the state at its start
   rows.reset();
   EXPECT_EQ(pendulum::Store::Open(path_, pendulum::Store::Mode::kRead)->Count()->runs, 2);
 }
 
-// Somebody keeps the file open while the service ends, and begins anew.
+// Another process keeps the file open while the service ends and restarts.
 TEST_F(FitStoreFileTest, BeginsBesideAReaderWhoStays) {
   Add("a");
   const SQLite::Database reader(path_, SQLite::OPEN_READONLY);
@@ -189,7 +189,7 @@ TEST_F(FitStoreFileTest, SaysThatItIsDamaged) {
 
 // ---- Older stores, and those of refit_pendulums --------------------------------------------------------------------
 
-/// A store as the first version made it, with one run that was refitted.
+/// A store of the first version with one refitted run.
 void MakeFirstVersion(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   database.exec(std::string(kStoreMigrations[0]));
@@ -204,7 +204,7 @@ TEST_F(FitStoreFileTest, BringsAnOlderStoreUpToDate) {
   Add("new");
   EXPECT_EQ(NumberOutside("PRAGMA user_version"), 2);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
-  EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // nobody asked a service for the other
+  EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the other one was not requested from a service
   EXPECT_EQ(Store().Find("old").error().code, StatusCode::kNotFound);
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);
 }
@@ -225,9 +225,9 @@ TEST_F(FitStoreFileTest, GoesOnAfterARefitOfAManifestIntoTheSameFile) {
   EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("d", "c", "b", "a"));
 }
 
-// ---- No room -------------------------------------------------------------------------------------------------------
+// ---- Full disk -----------------------------------------------------------------------------------------------------
 
-/// No file of this process grows beyond so many bytes, as on a disk that is full.
+/// Limits the files of this process to so many bytes, like a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {
@@ -271,7 +271,8 @@ TEST_F(FitStoreFileTest, SaysThatThereIsNoRoomAndGoesOnOnceThereIs) {
   EXPECT_THAT(IdsInACopy(), ElementsAre("b", "c", "a"));
 }
 
-// The disk is full from some statement on, whichever that is; then there is room again, and the next one is kept.
+// The disk becomes full at some statement, which differs between trials. When there is space again, the next run must
+// be stored.
 TEST_F(FitStoreFileTest, ForgetsAFullDiskAtOnce) {
   Add("first");
   int refusals = 0;
@@ -316,7 +317,7 @@ TEST_F(FitStoreFileTest, LosesNothingOfManyThreadsOnAFullDisk) {
       EXPECT_EQ(NumberOutside("SELECT count(*) FROM results WHERE id = '" + id + "'"), 1) << id;
     }
   }
-  EXPECT_LT(count, 1 + kThreads * kRuns);  // it was full
+  EXPECT_LT(count, 1 + kThreads * kRuns);  // it was full at times
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM requests"), count);
   Add("last");
 }

@@ -65,7 +65,7 @@ class FitStoreTest : public fit_orders::FitStoreFolder {
   }
 };
 
-/// Checks that a call says that there is no such thing.
+/// Checks that a call reports an unknown id.
 template <typename T>
 void ExpectUnknown(const Result<T>& result, const std::string& what) {
   ASSERT_FALSE(result);
@@ -99,7 +99,7 @@ TEST_F(FitStoreTest, KeepsARunWithAllThatItWasMadeFrom) {
   EXPECT_EQ(kept->order.files.rig->name, "rig.json");
   EXPECT_EQ(kept->order.files.rig->bytes, order.files.rig->bytes);
   EXPECT_EQ(kept->order.files.calibration->bytes, "");
-  EXPECT_EQ(kept->result.dump(), outcome.result.dump());  // to the last bit, keys in their order
+  EXPECT_EQ(kept->result.dump(), outcome.result.dump());  // bit for bit, with the keys in their order
 }
 
 TEST_F(FitStoreTest, KeepsNoFileThatWasNotSent) {
@@ -127,7 +127,7 @@ TEST_F(FitStoreTest, TakesAnIdOnce) {
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().code, StatusCode::kInternal);
   EXPECT_THAT(again.error().message, StartsWith(path_ + ": "));
-  Add("b");  // what was refused stands in nobody's way
+  Add("b");  // the refused run does not block others
   EXPECT_THAT(Listed({}), ElementsAre("b", "a"));
 }
 
@@ -149,7 +149,7 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
   EXPECT_EQ(fit.models[0].residual_unit, "rad");
   EXPECT_EQ(fit.models[1].status, "not_converged");
   EXPECT_EQ(fit.models[1].reason, "after 100 iterations");
-  ASSERT_THAT(fit.models[0].parameters, SizeIs(3));  // inertia, release_angle, viscous, which is held
+  ASSERT_THAT(fit.models[0].parameters, SizeIs(3));  // inertia, release_angle, and viscous, which is fixed
   EXPECT_EQ(fit.models[0].parameters[0].name, "inertia");
   EXPECT_EQ(fit.models[0].parameters[0].estimate, 0.5);
   EXPECT_EQ(fit.models[0].parameters[0].std_error, 1.0);
@@ -182,7 +182,7 @@ TEST_F(FitStoreTest, FindsNamesByAnyPartOfThem) {
     filter.name = name;
     EXPECT_THAT(Listed(filter), ElementsAre("a")) << name;
   }
-  for (const char* name : {"_", "%", "un_"}) {  // no wildcards, and no more than its letters
+  for (const char* name : {"_", "%", "un_"}) {  // wildcards have no effect, and names must match completely
     filter.name = name;
     EXPECT_THAT(Listed(filter), ElementsAre("a")) << name;
   }
@@ -215,7 +215,7 @@ TEST_F(FitStoreTest, FindsRunsOfABatchAndSinceATime) {
   FitFilter filter;
   filter.since = "2026-11-23T00:00:00Z";
   EXPECT_THAT(Listed(filter), ElementsAre("c", "b"));
-  filter.since = "2026-11-23T01:00:00+01:00";  // the same time
+  filter.since = "2026-11-23T01:00:00+01:00";  // the same time in UTC
   EXPECT_THAT(Listed(filter), ElementsAre("c", "b"));
   filter = {};
   filter.batch = "night";
@@ -232,11 +232,11 @@ TEST_F(FitStoreTest, KeepsAFileOnceAndAsLongAsARunHasIt) {
   FitOrder one = OrderOf("a"), other = OrderOf("b"), third = OrderOf("c");
   one.files.rig = other.files.rig = Share({"rig", "{}"});
   other.files.data.bytes = one.files.data.bytes;
-  third.files.calibration = Share({"calibration", "{}"});  // the same bytes as the rig of others
+  third.files.calibration = Share({"calibration", "{}"});  // the same bytes as other runs' rig
   Add(one);
   Add(other);
   Add(third);
-  EXPECT_EQ(NumberOutside("SELECT count(*) FROM files"), 3);  // the recordings of a and c, {}
+  EXPECT_EQ(NumberOutside("SELECT count(*) FROM files"), 3);  // the recordings of a and c, and {}
   ASSERT_TRUE(Store().DeleteFit("a"));
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM files"), 3);
   EXPECT_EQ(Store().Find("b")->order.files.data.bytes, "a\n");
@@ -351,7 +351,7 @@ TEST_F(FitStoreTest, ForgetsAnswersAfterADay) {
   ASSERT_TRUE(Store().Add(OrderOf("c", Now()), OutcomeOf({}), RequestKey{"newer", "3"}));
   EXPECT_FALSE(*Store().FindAnswer("old"));
   EXPECT_TRUE(*Store().FindAnswer("new"));
-  EXPECT_TRUE(Store().Find("a"));  // the run stays
+  EXPECT_TRUE(Store().Find("a"));  // the run is not deleted
 }
 
 }  // namespace

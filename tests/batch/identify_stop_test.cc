@@ -41,8 +41,8 @@ void ExpectStopped(const Result<Identification>& run) {
   EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
 }
 
-/// Stops a run at `count` instants, evenly spread over about as long as it takes: the result is either that of a run
-/// which is not stopped, byte for byte, or the error.
+/// Stops a run at `count` instants spread evenly over its duration. The result must be that of a complete run, byte for
+/// byte, or an error.
 void StopEverywhere(IdentifyOptions options, const PreparedRecording& swings, int count) {
   const Clock::time_point begin = Clock::now();
   const std::string whole = ToJsonText(Must(FitFirst(options, swings)));
@@ -126,7 +126,7 @@ TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
   IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   options.fit.interval = IntervalMethod::kBootstrap;
   const PreparedRecording swings = Read("datasets/coulomb.csv", options);
-  for (const int number : {1, 5, 12}) {  // of its reports, nine to each model
+  for (const int number : {1, 5, 12}) {  // progress reports, nine per model
     std::stop_source stop;
     int reports = 0;
     options.fit.stop = stop.get_token();
@@ -138,8 +138,7 @@ TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
   }
 }
 
-/// 2000 readings of a pendulum of 0.7 Hz, one every 50.3 s: each trajectory that is tried has a hundred thousand
-/// periods.
+/// 2000 readings of a pendulum of 0.7 Hz, one every 50.3 s: each trial trajectory has a hundred thousand periods.
 Recording OneReadingAMinute() {
   SyntheticOptions run;
   run.model = Must(FindMotionModel("viscous"));

@@ -8,13 +8,13 @@
 
 #include "pendulum/batch/store.h"
 
-/// Outcomes of runs that nobody fitted.
+/// Outcomes of runs without a fit.
 namespace pendulum::made_outcomes {
 
 using Json = nlohmann::ordered_json;
 
-/// A fit as the result JSON has it, as far as the store looks: one parameter of the rig, one of the run, one that is
-/// held.
+/// A fit in the form of the result JSON, with the members that a store reads: one parameter of the rig, one of the run,
+/// and a fixed one.
 inline Json FitOf(const std::string& model, double inertia, const std::string& status = "converged") {
   const auto quantity = [](double estimate, const Json& std_error, const char* unit, bool fixed) {
     return Json{{"estimate", estimate},

@@ -15,7 +15,7 @@
 
 namespace pendulum::made_store {
 
-/// A manifest of so many runs with columns of their own.
+/// A manifest of `runs` runs with additional columns.
 inline std::string ManifestOf(std::size_t runs, const std::string& columns,
                               const std::function<std::string(std::size_t)>& values) {
   std::string text = "path" + columns + "\n";
@@ -27,10 +27,11 @@ inline std::string PlainManifest(std::size_t runs) {
   return ManifestOf(runs, "", [](std::size_t) { return ""; });
 }
 
-/// A store whose runs are made by hand.
+/// A store with runs made by hand.
 class MadeStoreTest : public testing::Test {
  protected:
-  /// Begins a batch of that manifest, and gives each run, by its position, what is made of it; none: nothing.
+  /// Begins a batch of that manifest and stores for each run the outcome of make(position); std::nullopt: the run stays
+  /// pending.
   Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
     folder_.Write("runs.csv", manifest);
     const auto source = OpenSource(folder_ / "runs.csv");

@@ -43,20 +43,20 @@ class ReadManifestTest : public testing::Test {
     return entries;
   }
 
-  /// The entries of a text that is known to be a manifest.
+  /// The entries of a valid manifest.
   std::vector<ManifestEntry> Entries(const std::string& text) const {
     auto entries = Read(text);
     EXPECT_TRUE(entries) << text.substr(0, 1000) << entries.error().message;
     return entries ? *entries : std::vector<ManifestEntry>();
   }
 
-  /// The field of column x beside a path.
+  /// The value of a field that is in column x next to a path.
   std::string FieldOf(const std::string& field) const {
     const auto entries = Entries("path,x\r\na.csv," + field + "\r\n");
     return entries.size() == 1 ? Json::parse(entries[0].columns)["x"].get<std::string>() : "no single entry";
   }
 
-  /// Why a text is refused, behind the manifest's path.
+  /// The error message for a refused text, without the manifest's path.
   std::string FaultOf(const std::string& text) const {
     const auto entries = Read(text);
     if (entries) return "not refused";
@@ -75,14 +75,14 @@ std::vector<std::string> PathsOf(const std::vector<ManifestEntry>& entries) {
   return paths;
 }
 
-/// So many bytes or a few more, in lines.
+/// Lines with at least `bytes` bytes in total.
 std::string Lines(std::size_t bytes) {
   std::string text;
   while (text.size() < bytes) text += std::string(1000, 'x') + "\n";
   return text;
 }
 
-// ---- What is read --------------------------------------------------------------------------------------------------
+// ---- Valid manifests -----------------------------------------------------------------------------------------------
 
 TEST_F(ReadManifestTest, TakesTheColumnsByTheirNames) {
   const auto entries = Entries(
@@ -100,7 +100,7 @@ TEST_F(ReadManifestTest, TakesTheColumnsByTheirNames) {
   EXPECT_EQ(entries[0].models, "viscous,coulomb");
   EXPECT_EQ(entries[0].columns, "{}");
   EXPECT_EQ(entries[1].position, 1);
-  EXPECT_EQ(entries[1].id, "b.csv");  // its path
+  EXPECT_EQ(entries[1].id, "b.csv");  // the default id is the path
   EXPECT_EQ(entries[1].rig + entries[1].calibration + entries[1].models, "");
   EXPECT_FALSE(entries[1].from || entries[1].to);
 }
@@ -109,7 +109,7 @@ TEST_F(ReadManifestTest, CarriesOtherColumnsThroughInTheirOrder) {
   const auto entries = Entries("rig_no,path,Datum,\n007,a.csv,\"1. März, früh\",\n,b.csv,\xFF,x\n");
   ASSERT_EQ(entries.size(), 2);
   EXPECT_EQ(entries[0].columns, R"({"rig_no":"007","Datum":"1. März, früh","":""})");
-  // A byte that is not UTF-8 becomes U+FFFD (Unicode 15, section 3.9), as JSON is UTF-8.
+  // Invalid UTF-8 becomes U+FFFD (Unicode 15, section 3.9), because JSON is UTF-8.
   EXPECT_EQ(entries[1].columns, "{\"rig_no\":\"\",\"Datum\":\"\xEF\xBF\xBD\",\"\":\"x\"}");
 }
 
@@ -145,7 +145,7 @@ TEST_F(ReadManifestTest, ReadsSemicolonsAndTabsToo) {
 }
 
 TEST_F(ReadManifestTest, ReadsWhatSpreadsheetsWrite) {
-  const auto entries = Entries("\xEF\xBB\xBFpath,id\r\na.csv,1\r\nb.csv,2");  // no line end at the end: rule 2
+  const auto entries = Entries("\xEF\xBB\xBFpath,id\r\na.csv,1\r\nb.csv,2");  // no line end after the last row: rule 2
   ASSERT_EQ(entries.size(), 2);
   EXPECT_EQ(entries[0].id, "1");
   EXPECT_EQ(entries[1].id, "2");
@@ -203,7 +203,7 @@ TEST_F(ReadManifestTest, EndsWhereTheTakerWantsNoMore) {
   EXPECT_EQ(taken, 1);
 }
 
-// ---- What is refused -----------------------------------------------------------------------------------------------
+// ---- Invalid manifests ---------------------------------------------------------------------------------------------
 
 TEST_F(ReadManifestTest, RefusesAHeaderThatNamesNoRecordings) {
   const std::string empty = ": the manifest is empty; its first line names the columns, such as path,id";
@@ -268,7 +268,7 @@ TEST_F(ReadManifestTest, RefusesWhatIsNoText) {
               HasSubstr(":2:1: this line is longer than 1 MiB and begins with \"aaa"));
 }
 
-// Else a quote that is never closed would bring all of a large manifest into memory.
+// Without the limit an unclosed quote would read a whole large manifest into memory.
 TEST_F(ReadManifestTest, RefusesARowThatNeverEnds) {
   const std::string lines = Lines(std::size_t{17} << 20);
   const std::string why = " the row that begins here is longer than ";

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refit_parallel under GNU parallel, with tasks that die and one that is stopped: parallel_test.py PATH_OF_refit_pendulums.
+"""refit_parallel with GNU parallel, tasks that die and one that is stopped: parallel_test.py PATH_OF_refit_pendulums.
 
-simulate_pendulum is the one beside it. Exit code 77 where GNU parallel is not installed.
+simulate_pendulum is taken from the same folder. Exit code 77 if GNU parallel is not installed.
 """
 
 import os
@@ -19,7 +19,7 @@ import refit_case
 
 SHARDS = 4
 
-# As ssh does, it hands what it is told to a shell of the host, which is this one.
+# Like ssh it passes its command to a shell of the host, which is this machine.
 FAKE_SSH = """#!/bin/bash
 while [[ $1 == -* ]]; do shift; done
 echo "$1" >> "$SSH_LOG"
@@ -61,7 +61,7 @@ class ParallelTest(refit_case.RefitCase):
     def test_what_is_stopped_goes_on_when_asked_again(self):
         run = self.start()
         shard, work = self.hold_shard()
-        processes.kill(work, signal.SIGCONT)  # held when its shell ends, it would be hung up on
+        processes.kill(work, signal.SIGCONT)  # a stopped process would get SIGHUP when its shell ends
         run.terminate()
         self.assertEqual(run.wait(30), 75)
         self.assertIn("refit_parallel: stopped; the same command again goes on.", run.stdout.read())
@@ -86,7 +86,7 @@ class ParallelTest(refit_case.RefitCase):
         self.assertFalse(self.store.exists())
 
     def test_hosts_do_the_same(self):
-        # GNU parallel takes its name for a piece of a command.
+        # GNU parallel uses this path as a part of a command.
         ssh = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="ssh-", dir="/tmp"))) / "ssh"
         ssh.write_text(FAKE_SSH, encoding="utf-8")
         ssh.chmod(0o755)

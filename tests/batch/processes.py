@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Processes by /proc: who they are, and holding them still so that a test is never too late."""
+"""Finds processes with /proc, and stops them so that a test cannot be too late."""
 
 import contextlib
 import os
@@ -9,7 +9,7 @@ import time
 
 
 def read(pid, name):
-    """A file of the process; nothing when it has ended or is another user's."""
+    """A file of the process; empty if the process has ended or belongs to another user."""
     try:
         return pathlib.Path(f"/proc/{pid}/{name}").read_bytes()
     except OSError:
@@ -44,14 +44,14 @@ def kill(pids, number=signal.SIGKILL):
 
 
 def is_told(pid, number):
-    """Whether the signal waits for the process, which is held, or the process has ended."""
+    """Whether the signal is pending for the stopped process, or the process has ended."""
     lines = read(pid, "status").decode().splitlines()
     waiting = [int(line.split()[1], 16) for line in lines if line.startswith(("SigPnd:", "ShdPnd:"))]
     return not waiting or any(mask >> (number - 1) & 1 for mask in waiting)
 
 
 def wait_until(what, condition, seconds):
-    """What the condition returns as soon as it is true."""
+    """Waits until the condition is true and returns its value."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         result = condition()
@@ -62,6 +62,6 @@ def wait_until(what, condition, seconds):
 
 
 def release_when_told(pids, number=signal.SIGTERM):
-    """Lets processes that are held go on when the signal has come to all of them."""
+    """Continues stopped processes when the signal is pending for all of them."""
     wait_until(f"{pids} are told", lambda: all(is_told(pid, number) for pid in pids), 20)
     kill(pids, signal.SIGCONT)

@@ -31,7 +31,7 @@ std::string JsonAfter(const Change& change) {
   return OptionsJson(options);
 }
 
-/// Every option that can be set beside those of the fit, and that a result depends on.
+/// Changes of every option that affects a result, except those of the fit.
 std::vector<Change> ChangesOfTheRun() {
   return {
       {"nothing", [](IdentifyOptions&) {}},
@@ -66,7 +66,7 @@ std::vector<Change> ChangesOfTheRun() {
   };
 }
 
-/// Those of the fit; enumerations by each of their values.
+/// Changes of the fit's options, with every value of the enumerations.
 std::vector<Change> ChangesOfTheFit() {
   return {
       {"gravity sine", [](IdentifyOptions& o) { o.fit.gravity = Gravity::kSine; }},
@@ -75,7 +75,7 @@ std::vector<Change> ChangesOfTheFit() {
       {"start moving", [](IdentifyOptions& o) { o.fit.start = StartKind::kMoving; }},
       {"fix", [](IdentifyOptions& o) { o.fit.fixed["viscous"] = 0.1; }},
       {"fix another", [](IdentifyOptions& o) { o.fit.fixed["coulomb"] = 0.1; }},
-      // The neighbour of 0.1 among doubles.
+      // The double next to 0.1.
       {"fix at another value", [](IdentifyOptions& o) { o.fit.fixed["viscous"] = 0.10000000000000002; }},
       {"init", [](IdentifyOptions& o) { o.fit.initial["viscous"] = 0.1; }},
       {"lower bound", [](IdentifyOptions& o) { o.fit.bounds["viscous"].lower = 0.1; }},
@@ -116,8 +116,9 @@ TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
   }
 }
 
-// A new member does not compile here: put it into the changes above or among what makes no difference below. `model` is
-// the first of `models`; rig and calibration are hashed apart; `start_values` and `sensor_start` no user can set.
+// A new member causes a compile error here: add it to the changes above or to the options without effect below. `model`
+// is the first of `models`; rig and calibration are hashed separately; users cannot set `start_values` and
+// `sensor_start`.
 TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
@@ -136,7 +137,7 @@ TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
   EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](IdentifyOptions& o) { o.read.most_unpacked_bytes = 1; }}));
 }
 
-// Their bytes are hashed apart.
+// Their bytes are hashed separately.
 TEST(OptionsJson, LeavesRigAndCalibrationOut) {
   const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"rig", [](IdentifyOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of scripts/cluster share: recordings with a manifest in an awkward folder, and what a store holds."""
+"""Common parts of the tests of scripts/cluster: recordings with a manifest in a folder with an unusual name, and the content of a
+store."""
 
 import contextlib
 import os
@@ -20,7 +21,7 @@ SKIPPED = 77
 
 
 def skip_without(programs):
-    """Ends this test as skipped where these are not installed; in continuous integration that is a failure."""
+    """Skips this test if a program is not installed; in continuous integration that is a failure."""
     if programs:
         print(f"without {', '.join(programs)} there is nothing to test: scripts/install_dependencies --cluster")
         sys.exit(1 if os.environ.get("PENDULUM_CI") == "1" else SKIPPED)
@@ -40,13 +41,13 @@ def pairs(store):
 
 
 def work_on(store):
-    """The refit_pendulums that fit this store, not the shells above them."""
+    """The refit_pendulums processes that fit this store, without the shells above them."""
     return [pid for pid in processes.all_pids()
             if {b"--store", os.fsencode(store)} <= set(processes.arguments_of(pid))]
 
 
 class RefitCase(unittest.TestCase):
-    """TOOL is the path of refit_pendulums, COUNT of how many recordings; self.folder is new for each test."""
+    """TOOL is the path of refit_pendulums, COUNT the number of recordings; self.folder is new for each test."""
 
     TOOL = pathlib.Path()
     COUNT = 300
@@ -74,7 +75,7 @@ class RefitCase(unittest.TestCase):
         self.shards = self.folder / "all.sqlite.shards"
 
     def script(self, name, *arguments, code=0, **options):
-        """What a script of scripts/cluster prints."""
+        """The output of a script of scripts/cluster."""
         done = subprocess.run([SCRIPTS / name, *arguments], cwd=self.folder, capture_output=True, text=True,
                               timeout=options.pop("timeout", 60), stdin=subprocess.DEVNULL, check=False, **options)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
@@ -84,7 +85,7 @@ class RefitCase(unittest.TestCase):
         return ["--manifest", "../runs.csv", "--models", MODELS, "--store", "all.sqlite", "--shards", str(shards)]
 
     def start_of_one_process(self):
-        """Fits everything without shards, meanwhile; store_of_one_process waits for it."""
+        """Starts a fit of everything without shards; store_of_one_process waits for it."""
         folder = self.folder / "one"
         folder.mkdir()
         process = subprocess.Popen([self.TOOL, "--manifest", self.recordings / "runs.csv", "--models", MODELS, "--store",
@@ -102,13 +103,14 @@ class RefitCase(unittest.TestCase):
         return store
 
     def check_store(self, shards):
-        """Every run and model once, every shard published, nothing left of attempts."""
+        """Checks that every run and model occurs once, every shard is published, and no file of an attempt is left."""
         self.assertEqual(pairs(self.store), self.expected)
         names = {path.name for path in self.shards.iterdir()}
         self.assertEqual(names, {"logs", "request"} | {f"shard-{number}.sqlite" for number in range(shards)})
 
     def hold_shard(self, candidates=None):
-        """(number of a shard, what works on it), held still before the shard is done; of the candidates() if given."""
+        """Stops the processes of a shard before it is done; returns (number of the shard, processes). The shard is one of
+        candidates() if given."""
         def hold():
             for path in self.shards.glob("shard-*.sqlite.attempt-*"):
                 store = path.with_name(path.name.partition(".attempt-")[0])

@@ -112,7 +112,7 @@ TEST_F(RefitTest, SeesAFileThatIsGone) {
   EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities JOIN runs USING(run) WHERE id = 'a'"), "0");
 }
 
-// A run without a rig and one whose rig cannot be read are not of the same rig.
+// A run without a rig and a run with an unreadable rig must have different provenance.
 TEST_F(RefitTest, SeesARigThatIsNamedAndMissing) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
@@ -132,7 +132,7 @@ TEST_F(RefitTest, SaysWhyARunFailsNow) {
   EXPECT_THAT(FailureOf("a"), HasSubstr("directory"));
 }
 
-// ---- What the manifest says of a run -------------------------------------------------------------------------------
+// ---- Options in the manifest ---------------------------------------------------------------------------------------
 
 TEST_F(RefitTest, TakesModelsAndWindowOfARunFromTheManifest) {
   WriteBatch(folder_, 1);
@@ -222,7 +222,7 @@ TEST_F(RefitTest, CountsEachRunAsItIsDone) {
   EXPECT_THAT(seen, ElementsAre("4 1 0 0", "4 1 1 0", "4 2 1 0", "4 2 2 1"));
 }
 
-/// The source of a manifest whose files take so long to be read.
+/// The source of a manifest whose files take `delay` to read.
 Source Slow(const Source& source, std::chrono::milliseconds delay) {
   Source slow = source;
   slow.read = [source, delay](const std::string& path) {

@@ -16,14 +16,14 @@
 
 namespace pendulum::refit_folder {
 
-/// A folder with a batch in it.
+/// A folder with a batch.
 class RefitTest : public testing::Test {
  protected:
   RefitCounts RefitAll(const RefitOptions& options) const {
     return small_batch::RefitInto(folder_ / "store.sqlite", folder_ / "runs.csv", options);
   }
 
-  /// Ids of the runs that a refit by this would make anew, in order.
+  /// Ids of the runs that a refit with these options would fit again, in order.
   std::vector<std::string> Refitted(const RefitOptions& options) const {
     const std::string mark = "UPDATE runs SET cpu = 'before'";
     SQLite::Database((folder_ / "store.sqlite").string(), SQLite::OPEN_READWRITE).exec(mark);
@@ -33,7 +33,7 @@ class RefitTest : public testing::Test {
 
   std::string ValueOf(const std::string& query) const { return store_rows::Value(folder_ / "store.sqlite", query); }
 
-  /// "5 path: why" of a run.
+  /// "5 path: why" for a run.
   std::string FailureOf(const std::string& id) const {
     return ValueOf("SELECT exit_code || ' ' || reason FROM runs WHERE id = '" + id + "'");
   }
@@ -43,7 +43,7 @@ class RefitTest : public testing::Test {
   const RefitOptions coulomb_ = small_batch::OptionsWith({"coulomb"});
 };
 
-/// What the library says of one recording, fitted on its own, under the path that the manifest has for it.
+/// The library's result of one recording, fitted alone, with the path as in the manifest.
 inline std::string ResultAlone(const IdentifyOptions& options, const std::filesystem::path& file,
                                const std::optional<Rig>& rig, const std::string& path) {
   auto one = ReadOne(options, file.string(), rig);

@@ -46,7 +46,7 @@ namespace fs = std::filesystem;
 constexpr const char* kCalibration =
     R"({"schema_version": 1, "input": "counts", "angle_unit": "deg", "coefficients": [-49.6077, 0.1985]})";
 
-/// A recording as the counts that this calibration turns into degrees.
+/// A recording in counts that this calibration converts to degrees.
 std::string CountsText(std::uint64_t seed) {
   const auto recording = SimulateRecording(small_batch::Truth(seed));
   if (!recording) return recording.error().message;
@@ -58,8 +58,7 @@ std::string CountsText(std::uint64_t seed) {
   return text;
 }
 
-// ---- The same results as of one recording at a time
-// ------------------------------------------------------------------
+// ---- Results equal to single fits ----------------------------------------------------------------------------------
 
 TEST_F(RefitTest, GivesToTheLastBitWhatEachRecordingGivesAlone) {
   folder_.Write("rigs/one.json", small_batch::kRigText);
@@ -160,7 +159,7 @@ TEST_F(RefitTest, SeesOneByteThatChangedInARecording) {
   WriteBatch(folder_, 3);
   RefitAll(coulomb_);
   std::string text = folder_.Read("1.csv");
-  text.back() = ' ';  // as good as a line break
+  text.back() = ' ';  // equivalent to the line break
   folder_.Write("1.csv", text);
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());
@@ -179,7 +178,7 @@ TEST_F(RefitTest, SeesAChangeInARigOrACalibrationOfSomeRuns) {
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
   folder_.Write("calibration.json", std::string(kCalibration) + "\n");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("d"));
-  RefitOptions with_rig = coulomb_;  // of those that name none
+  RefitOptions with_rig = coulomb_;  // for entries that name none
   with_rig.rig = small_batch::kRigText;
   EXPECT_THAT(Refitted(with_rig), ElementsAre("c", "d"));
   EXPECT_THAT(Refitted(with_rig), IsEmpty());
@@ -233,7 +232,7 @@ TEST_F(RefitTest, SeesAWindowOrModelsThatTheManifestChanged) {
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "c"));
   EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'c'"), ElementsAre("viscous"));
   folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,1,coulomb\n1.csv,b,,\n2.csv,c,,viscous\n");
-  EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // the same in other words
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // equivalent options
 }
 
 TEST_F(RefitTest, TakesRowsOfAnotherVersionForOld) {

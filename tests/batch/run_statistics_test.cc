@@ -30,7 +30,7 @@ using testing::SizeIs;
 
 const std::vector<double> kTen = {2.1, 3.7, 1.4, 5.9, 4.4, 2.8, 3.3, 6.2, 3.1, 2.5};
 
-// np.percentile(x, [0, 25, 50, 75, 100]) is type 7 of Hyndman and Fan, R's default; x.mean(), x.std(ddof=1).
+// np.percentile(x, [0, 25, 50, 75, 100]) is type 7 of Hyndman and Fan, R's default; also x.mean(), x.std(ddof=1).
 TEST(Describe, GivesQuartilesMeanAndStandardDeviation) {
   const Distribution distribution = Describe(kTen);
   EXPECT_EQ(distribution.minimum, 1.4);
@@ -52,8 +52,8 @@ TEST(Describe, CountsInTheBinsOfFreedmanAndDiaconis) {
   EXPECT_EQ(distribution.above, 0);
 }
 
-// Quartiles of 0..100 and a value far off each side: 24.5 and 75.5, so that bins end at 75.5 + 3 · 51 at most; none is
-// lost, and no bar stands alone.
+// The quartiles of 0..100 with an outlier on each side are 24.5 and 75.5, so bins end at 75.5 + 3 · 51 at most. No
+// value is lost, and the histogram has more than one bar.
 TEST(Describe, CountsOutliersBesideTheBins) {
   std::vector<double> values(101);
   std::iota(values.begin(), values.end(), 0);
@@ -69,7 +69,7 @@ TEST(Describe, CountsOutliersBesideTheBins) {
   EXPECT_EQ(std::accumulate(distribution.counts.begin(), distribution.counts.end(), std::size_t{0}), 101);
 }
 
-// Of 10^6 equal steps the rule has 2 · 500000 / 100 a bin: 100 bins.
+// For 10^6 equally spaced values the rule gives a bin width of 2 · 500000 / 100, which would be 100 bins.
 TEST(Describe, HasSixtyBinsAtMost) {
   std::vector<double> values(1000000);
   std::iota(values.begin(), values.end(), 0);
@@ -98,8 +98,8 @@ TEST(Describe, CountsEveryValueOnce) {
 
 // ---- FindOutliers --------------------------------------------------------------------------------------------------
 
-// The rate of such a rule on its own (NumPy, 4000 batches a size): 3.3 to 4.4 % for 5 to 200 runs; 1 % is four times
-// the rate's own standard deviation.
+// False alarm rate of this rule in an independent simulation (NumPy, 4000 batches per size): 3.3 to 4.4 % for 5 to 200
+// runs. 1 % is four standard deviations of the rate.
 TEST(FindOutliers, AreFalseOnceInTwentyBatchesOfRunsWithTrueErrors) {
   constexpr int kBatches = 3000;
   for (const std::size_t runs : {5U, 20U, 100U}) {
@@ -118,12 +118,12 @@ TEST(FindOutliers, AreFoundWithTheirDistanceTheFarthestFirst) {
   const auto outliers = FindOutliers(values);
   ASSERT_THAT(outliers, SizeIs(2));
   EXPECT_EQ(outliers[0].run, 6);
-  EXPECT_DOUBLE_EQ(outliers[0].z, 20);  // 40 from the median 10, of errors 2
+  EXPECT_DOUBLE_EQ(outliers[0].z, 20);  // a distance of 40 from the median 10, with errors of 2
   EXPECT_EQ(outliers[1].run, 4);
   EXPECT_DOUBLE_EQ(outliers[1].z, 10);
 }
 
-// Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and 1.4826 · 0.5 the scale.
+// Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and the scale is 1.4826 · 0.5.
 TEST(FindOutliers, AreJudgedByTheScatterWhereThereIsNoError) {
   const auto outliers = FindOutliers(OneGroup({10, 11, 9, 10.5, 30, 9.5, 10}));
   ASSERT_THAT(outliers, SizeIs(1));
@@ -139,9 +139,9 @@ TEST(FindOutliers, BeginAtTheLimitOfSidak) {
 }
 
 TEST(FindOutliers, AreThoseOfTheirOwnGroup) {
-  RunValues values = NormalRuns(2, 10, 1, 7);  // about 100 and 150
+  RunValues values = NormalRuns(2, 10, 1, 7);  // groups at about 100 and 150
   EXPECT_THAT(FindOutliers(values), IsEmpty());
-  values.estimate[4] = 150;  // of the first group
+  values.estimate[4] = 150;  // in the first group
   const auto outliers = FindOutliers(values);
   ASSERT_THAT(outliers, SizeIs(1));
   EXPECT_EQ(outliers[0].run, 4);
@@ -157,7 +157,7 @@ TEST(FindOutliers, AreNotToldWithoutAnyScale) { EXPECT_THAT(FindOutliers(OneGrou
 
 // ---- Repeat --------------------------------------------------------------------------------------------------------
 
-// Weights 1, 1, 1/4: mean 25.5 / 2.25, chi2 = (4/3)² + (2/3)² + (8/3)² / 4 = 4; of two degrees of freedom p is
+// Weights 1, 1, 1/4: mean 25.5 / 2.25, chi2 = (4/3)² + (2/3)² + (8/3)² / 4 = 4. With two degrees of freedom p is
 // exp(-chi2 / 2).
 TEST(Repeat, IsWhatThreeRunsGiveByHand) {
   RunValues values = OneGroup({10, 12, 14});
@@ -179,8 +179,8 @@ TEST(Repeat, IsWhatThreeRunsGiveByHand) {
   EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kAgrees);
 }
 
-// Of equal errors the equation of Paule and Mandel is between² = s² - error²: 4 - 1 and 16 - 1; with 2 and 1 degrees of
-// freedom sqrt((2 · 3 + 1 · 15) / 3).
+// With equal errors the equation of Paule and Mandel is between² = s² - error²: 4 - 1 and 16 - 1. With 2 and 1 degrees
+// of freedom the result is sqrt((2 · 3 + 1 · 15) / 3).
 TEST(Repeat, PutsGroupsTogetherByTheirDegreesOfFreedom) {
   RunValues values = OneGroup({10, 12, 14, 100, 100 + std::sqrt(32)}, 1);
   values.group = {0, 0, 0, 1, 1};
@@ -195,7 +195,7 @@ TEST(Repeat, PutsGroupsTogetherByTheirDegreesOfFreedom) {
   EXPECT_NEAR(repeatability->ScatterRatio(), std::sqrt(8), 1e-9);
 }
 
-/// How many batches of `runs` runs of three rigs, with true errors, are not said to agree.
+/// Number of batches reported as disagreeing; they have `runs` runs of three rigs, and right errors.
 int FalseVerdicts(int batches, std::size_t runs) {
   int verdicts = 0;
   for (int seed = 0; seed < batches; ++seed) {
@@ -205,14 +205,14 @@ int FalseVerdicts(int batches, std::size_t runs) {
   return verdicts;
 }
 
-// p below 1 % on either side: 2 % of 2000 batches, ± 6.3.
+// p below 1 % on either side: 2 % of 2000 batches, with a standard deviation of 6.3.
 TEST(Repeat, IsSaidWronglyOfTrueErrorsInTwoOfAHundredBatches) {
   const int verdicts = FalseVerdicts(2000, 10);
   EXPECT_GT(verdicts, 40 - 4 * 6.3);
   EXPECT_LT(verdicts, 40 + 4 * 6.3);
 }
 
-// Standard deviation 2, errors 1: between is sqrt(3), and of 198 degrees of freedom its own error is 0.115.
+// Standard deviation 2, errors 1: between is sqrt(3); with 198 degrees of freedom its standard error is 0.115.
 TEST(Repeat, SeesErrorsThatAreTooSmallAndByHowMuch) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
     const auto repeatability = Repeat(NormalRuns(2, 100, 2, seed), {});
@@ -234,7 +234,7 @@ TEST(Repeat, SeesErrorsThatAreTooLarge) {
   }
 }
 
-// Rigs 50 apart, errors 1: as one group it is another matter.
+// Rigs that differ by 50, with errors of 1: as one group they would not repeat.
 TEST(Repeat, DoesNotTakeRigsThatDifferForScatter) {
   RunValues values = NormalRuns(5, 20, 1, 3);
   const auto by_rig = Repeat(values, {});
@@ -247,7 +247,7 @@ TEST(Repeat, DoesNotTakeRigsThatDifferForScatter) {
   EXPECT_GT(together->between, 50);
 }
 
-// 5 % of scatter is seen in 20000 runs, and nothing to speak of.
+// 5 % more scatter is significant in 20000 runs, but too small to report.
 TEST(Repeat, SpeaksOfTenPercentOnly) {
   for (const double scatter : {1.05, 0.95}) {
     const auto repeatability = Repeat(NormalRuns(1, 20000, scatter, 1), {});

@@ -43,8 +43,8 @@ TEST(FitTrend, IsTheRegressionOfATextbook) {
   EXPECT_NEAR(trend->p, 0.00216962887307879, 1e-12);
 }
 
-// numpy.linalg.lstsq(np.c_[x, g == 0, g == 1], y): one slope and two levels, 8 degrees of freedom; 100 more in the
-// second group change nothing.
+// numpy.linalg.lstsq(np.c_[x, g == 0, g == 1], y): one slope and two levels, 8 degrees of freedom. Adding 100 to the
+// second group changes nothing.
 TEST(FitTrend, HasALevelOfItsOwnForEachGroup) {
   for (const double more : {0.0, 100.0}) {
     RunValues values = Anscombe();
@@ -76,7 +76,7 @@ TEST(FitTrend, LeavesOutOutliersAndRunsWithoutAnOrder) {
   EXPECT_NEAR(trend->slope, 0.5000909090909091, 1e-13);
 }
 
-// Under the null hypothesis p is below 5 % in 5 % of 2000 batches, ± 9.7.
+// Under the null hypothesis p is below 5 % in 5 % of 2000 batches, with a standard deviation of 9.7.
 TEST(FitTrend, HasATrueProbability) {
   int below = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
@@ -114,7 +114,7 @@ TEST(OrderOf, TakesNumbers) {
   EXPECT_EQ(OrderOf("2026", is_date), 2026);
 }
 
-// datetime.date(...) - datetime.date(1970, 1, 1) in Python.
+// Expected values from Python: datetime.date(...) - datetime.date(1970, 1, 1).
 TEST(OrderOf, TakesDatesAsDays) {
   const std::vector<std::pair<const char*, double>> dates = {{"1970-01-01", 0},
                                                              {"1969-12-31", -1},

@@ -16,7 +16,7 @@ namespace pendulum::run_values {
 
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Values of one rig in their order, with one error.
+/// Values of one rig in order, with a common standard error.
 inline RunValues OneGroup(const std::vector<double>& estimates, double std_error = kNone) {
   RunValues values{estimates, {}, {}, {}};
   values.std_error.assign(estimates.size(), std_error);
@@ -26,8 +26,8 @@ inline RunValues OneGroup(const std::vector<double>& estimates, double std_error
   return values;
 }
 
-/// `rigs` rigs of 5 runs and more apart, each of `runs` normal values about its own with that standard deviation, whose
-/// errors are said to be 1.
+/// `rigs` rigs with distances of at least 5. Each has `runs` normal values with that standard deviation; all quoted
+/// errors are 1.
 inline RunValues NormalRuns(std::size_t rigs, std::size_t runs, double std_dev, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   boost::random::normal_distribution<double> normal(0, std_dev);

@@ -13,8 +13,8 @@ namespace pendulum::schema_check {
 
 using Json = nlohmann::ordered_json;
 
-/// Whether a value is as a schema says, as far as this knows: $ref, oneOf, const, enum, type, required, properties,
-/// additionalProperties, items, minimum, maximum, maxItems. Says where it is not.
+/// Checks a value against a schema and lists violations. Supports $ref, oneOf, const, enum, type, required, properties,
+/// additionalProperties, items, minimum, maximum, maxItems.
 class SchemaCheck {
  public:
   explicit SchemaCheck(const Json& schema) : schema_(schema) {}

@@ -39,7 +39,7 @@ using testing::StartsWith;
 
 namespace fs = std::filesystem;
 
-/// What tells that a file is still the one it was.
+/// Attributes that are equal as long as a file is not replaced.
 std::vector<std::int64_t> IdentityOf(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};
@@ -62,7 +62,7 @@ TEST_F(ShardsTest, GoOnFromTheCheckpointOfAnAttemptThatWasStopped) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), RowsAtOnce());
 }
 
-// The store of before is complete, and every row of it is old.
+// The earlier store is complete, but all its rows are outdated.
 TEST_F(ShardsTest, GoOnFromTheCheckpointAlsoWhereThereIsAStoreOfOtherOptions) {
   RefitOne(0, 1, OptionsWith({"drag"}));
   std::atomic<bool> stop = false;
@@ -87,7 +87,7 @@ TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamaged) {
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
 }
 
-/// Writes over the last quarter of a store, behind what Open looks at.
+/// Overwrites the last quarter of a store, which Open does not read.
 void Damage(const fs::path& store) {
   constexpr std::size_t kPage = 4096;
   const std::size_t end = 3 * fs::file_size(store) / kPage / 4 * kPage;
@@ -135,7 +135,7 @@ TEST_F(ShardsTest, KeepNoRunsOfAnotherShardTheyBeganAs) {
   EXPECT_EQ(AllRows(store_), RowsAtOnce());
 }
 
-// --store results.sqlite where out/shard-0.sqlite was meant: what took days must not be gone.
+// --store results.sqlite instead of out/shard-0.sqlite: days of work must not be lost.
 TEST_F(ShardsTest, TakeNoRunsAwayFromAWholeStore) {
   RefitInto(store_, folder_ / "runs.csv", options_);
   const std::vector<std::string> rows = AllRows(store_);
@@ -175,7 +175,7 @@ TEST_F(ShardsTest, AreTheSameWhereOneOfTwoAttemptsIsStoppedMeanwhile) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), at_once);
 }
 
-// Commits are a second apart, so that a checkpoint of 0.1 s comes with each.
+// Commits are a second apart, so with an interval of 0.1 s each commit is followed by a checkpoint.
 TEST_F(ShardsTest, PublishACheckpointWhileTheyWork) {
   auto source = OpenSource(folder_ / "runs.csv");
   ASSERT_TRUE(source);
@@ -209,8 +209,8 @@ TEST_F(ShardsTest, AreWorkedOnInTheScratchFolder) {
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
 }
 
-// An attempt that was killed left its file and that file's journal, and another has its name, as in a container where
-// every process has the same number.
+// A killed attempt left its file and journal, and a new attempt has the same name, as in containers where every process
+// has the same number.
 TEST_F(ShardsTest, AreTheSameAfterAKilledAttemptOfTheSameName) {
   RefitOne(0, 1, options_);
   LeaveAsKilled(ShardPath(out_, 0), out_ / "shard-0.sqlite.attempt-1");

@@ -16,7 +16,7 @@
 
 namespace pendulum::shards_folder {
 
-/// A folder with a batch in it, one of whose files is missing, and one for its shards.
+/// A folder with a batch that has one missing file, and a folder for its shards.
 class ShardsTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -36,7 +36,7 @@ class ShardsTest : public testing::Test {
     return RefitShard(*source, at, options);
   }
 
-  /// Refits a shard of so many; fails the test where that cannot be done.
+  /// Refits shard `index` of `count`; fails the test on an error.
   RefitCounts RefitOne(std::int64_t index, std::int64_t count, const RefitOptions& options) const {
     const auto counts = TryShard(At(index), {index, count}, options);
     if (counts) return *counts;
@@ -50,7 +50,7 @@ class ShardsTest : public testing::Test {
 
   Result<std::int64_t> Merge(std::int64_t count) const { return MergeShards(out_, count, store_); }
 
-  /// Options that stop after so many runs.
+  /// Options that stop after `runs` runs.
   RefitOptions StoppingAfter(std::int64_t runs, std::atomic<bool>& stop) const {
     stop = false;
     RefitOptions options = options_;
@@ -59,7 +59,7 @@ class ShardsTest : public testing::Test {
     return options;
   }
 
-  /// The rows of a refit at once.
+  /// The rows of a refit without shards.
   std::vector<std::string> RowsAtOnce() const {
     const std::filesystem::path whole = folder_ / "whole.sqlite";
     std::filesystem::remove(whole);
@@ -75,7 +75,7 @@ class ShardsTest : public testing::Test {
     return names;
   }
 
-  /// Makes the file and the journal that a process leaves which is killed while it writes to a copy of a store.
+  /// Creates the file and the journal that a process leaves when it is killed while writing to a copy of a store.
   void LeaveAsKilled(const std::filesystem::path& store, const std::filesystem::path& file) const {
     const std::string dying = folder_ / "dying.sqlite";
     std::filesystem::copy(store, dying);
@@ -88,7 +88,7 @@ class ShardsTest : public testing::Test {
     database.exec("ROLLBACK");
   }
 
-  static constexpr int kRuns = 6;  // and one that is not there
+  static constexpr int kRuns = 6;  // and one missing file
 
   small_batch::Folder folder_{"shards_test"};
   const std::filesystem::path out_ = folder_ / "out";

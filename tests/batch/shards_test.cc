@@ -39,7 +39,7 @@ using testing::StartsWith;
 
 namespace fs = std::filesystem;
 
-// ---- The parts of a batch ------------------------------------------------------------------------------------------
+// ---- Shards of a batch ---------------------------------------------------------------------------------------------
 
 TEST(ShardPath, NamesTheStoreOfAShard) {
   EXPECT_EQ(ShardPath("out", 3), fs::path("out/shard-3.sqlite"));
@@ -47,11 +47,11 @@ TEST(ShardPath, NamesTheStoreOfAShard) {
   EXPECT_EQ(ShardList({}), "");
 }
 
-// ---- Merged --------------------------------------------------------------------------------------------------------
+// ---- Merging -------------------------------------------------------------------------------------------------------
 
 TEST_F(ShardsTest, GiveTheStoreThatIsMadeAtOnce) {
   const std::vector<std::string> at_once = RowsAtOnce();
-  for (const std::int64_t count : {1, 2, 3, 9}) {  // nine: two of them are empty
+  for (const std::int64_t count : {1, 2, 3, 9}) {  // with nine shards two are empty
     fs::remove_all(out_);
     fs::create_directory(out_);
     fs::remove(store_);
@@ -89,7 +89,7 @@ TEST_F(ShardsTest, MayBeMergedTwice) {
 }
 
 TEST_F(ShardsTest, ReplaceTheirRunsInAStoreAndKeepTheOthers) {
-  folder_.Write("other.csv", "path,id\n0.csv,other\n1.csv,b\n");  // b is 1.csv of this batch too
+  folder_.Write("other.csv", "path,id\n0.csv,other\n1.csv,b\n");  // b is 1.csv in this batch, too
   RefitInto(store_, folder_ / "other.csv", OptionsWith({"drag"}));
   const std::string others = "SELECT result FROM runs WHERE id = 'other'";
   const std::string before = Value(store_, others);
@@ -126,8 +126,7 @@ TEST_F(ShardsTest, LeaveNothingElseBehindOnceTheyAreMerged) {
   EXPECT_THAT(folder_.Names("store.sqlite"), ElementsAre("store.sqlite"));
 }
 
-// A merge that was killed while it wrote leaves its file and that file's journal; whoever plays the journal back into
-// another file spoils that.
+// A killed merge leaves its file and journal. SQLite would corrupt a new file by applying that journal to it.
 TEST_F(ShardsTest, AreMergedAlsoAfterAMergeThatWasKilled) {
   const std::vector<std::string> at_once = RowsAtOnce();
   AllShards(2);
@@ -140,7 +139,7 @@ TEST_F(ShardsTest, AreMergedAlsoAfterAMergeThatWasKilled) {
   EXPECT_EQ(AllRows(store_), at_once);
 }
 
-// ---- Missing and foreign -------------------------------------------------------------------------------------------
+// ---- Missing and wrong shards --------------------------------------------------------------------------------------
 
 TEST_F(ShardsTest, AreListedWhileTheyAreMissingAndNotMerged) {
   RefitOne(1, 4, options_);
@@ -154,7 +153,7 @@ TEST_F(ShardsTest, AreListedWhileTheyAreMissingAndNotMerged) {
   EXPECT_EQ(merged.error().code, StatusCode::kNotFound);
   EXPECT_EQ(merged.error().message, out_.string() + ": of 4 shards these are missing: 0,2,3; run them and merge again");
   EXPECT_FALSE(fs::exists(store_));
-  EXPECT_TRUE(fs::exists(out_ / "shard-3.sqlite.part"));  // what is done is kept
+  EXPECT_TRUE(fs::exists(out_ / "shard-3.sqlite.part"));  // finished work is kept
 }
 
 TEST_F(ShardsTest, AreNoneMissingWhereAllAreComplete) {
@@ -171,7 +170,7 @@ TEST_F(ShardsTest, AreNotLookedForInAFolderThatIsNotThere) {
   EXPECT_THAT(missing.error().message, StartsWith((folder_ / "nowhere").string() + ": there is no such folder"));
 }
 
-/// The message with which a merge of two shards is refused.
+/// The error message for a refused merge of two shards.
 std::string Refusal(const Result<std::int64_t>& merged) {
   if (merged) return "merged";
   EXPECT_EQ(merged.error().code, StatusCode::kDataLoss) << merged.error().message;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Slurm of one's own: munged, slurmctld and some slurmd on 127.0.0.1, with ports, sockets and a key of this run.
+"""A private Slurm: munged, slurmctld and some slurmd on 127.0.0.1, with ports, sockets and a key for this run only.
 
-It needs Debian's packages and no privileges. A node is a slurmd with the tasks under it, so it can die as a machine does.
+It needs Debian's packages and no privileges. A node is a slurmd with its tasks, so it can fail like a machine.
 """
 
 import contextlib
@@ -15,10 +15,10 @@ import subprocess
 import processes
 
 PROGRAMS = ("munge", "munged", "sbatch", "scancel", "scontrol", "setpriv", "sinfo", "slurmctld", "slurmd", "squeue")
-CLIENT_TIMEOUT = 20  # s; a client whose slurmctld is gone waits for long
+CLIENT_TIMEOUT = 20  # s; without slurmctld a client waits long
 
-# A node is lost after SlurmdTimeout and the two other timeouts, and its task starts again cred_expire later.
-# linuxproc and the older cgroup plugin, for the hosts that have no cgroups to be written to.
+# A node is lost after SlurmdTimeout and the two other timeouts; its task restarts cred_expire later. linuxproc and the older
+# cgroup plugin are for hosts without writable cgroups.
 CONFIGURATION = """\
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -63,7 +63,7 @@ def program_path(program):
 
 
 def free_ports(count):
-    """Ports that follow each other and that nobody listens at, below those that connections are given."""
+    """Consecutive free ports below the range of ephemeral ports."""
     for _ in range(100):
         first = random.randrange(10000, 32000)
         with contextlib.ExitStack() as sockets:
@@ -77,7 +77,7 @@ def free_ports(count):
 
 
 class SlurmCluster:
-    """with SlurmCluster(folder, nodes) as cluster: the folder is empty, of this user and has a short name."""
+    """with SlurmCluster(folder, nodes) as cluster: the folder is empty, belongs to this user and has a short name."""
 
     def __init__(self, folder, nodes=3):
         self.folder = pathlib.Path(folder)
@@ -100,7 +100,7 @@ class SlurmCluster:
         self.close()
 
     def client(self, *command, **options):
-        """What a client prints; an error if it fails."""
+        """The output of a client; raises an error if it fails."""
         done = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=CLIENT_TIMEOUT,
                               stdin=subprocess.DEVNULL, check=False, **options)
         if done.returncode != 0:
@@ -108,25 +108,25 @@ class SlurmCluster:
         return done.stdout
 
     def queue(self, *flags):
-        """{(job, task): (state, node)} of what is not finished; a task that waits with others has no entry of its own."""
+        """{(job, task): (state, node)} of unfinished tasks; a pending task that is grouped with others has no entry."""
         lines = self.client("squeue", "--noheader", "--array", "--format=%F|%K|%T|%N", *flags).splitlines()
         rows = (line.split("|") for line in lines)
         return {(job, task): (state, node) for job, task, state, node in rows}
 
     def wait_for_end(self, jobs, seconds):
-        """Until none of the jobs is in the queue; sbatch --wait would poll with growing pauses."""
+        """Waits until none of the jobs is in the queue; sbatch --wait would poll with growing pauses."""
         processes.wait_until(f"the end of the jobs {jobs}", lambda: not self._unfinished(jobs), seconds)
 
     def job(self, name):
-        """What scontrol tells of a job or a task (12_3), also when it has finished."""
+        """scontrol's information about a job or a task (12_3), also after its end."""
         words = self.client("scontrol", "--oneliner", "show", "job", name).split()
         return dict(word.split("=", 1) for word in words if "=" in word)
 
     def terminate_task(self, name, wait_for_it):
-        """SIGTERM for the shell of a task; wait_for_it() returns when it came.
+        """Sends SIGTERM to the shell of a task; wait_for_it() returns when it has arrived.
 
-        Slurm 22.05 delivers it and asks for another try all the same, with which scancel would hit the next attempt, 5 s
-        later.
+        Slurm 22.05 delivers the signal but asks for a repetition anyway; scancel would then repeat it 5 s later and hit the next
+        attempt.
         """
         scancel = subprocess.Popen(["scancel", "--signal=TERM", "--batch", name], env=self.environment,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -137,7 +137,7 @@ class SlurmCluster:
             scancel.wait()
 
     def kill_node(self, node):
-        """Nothing of the node survives: slurmd, the slurmstepd of its tasks, their shells and what these started."""
+        """Kills a node completely: slurmd, the slurmstepd of its tasks, their shells and all their child processes."""
         tasks = self._tasks_of(node)
         steps = {processes.parent_of(pid) for pid in tasks}
         steps = {pid for pid in steps if processes.name_of(pid) == "slurmstepd"}
@@ -146,7 +146,7 @@ class SlurmCluster:
         daemon.wait()
 
     def close(self):
-        """Ends jobs, then all slurmd, then slurmctld, then munged; none is left, whatever state they are in."""
+        """Ends jobs, then all slurmd, then slurmctld, then munged; none survives, in any state."""
         if "slurmctld" in self.daemons:
             with contextlib.suppress(Exception):
                 self.client("scancel", "--quiet", f"--user={os.getuid()}")
@@ -169,7 +169,7 @@ class SlurmCluster:
         for name in ("key", "log", "run", "spool", "state"):
             (self.folder / name).mkdir()
         self.folder.chmod(0o755)
-        (self.folder / "run").chmod(0o755)  # munged wants its socket to be reached by all, and its key by none
+        (self.folder / "run").chmod(0o755)  # munged needs a socket open to all, and a private key
         (self.folder / "key").chmod(0o700)
         key = self.folder / "key/munge.key"
         key.touch(0o600)
@@ -182,7 +182,7 @@ class SlurmCluster:
         (self.folder / "cgroup.conf").write_text("CgroupPlugin=cgroup/v1\n", encoding="utf-8")
 
     def _start_daemons(self):
-        """Each is asked for a sign of life before the next is started, for without it the next would wait for long."""
+        """Waits for each daemon to respond before starting the next one, which would otherwise wait long."""
         munge_socket = self.folder / "run/munge.sock"
         self._start("munged", "munged", "--foreground", f"--socket={munge_socket}",
                     f"--key-file={self.folder}/key/munge.key", f"--pid-file={self.folder}/run/munged.pid",
@@ -195,7 +195,7 @@ class SlurmCluster:
         processes.wait_until("all nodes are idle", self._all_idle, 20)
 
     def _start(self, name, program, *arguments):
-        # A daemon that held the test's own output would keep its reader waiting, and one whose test is killed goes too.
+        # A daemon with the test's own output would block the reader of that output. A daemon ends when its test is killed.
         with open(self.folder / f"log/{name}.log", "wb") as output:
             self.daemons[name] = subprocess.Popen(["setpriv", "--pdeathsig", "TERM", program_path(program), *arguments],
                                                   env=self.environment, stdin=subprocess.DEVNULL, stdout=output,
@@ -214,7 +214,7 @@ class SlurmCluster:
         return (self._answers("sinfo", "--noheader", "--Node", "--format=%T") or "").split() == ["idle"] * len(self.nodes)
 
     def _tasks_of(self, node):
-        """The batch shells of this cluster's node and all that they started, by what is in their environment."""
+        """The batch shells of this cluster's node and all their child processes, found by their environment."""
         marks = {f"SLURMD_NODENAME={node}".encode(), f"SLURM_CONF={self.folder}/slurm.conf".encode()}
         return [pid for pid in processes.all_pids() if marks <= set(processes.environment_of(pid))]
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refit_slurm on a real Slurm of three nodes, one of which dies: slurm_test.py PATH_OF_refit_pendulums.
+"""refit_slurm on a real Slurm of three nodes, one of which fails: slurm_test.py PATH_OF_refit_pendulums.
 
-simulate_pendulum is the one beside it. Exit code 77 where Slurm is not installed.
+simulate_pendulum is taken from the same folder. Exit code 77 if Slurm is not installed.
 """
 
 import pathlib
@@ -22,13 +22,13 @@ class SlurmTest(refit_case.RefitCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Sockets have short names, which $TMPDIR may not.
+        # Paths of sockets must be short; $TMPDIR may be too long.
         folder = cls.enterClassContext(tempfile.TemporaryDirectory(prefix="slurm-", dir="/tmp"))
         cls.cluster = cls.enterClassContext(slurm_cluster.SlurmCluster(folder, nodes=3))
         cls.environment = dict(cls.cluster.environment, REFIT_PENDULUMS=str(cls.TOOL))
 
     def refit(self, *flags):
-        """(job of the array or None, job of the merge) that refit_slurm submitted."""
+        """(job of the array or None, job of the merge) submitted by refit_slurm."""
         printed = self.script("refit_slurm", *self.request(SHARDS), "--cpus", "1", *flags, env=self.environment)
         *fits, merge = [line.split()[0] for line in printed.splitlines()]
         return fits[0] if fits else None, merge
@@ -99,4 +99,4 @@ if __name__ == "__main__":
     try:
         unittest.main()
     finally:
-        SlurmTest.doClassCleanups()  # which unittest leaves out when it is interrupted
+        SlurmTest.doClassCleanups()  # unittest skips it after an interruption

@@ -21,7 +21,7 @@
 /// Batches of short synthetic recordings in temporary folders.
 namespace pendulum::small_batch {
 
-/// A temporary folder, which goes with all that is in it.
+/// A temporary folder that is removed with its content.
 class Folder {
  public:
   explicit Folder(const std::string& name)
@@ -47,7 +47,7 @@ class Folder {
     return text.str();
   }
 
-  /// Names of the files in it that begin so, in order.
+  /// Sorted names of the files in it with this prefix.
   std::vector<std::string> Names(const std::string& prefix = "") const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {
@@ -62,7 +62,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What is true of the recordings, in units of G: I_O / G = 0.0438 s^2, b / G = 0.0011 s, τ_c / G = 0.0022.
+/// Simulation options with the true values in units of G: I_O / G = 0.0438 s^2, b / G = 0.0011 s, τ_c / G = 0.0022.
 inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
   SyntheticOptions options;
   options.parameters = {0.0438, 0.0011, 0.0022};
@@ -75,7 +75,7 @@ inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
   return options;
 }
 
-/// Such a recording as CSV, to the last bit.
+/// Such a recording as CSV with exact numbers.
 inline std::string RecordingText(const SyntheticOptions& options) {
   const auto recording = SimulateRecording(options);
   if (!recording) {
@@ -96,7 +96,7 @@ inline std::string RecordingText(std::uint64_t seed) { return RecordingText(Trut
 
 inline constexpr const char* kRigText = R"({"gravity_torque": {"value": 1.8, "std_dev": 0.002}})";
 
-/// One thread, the models in this order.
+/// Options for one thread and the models in this order.
 inline IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
   IdentifyOptions options;
   options.models = models;
@@ -105,7 +105,7 @@ inline IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
   return options;
 }
 
-/// The options of a refit by one thread, unless the environment's cores are to be used.
+/// Options of a refit with one thread, unless the environment requests all cores.
 inline RefitOptions OptionsWith(const std::vector<std::string>& models) {
   RefitOptions options;
   options.run.models = models;
@@ -114,7 +114,7 @@ inline RefitOptions OptionsWith(const std::vector<std::string>& models) {
   return options;
 }
 
-/// Writes so many recordings 0.csv, 1.csv ... and runs.csv, the manifest that has them under the ids a, b, ...
+/// Writes `runs` recordings 0.csv, 1.csv ... and the manifest runs.csv, where their ids are a, b, ...
 inline void WriteBatch(const Folder& folder, int runs) {
   std::string manifest = "path,id\n";
   for (int k = 0; k < runs; ++k) {
@@ -124,7 +124,7 @@ inline void WriteBatch(const Folder& folder, int runs) {
   folder.Write("runs.csv", manifest);
 }
 
-/// The store of that path after a refit of that manifest; fails the test where it cannot be made.
+/// Refits the manifest into the store with that path; fails the test on an error.
 inline RefitCounts RefitInto(const std::filesystem::path& store_path, const std::filesystem::path& manifest,
                              const RefitOptions& options) {
   const auto source = OpenSource(manifest);

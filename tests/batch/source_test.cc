@@ -40,7 +40,7 @@ std::vector<std::string> IdsOf(const Source& source) {
   return ids;
 }
 
-/// Each byte there is, several times over, so that the text fills more than a page of SQLite.
+/// Every byte value, repeated so that the text fills more than a page of SQLite.
 std::string BinaryBytes() {
   std::string bytes;
   for (int i = 0; i < 40 * 256; ++i) bytes += static_cast<char>(i % 256);
@@ -56,7 +56,7 @@ class SourceTest : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
 
-  /// A manifest with all that an entry can have, and its files but one.
+  /// A manifest with all properties of entries, and all of its files except one.
   Source Manifest() const {
     Write("runs.csv",
           "path,id,rig,calibration,from_s,to_s,models,temperature\n"
@@ -82,7 +82,7 @@ TEST_F(SourceTest, ReadsFilesFromTheFolderOfTheManifest) {
   EXPECT_THAT(IdsOf(source), ElementsAre("first", "runs/b.csv", "third"));
   EXPECT_EQ(source.read("runs/a.csv").value(), BinaryBytes());
   EXPECT_EQ(source.read("runs/b.csv").value(), "");
-  EXPECT_EQ(source.read((folder_ / "rig.json").string()).value(), "{}");  // a path that begins at the root
+  EXPECT_EQ(source.read((folder_ / "rig.json").string()).value(), "{}");  // an absolute path
 }
 
 TEST_F(SourceTest, NamesFilesAsTheManifestDoes) {
@@ -93,7 +93,7 @@ TEST_F(SourceTest, NamesFilesAsTheManifestDoes) {
   EXPECT_EQ(source.read("runs").error().message, "runs: this is a directory; name a file in it");
 }
 
-// Whoever opens a pipe that nobody writes to waits for ever.
+// Opening a pipe without a writer would block forever.
 TEST_F(SourceTest, RefusesPipesAndDevicesUnopened) {
   const Source source = Manifest();
   ASSERT_EQ(::mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
@@ -121,7 +121,7 @@ TEST_F(SourceTest, SaysThatThereIsNoManifest) {
 TEST_F(SourceTest, NamesTheRunsOfAFolderByTheirPaths) {
   const Source source = FindSource({"datasets/runs_[34].csv", "./datasets/runs_4.csv", "datasets/coulomb.csv"}).value();
   const auto entries = EntriesOf(source);
-  ASSERT_EQ(entries.size(), 3);  // the fourth is named twice
+  ASSERT_EQ(entries.size(), 3);  // the fourth is a duplicate
   EXPECT_EQ(entries[0].path, "datasets/runs_3.csv");
   EXPECT_EQ(entries[1].path, "datasets/runs_4.csv");
   EXPECT_EQ(entries[2].path, "datasets/coulomb.csv");
@@ -190,7 +190,7 @@ TEST_F(SourceTest, SaysFromAPackWhatWasWrongWithAFile) {
 
 TEST_F(SourceTest, CanPackAPackAndAFolder) {
   ASSERT_TRUE(Pack(FindSource({"datasets/runs_1.csv"}).value(), pack_));
-  ASSERT_TRUE(Pack(OpenSource(pack_).value(), pack_));  // onto itself
+  ASSERT_TRUE(Pack(OpenSource(pack_).value(), pack_));  // onto its own source
   const Source packed = OpenSource(pack_).value();
   EXPECT_THAT(IdsOf(packed), ElementsAre("datasets/runs_1.csv"));
   EXPECT_EQ(packed.read("datasets/runs_1.csv").value().size(), fs::file_size("datasets/runs_1.csv"));
@@ -202,7 +202,7 @@ TEST_F(SourceTest, ReplacesAPackAsAWhole) {
   Write("runs.csv", "path\nruns/c.csv\n");
   Write("runs/c.csv", "new");
   ASSERT_TRUE(Pack(OpenSource(folder_ / "runs.csv").value(), pack_));
-  EXPECT_THAT(IdsOf(old), ElementsAre("first", "runs/b.csv", "third"));  // whoever has it open keeps it
+  EXPECT_THAT(IdsOf(old), ElementsAre("first", "runs/b.csv", "third"));  // an open pack stays readable
   EXPECT_EQ(old.read("runs/a.csv").value(), BinaryBytes());
   const Source packed = OpenSource(pack_).value();
   EXPECT_THAT(IdsOf(packed), ElementsAre("runs/c.csv"));
@@ -284,7 +284,7 @@ TEST_F(SourceTest, PacksToWhereALinkLeads) {
   EXPECT_EQ(IdsOf(OpenSource(folder_ / "disk" / "batch.pack").value()).size(), 3);
 }
 
-// ---- What is no pack -----------------------------------------------------------------------------------------------
+// ---- Other files ---------------------------------------------------------------------------------------------------
 
 TEST_F(SourceTest, RefusesOtherSqliteFiles) {
   SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE t(x)");
@@ -326,13 +326,13 @@ TEST_F(SourceTest, RefusesAPackThatWasCutShort) {
 TEST_F(SourceTest, SaysWhichPagesOfAPackAreDamaged) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   const auto size = static_cast<std::streamoff>(fs::file_size(pack_));
-  constexpr std::streamoff kPage = 4096;  // SQLite's own
+  constexpr std::streamoff kPage = 4096;  // SQLite's default
   std::fstream file(pack_, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(kPage);
   file << std::string(static_cast<std::size_t>(size - kPage), '\xA5');
   file.close();
   const auto damaged = OpenSource(pack_);
-  ASSERT_TRUE(damaged) << damaged.error().message;  // the first page is whole
+  ASSERT_TRUE(damaged) << damaged.error().message;  // the first page is intact
   EXPECT_EQ(damaged->read("runs/a.csv").error().code, StatusCode::kDataLoss);
   EXPECT_THAT(damaged->read("runs/a.csv").error().message, HasSubstr(": the file is damaged ("));
   const auto entries = damaged->for_each([](const ManifestEntry&) -> Result<void> { return {}; });

@@ -73,18 +73,18 @@ TEST_F(StoreFileTest, LetsOneWriterIn) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   Store other = Reopen(Store::Mode::kWrite);
-  const std::atomic<bool> stop = true;  // else it would wait for ten minutes
+  const std::atomic<bool> stop = true;  // otherwise it would wait for ten minutes
   other.HurryOn(&stop);
   const auto put = other.Put("a", UnfittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
   EXPECT_EQ(put.error().message, path_ + ": another process has it; try again when that is done");
   ASSERT_TRUE(store.Commit());
-  ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same later
+  ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same data later
   EXPECT_EQ(Reopen().Count()->unfitted, 1);
 }
 
-// A writer needs the file for itself while it commits; a reader that is on its way goes first.
+// A commit needs the file exclusively; it waits for a reader in progress.
 TEST_F(StoreFileTest, WaitsForAReaderToEnd) {
   Store store = Make({"a", "b"});
   ASSERT_TRUE(store.Commit());
@@ -98,18 +98,18 @@ TEST_F(StoreFileTest, WaitsForAReaderToEnd) {
   stop = false;
   std::atomic<bool> ended = false;
   std::thread end([&] {
-    std::this_thread::sleep_for(std::chrono::seconds(3));  // longer than a stopped writer waits
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // longer than the limit of a stopped writer
     ended = true;
     rows.reset();
   });
-  const auto committed = store.Commit();  // of what was put before
+  const auto committed = store.Commit();  // commits the earlier Put
   EXPECT_TRUE(ended);
   end.join();
   ASSERT_TRUE(committed) << committed.error().message;
   EXPECT_EQ(Reopen().Count()->pending, 1);
 }
 
-// Nonsense where tables were: the first pages, which Open looks at, are as they were.
+// The last pages are overwritten with invalid data. The first ones, which Open reads, are unchanged.
 TEST_F(StoreFileTest, ChecksAllPages) {
   constexpr std::size_t kPage = 4096;
   Store store = Make({"a", "b"});
@@ -142,7 +142,7 @@ TEST_F(StoreFileTest, SaysThatAStoreMayNotBeRead) {
   fs::permissions(folder_, fs::perms::all);
   fs::permissions(path_, fs::perms::none);
   const uid_t self = ::geteuid();
-  constexpr uid_t kNobody = 65534;  // root reads everything
+  constexpr uid_t kNobody = 65534;  // root can read every file
   if (self == 0) {
     ASSERT_EQ(::seteuid(kNobody), 0);
   }

@@ -34,7 +34,7 @@ class StoreLockTest : public testing::Test {
   const fs::path file_ = folder_ / "results.sqlite.lock";
 };
 
-/// Another process that has the lock until it is killed.
+/// Another process that holds the lock until it is killed.
 class Holder {
  public:
   explicit Holder(const fs::path& store) {
@@ -87,7 +87,7 @@ TEST_F(StoreLockTest, KeepsOtherProcessesAwayUntilItsOwnIsKilled) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kTryAgain);
   holder.Kill();
-  EXPECT_TRUE(fs::exists(file_));  // nobody was left to remove it
+  EXPECT_TRUE(fs::exists(file_));  // the killed process could not remove it
   EXPECT_TRUE(IsFree());
   EXPECT_FALSE(fs::exists(file_));
 }

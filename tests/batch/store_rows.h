@@ -11,10 +11,10 @@
 
 #include "pendulum/base/sha256.h"
 
-/// What stands in a store, read with SQLite alone.
+/// The content of a store, read with SQLite alone.
 namespace pendulum::store_rows {
 
-/// A value as text that two values share if they are the same to the last bit.
+/// A value as text; two texts are equal only if the values are equal bit for bit.
 inline std::string ValueText(const SQLite::Column& value) {
   if (value.isNull()) return "NULL";
   if (!value.isFloat()) return value.getString();
@@ -24,7 +24,7 @@ inline std::string ValueText(const SQLite::Column& value) {
   return text.data();
 }
 
-/// The rows of a query, each with its values between bars.
+/// The rows of a query, with values separated by bars.
 inline std::vector<std::string> Rows(const std::filesystem::path& store, const std::string& query) {
   const SQLite::Database database(store.string(), SQLite::OPEN_READONLY);
   SQLite::Statement rows(database, query);
@@ -38,13 +38,13 @@ inline std::vector<std::string> Rows(const std::filesystem::path& store, const s
   return texts;
 }
 
-/// The one value of a query.
+/// The single value of a query.
 inline std::string Value(const std::filesystem::path& store, const std::string& query) {
   const std::vector<std::string> rows = Rows(store, query);
   return rows.size() == 1 ? rows.front() : std::to_string(rows.size()) + " rows";
 }
 
-/// All rows about runs, by id, and of each result its hash: how runs are numbered inside is the store's affair.
+/// All rows about runs, ordered by id, with a hash of each result. Internal run numbers are left out.
 inline std::vector<std::string> AllRows(const std::filesystem::path& store) {
   std::vector<std::string> all = Rows(store,
                                       "SELECT id, position, path, rig, calibration, from_s, to_s, models, columns, "

@@ -52,7 +52,7 @@ TEST(Shard, CutsABatchIntoPartsThatDifferByOneAtMost) {
   }
 }
 
-// Python's integers, which have no end, give these.
+// Expected values from Python's unlimited integers.
 TEST(Shard, CutsAsItIsDefinedWhereTheProductDoesNotFit) {
   constexpr std::int64_t kRuns = 9000000000000000001, kCount = 999999999;
   EXPECT_EQ((Shard{0, kCount}.Begin(kRuns)), 0);
@@ -134,7 +134,7 @@ TEST_F(StoreTest, TakesTheRunsOfItsShardOnly) {
   EXPECT_THAT(TextsOf(store, "SELECT id FROM runs ORDER BY position"), ElementsAre("c", "d", "e"));  // [5/2, 5)
   EXPECT_EQ(store.Next(0, 10).value().size(), 3);
   ASSERT_TRUE(store.Put("c", RefittedOutcome()) && store.Commit());
-  ASSERT_TRUE(store.Begin(source, Shard{0, 2}, "{}"));  // the store of one shard may become that of another
+  ASSERT_TRUE(store.Begin(source, Shard{0, 2}, "{}"));  // the store of one shard may become the store of another
   EXPECT_THAT(TextsOf(store, "SELECT id FROM runs ORDER BY position"), ElementsAre("a", "b"));
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM fits") + NumberOf(store, "SELECT count(*) FROM quantities"), 0);
   EXPECT_EQ(store.Meta()->shard->index, 0);
@@ -156,7 +156,7 @@ TEST_F(StoreTest, ReplacesEntriesByTheirIdsAndKeepsOthers) {
   Store store = StoreOf(path_, SourceOf({entry, added}));
   EXPECT_THAT(TextsOf(store, "SELECT id || ' ' || position || ' ' || columns FROM runs ORDER BY id"),
               ElementsAre("a -1 {}", R"(b 0 {"rig_no":"7"})", "c 1 {}"));
-  const auto runs = store.Next(0, 10).value();  // of the batch
+  const auto runs = store.Next(0, 10).value();  // only runs of the batch
   ASSERT_EQ(runs.size(), 2);
   EXPECT_THAT(runs[0].exit_code, Optional(0));
   EXPECT_FALSE(runs[1].exit_code);
@@ -297,7 +297,7 @@ TEST_F(StoreTest, SaysWhatItIsAbout) {
   EXPECT_EQ(store.Begin(SourceOfIds({"a"}), Shard{0, 1}, options)->manifest_sha256, meta.manifest_sha256);
 }
 
-// What a run could not be fitted for names its file, so it does not stand for a file of another name.
+// The reason of a failure names the file, so it is not valid for a file with another name.
 TEST_F(StoreTest, ForgetsWhyARunCouldNotBeFittedOnceItsFileIsAnother) {
   RefitOptions options;
   options.run.models = {"coulomb"};
@@ -311,7 +311,7 @@ TEST_F(StoreTest, ForgetsWhyARunCouldNotBeFittedOnceItsFileIsAnother) {
   }
 }
 
-// The result names its recording, and so does the reason of one that is no recording.
+// The result names its recording, and so does the reason of a file that is not a recording.
 TEST_F(StoreTest, NamesAFileInItsResultAsTheManifestDoesNow) {
   RefitOptions options;
   options.run.models = {"coulomb"};

@@ -92,8 +92,8 @@ TEST_F(SummaryTest, CountsFitsByModelAndStatusAndWhatIsRecommended) {
                                                    {"failed", 1}})));
   EXPECT_THAT(summary["recommendations"],
               ElementsAre(Json({{"model", "viscous"}, {"runs", 2}}), Json({{"model", nullptr}, {"runs", 1}})));
-  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["runs"], 2);  // of converged fits
-  EXPECT_THAT(summary["warnings"], SizeIs(testing::Ge(1U)));         // one is pending
+  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["runs"], 2);  // only converged fits
+  EXPECT_THAT(summary["warnings"], SizeIs(testing::Ge(1U)));         // one run is pending
 }
 
 TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
@@ -112,12 +112,12 @@ TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
 
 // ---- Parameters ----------------------------------------------------------------------------------------------------
 
-// 10, 12, 14 by hand; np.percentile(x, [25, 75]) is 11, 13.
+// 10, 12, 14: expected values by hand; np.percentile(x, [25, 75]) is 11, 13.
 TEST_F(SummaryTest, DescribesEachParameterThatWasFitted) {
   const std::vector<double> values = {10, 12, 14};
   Store store = StoreOf(PlainManifest(3), [&](std::size_t i) { return OutcomeOf({FitOf("viscous", values[i])}); });
   const Json summary = SummaryOf(store);
-  ASSERT_THAT(summary["parameters"], SizeIs(2));  // what is held is none
+  ASSERT_THAT(summary["parameters"], SizeIs(2));  // without fixed parameters
   const Json& inertia = ParameterOf(summary, "viscous", "inertia");
   EXPECT_EQ(inertia["unit"], "kg m^2");
   EXPECT_EQ(inertia["runs"], 3);
@@ -158,7 +158,7 @@ TEST_F(SummaryTest, DoesNotExpectTheStartOfEachRunToRepeat) {
   EXPECT_EQ(angle["outliers_total"], 0);
 }
 
-// The position is what a trend is over: y = 10 + 0.5 i and an outlier, which is left out.
+// The trend is over the position: y = 10 + 0.5 i with an outlier, which is left out.
 TEST_F(SummaryTest, NamesOutliersAndFindsTheTrendOfTheOthers) {
   Store store = StoreOf(PlainManifest(20), [](std::size_t i) {
     const double scatter = i % 2 == 0 ? 0.01 : -0.01;
@@ -189,7 +189,7 @@ TEST_F(SummaryTest, NamesOutliersAndFindsTheTrendOfTheOthers) {
 
 TEST_F(SummaryTest, GroupsRunsByAColumnOfTheManifest) {
   const std::string manifest = ManifestOf(20, ",rig no", [](std::size_t i) { return i % 2 == 0 ? ",A" : ",B"; });
-  Store store = StoreOf(manifest, [](std::size_t i) {  // rigs of 10 and 90, runs ± 1
+  Store store = StoreOf(manifest, [](std::size_t i) {  // rigs with means 10 and 90, runs ± 1
     return OutcomeOf({FitOf("viscous", (i % 2 == 0 ? 10 : 90) + (i % 4 < 2 ? 1 : -1))});
   });
   EXPECT_EQ(ParameterOf(SummaryOf(store), "viscous", "inertia")["repeatability"]["verdict"], "scatter_larger");
@@ -300,7 +300,7 @@ TEST_F(SummaryTest, WarnsOfRunsOfEarlierManifestsAndOfOneSwingUnderTwoNames) {
   };
   Store store = StoreOf(PlainManifest(4), make);
   EXPECT_THAT(WarningsOf(SummaryOf(store)), ElementsAre("same_data"));
-  Store shorter = StoreOf(PlainManifest(3), make);  // into the same file
+  Store shorter = StoreOf(PlainManifest(3), make);  // the same file with fewer runs
   EXPECT_THAT(WarningsOf(SummaryOf(shorter)), ElementsAre("not_in_the_manifest", "same_data"));
 }
 
@@ -338,7 +338,7 @@ TEST_F(SummaryTest, GivesTheOverviewBesideOrWithoutParameters) {
   for (const char* key : {"models", "recommendations", "failures"}) EXPECT_EQ((*overview)[key], summary[key]) << key;
 }
 
-// ---- The published schema ------------------------------------------------------------------------------------------
+// ---- Published schema ----------------------------------------------------------------------------------------------
 
 TEST_F(SummaryTest, IsAsItsSchemaSays) {
   const char* const path = "include/pendulum/report/summary.schema.json";
@@ -361,7 +361,8 @@ TEST_F(SummaryTest, IsAsItsSchemaSays) {
     EXPECT_THAT(check.Faults(summary), IsEmpty()) << options.group_by;
     for (const Json& key : schema["required"]) EXPECT_TRUE(summary.contains(key.get<std::string>())) << key;
   }
-  EXPECT_THAT(check.Faults({{"schema_version", 2}}), SizeIs(testing::Gt(8U)));  // the check does see faults
+  EXPECT_THAT(check.Faults({{"schema_version", 2}}), SizeIs(testing::Gt(8U)));  // shows that the check detects
+                                                                                // violations
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST_F(TemporaryStoreTest, LeavesWhatWasRenamed) {
   EXPECT_EQ(Read(folder_ / "b.sqlite"), "whole");
 }
 
-// A size on either side of a block's, and on its edge.
+// Sizes around the size of a block.
 TEST_F(TemporaryStoreTest, PublishesACopyOfEveryByte) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{1} << 20, (std::size_t{1} << 20) + 1}) {
     std::string bytes(size, '\0');

@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// A parameter as a fit would give it, numbers in the unit of `unit`.
+/// A parameter in the form of a fit, with numbers in `unit`.
 inline ParameterEstimate ExampleParameter(const ParameterInfo& info, std::string_view unit, double estimate,
                                           double std_error) {
   ParameterEstimate parameter;
@@ -24,8 +24,8 @@ inline ParameterEstimate ExampleParameter(const ParameterInfo& info, std::string
   return parameter;
 }
 
-/// A converged fit of the textbook rig, numbers made up by hand: inertia and viscous free, coulomb at its bound, the
-/// rest fixed. The only correlation is 0.5.
+/// A converged fit of the textbook rig with invented numbers: inertia and viscous free, coulomb at its bound, the rest
+/// fixed. The only correlation is 0.5.
 inline FitReport ExampleFit() {
   FitReport fit;
   fit.model = {"coulomb", "coulomb", Gravity::kSine};
@@ -76,7 +76,7 @@ inline FitReport ExampleFit() {
   return fit;
 }
 
-/// Five turning points, located to 0.001 s and 0.002 rad.
+/// Five turning points with errors of 0.001 s and 0.002 rad.
 inline PeakTable ExamplePeaks() {
   PeakTable table;
   table.noise = 0.0035;
@@ -94,7 +94,7 @@ inline PeakTable ExamplePeaks() {
   return table;
 }
 
-/// Closed forms of these turning points in units of G, numbers made up by hand.
+/// Closed forms of these turning points in units of G, with invented numbers.
 inline ClosedForms ExampleClosedForms() {
   ClosedForms forms;
   forms.table = ExamplePeaks();
@@ -129,7 +129,7 @@ inline ClosedForms ExampleClosedForms() {
   return forms;
 }
 
-/// A row that differs, one that agrees, and one without an error; no overlay but its summary.
+/// A row that differs, one that agrees, and one without an error; only the summary of the overlay.
 inline ClosedFormCheck ExampleCheck() {
   ClosedFormCheck check;
   check.rows = {{"inertia_small_angle", "1 / ω_n² of the linear formulas", "kg m^2", 0.0802, 0.0002, 0.079, 0.0001,
@@ -142,7 +142,7 @@ inline ClosedFormCheck ExampleCheck() {
   return check;
 }
 
-/// Halves that agree, and an inertia that follows the amplitude; friction is held. Numbers made up by hand.
+/// Halves that agree, and an inertia that depends on amplitude; friction is fixed. Invented numbers.
 inline Constancy ExampleConstancy() {
   Constancy constancy;
   constancy.halves = {{"inertia", "kg m^2", 0.079, 0.0791, 0.00025, 0.0004, 0.25},
@@ -159,7 +159,7 @@ inline Constancy ExampleConstancy() {
   return constancy;
 }
 
-/// Halves that agree and no trend, no more.
+/// Only halves that agree, and no trend.
 inline Constancy ExampleConstant() {
   Constancy constancy = ExampleConstancy();
   constancy.trends[0].p = 0.5;
@@ -167,7 +167,7 @@ inline Constancy ExampleConstant() {
   return constancy;
 }
 
-/// The example's fit beside one that did not converge; numbers made up by hand.
+/// The example's fit compared with one that did not converge; invented numbers.
 inline Comparison ExampleComparison() {
   Comparison comparison;
   comparison.recommended = "coulomb";
@@ -204,7 +204,7 @@ inline Comparison ExampleComparison() {
   return comparison;
 }
 
-/// A run with a rig whose masses are uncertain, and one warning of the recording.
+/// A run with a rig with uncertain masses, and one warning of the recording.
 inline Identification ExampleReport() {
   Identification report;
   report.data.path = "swing.csv";
@@ -232,7 +232,7 @@ inline Identification ExampleReport() {
   return report;
 }
 
-/// The same for a gyro, without a rig, and not converged: no standard errors, nor closed forms.
+/// The same for a gyro without a rig, not converged: no standard errors and no closed forms.
 inline Identification ExampleRateReport() {
   Identification report = ExampleReport();
   report.rig.reset();
@@ -270,7 +270,7 @@ inline Identification ExampleRateReport() {
   return report;
 }
 
-/// The example beside a fit that did not converge, compared with it; inertia follows the amplitude.
+/// The example compared with a fit that did not converge; inertia depends on amplitude.
 inline Identification ExampleComparedReport() {
   Identification report = ExampleReport();
   FitReport drag = ExampleRateReport().fits.front();

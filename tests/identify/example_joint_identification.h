@@ -8,8 +8,9 @@
 
 namespace pendulum {
 
-/// Inertia by two recordings alone, 0.0789 ± 0.0003 and 0.0791 ± 0.0004 kg m². By hand: they differ by 0.0002 ± 0.0005,
-/// z = 0.4, χ² = 0.16; the mean is 0.0789 + 0.0002 · 9 / 25; its error 0.0003 · 0.0004 / 0.0005; p = erfc(0.4 / √2).
+/// Inertia from two separate recordings, 0.0789 ± 0.0003 and 0.0791 ± 0.0004 kg m². Expected values: the difference is
+/// 0.0002 ± 0.0005, z = 0.4, χ² = 0.16; the mean is 0.0789 + 0.0002 · 9 / 25; its error 0.0003 · 0.0004 / 0.0005; p =
+/// erfc(0.4 / √2).
 inline SharedParameter ExampleSharedInertia() {
   SharedParameter inertia;
   inertia.name = "inertia";
@@ -24,7 +25,7 @@ inline SharedParameter ExampleSharedInertia() {
   return inertia;
 }
 
-/// Numbers made up by hand, but those of inertia.
+/// Invented numbers, except those of inertia.
 inline Homogeneity ExampleHomogeneity() {
   SharedParameter viscous = ExampleSharedInertia();
   viscous.name = "viscous";
@@ -46,7 +47,7 @@ inline Homogeneity ExampleHomogeneity() {
   return homogeneity;
 }
 
-/// What two recordings share: the fit of the example without its start, zero and samples.
+/// The shared part of a joint fit: the example's fit without its start, zero and samples.
 inline FitReport ExampleSharedFit() {
   FitReport whole = ExampleFit();
   whole.reason = "the step left to make is below 0.1 standard errors";
@@ -58,8 +59,8 @@ inline FitReport ExampleSharedFit() {
   return whole;
 }
 
-/// The example's recording as run.csv, and a second like it, "b c.csv", of an earlier release and in motion from the
-/// start: it has neither closed forms nor constancy.
+/// The example's recording as run.csv, and a second one, "b c.csv", of an earlier release and in motion from the start.
+/// The second one has neither closed forms nor constancy.
 inline Identification ExampleJointReport() {
   Identification report;
   report.rig = ExampleReport().rig;
@@ -87,7 +88,7 @@ inline Identification ExampleJointReport() {
   return report;
 }
 
-/// A second law, drag, that did not converge, with the comparison of ExampleComparedReport.
+/// Adds the law drag, which did not converge, with the comparison of ExampleComparedReport.
 inline Identification ExampleComparedJointReport() {
   Identification report = ExampleJointReport();
   const FitReport drag = ExampleComparedReport().fits[1];
@@ -103,7 +104,7 @@ inline Identification ExampleComparedJointReport() {
   return report;
 }
 
-/// The example where no joint trajectory could be traced: no numbers but those of the fits to each recording alone.
+/// The example without a joint trajectory: it has only the numbers of the separate fits.
 inline Identification ExampleFailedJointReport() {
   Identification report = ExampleJointReport();
   const auto fail = [](FitReport& fit) {

@@ -98,7 +98,7 @@ TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
   report.runs[1].data.release = 3;
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv, free swing 1)");
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv, free swing 3)");
-  report.runs[1].data.release = 0;  // a window as it was asked for
+  report.runs[1].data.release = 0;  // a window given by the user
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 

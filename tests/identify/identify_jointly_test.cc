@@ -68,7 +68,7 @@ TEST(IdentifyJointly, RefusesOneSwing) {
   EXPECT_THAT(run.error().message, HasSubstr("there is one swing"));
 }
 
-/// Copies of two recordings, each with a rig of its own.
+/// Copies of two recordings, each with a different rig.
 class DifferentRigs : public testing::Test {
  protected:
   void SetUp() override {

@@ -35,7 +35,7 @@ std::vector<Result<Identification>> FitTextbook(const IdentifyOptions& options) 
   return IdentifyEach(options, Must(std::move(one)));
 }
 
-// Seconds that are called milliseconds make it swing a thousand times as fast as its masses and length let expect.
+// Seconds labelled as milliseconds give a frequency a thousand times higher than the rig's masses and length predict.
 TEST(IdentifyEach, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
   const IdentifyOptions options = OptionsFor({"viscous"});
   const Rig rig = Must(ReadRig("datasets/textbook_rig.json"));
@@ -49,7 +49,7 @@ TEST(IdentifyEach, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
   }
 }
 
-/// Two recordings of 100 Hz one after the other, the second as if a hand had lifted the pendulum in 4 s.
+/// Two recordings at 100 Hz joined; between them a hand seems to lift the pendulum for 4 s.
 Recording TwoReleases() {
   SyntheticOptions first = NoisyRun("viscous", 1), second = NoisyRun("viscous", 2);
   first.duration = 9;

@@ -38,10 +38,9 @@ TEST(ErrorAmong, NamesTheReleaseBehindTheRecording) {
   EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
 }
 
-// ---- PrepareFile
-// -------------------------------------------------------------------------------------------------------
+// ---- PrepareFile ---------------------------------------------------------------------------------------------------
 
-/// A copy of datasets/runs_1.csv with a line in front of it.
+/// A copy of datasets/runs_1.csv with an additional first line.
 class PrepareFileTest : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
@@ -62,7 +61,7 @@ TEST_F(PrepareFileTest, TakesTheRigThatTheRecordingDescribes) {
   EXPECT_EQ(one->known.rig->gravity_torque.std_dev, 0.01);
   EXPECT_EQ(one->samples, 1500);  // 15 s at 100 Hz (datasets/README.md)
   EXPECT_THAT(one->swings.chosen, ElementsAre(1));
-  EXPECT_THAT(one->recording.warnings, IsEmpty());  // they are the report's
+  EXPECT_THAT(one->recording.warnings, IsEmpty());  // the report has them
 }
 
 TEST_F(PrepareFileTest, PrefersTheRigThatIsGiven) {

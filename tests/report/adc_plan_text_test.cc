@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// By hand: 270 deg / 1024 = 0.2637 deg; 3.3 V are 0.66 of 5 V and 270 (0.66 - 0.5) = 43.2 deg.
+// Expected values: 270 deg / 1024 = 0.2637 deg; 3.3 V are 0.66 of 5 V, and 270 (0.66 - 0.5) = 43.2 deg.
 TEST(AdcPlanText, ComparesReferencesAndSaysWhichSaturate) {
   const std::vector<AdcSensor> sensors = {
       {.reference_voltage = 5}, {.reference_voltage = 3.3}, {.reference_voltage = 1.1}};

@@ -19,7 +19,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The text with its line breaks and indents as single blanks.
+/// The text with line breaks and indents replaced by single blanks.
 std::string Unwrapped(const std::string& text) {
   std::string words;
   for (const char c : text) {
@@ -87,7 +87,7 @@ TEST(CalibrationText, RecommendsTheOrderThatFitsBetter) {
   const std::string line = Unwrapped(TextOf(table, 1));
   EXPECT_THAT(line, AllOf(HasSubstr("A curve of order 2 is significantly better (F(1, 9) "),
                           HasSubstr("e-16): see --order 2."), HasSubstr("rad/V"),
-                          Not(HasSubstr("resolution"))));  // volts have none
+                          Not(HasSubstr("resolution"))));  // volts have no resolution
   EXPECT_THAT(
       Unwrapped(TextOf(table, 2)),
       AllOf(HasSubstr("This curve is significantly better than a straight line (F(1, 9) "), HasSubstr("rad/V^2")));
@@ -113,7 +113,8 @@ TEST(CalibrationText, ListsAtMostFiftyPoints) {
   }
   const std::string text = TextOf(TableOf("counts", "deg", counts, angles), 1);
   const std::string points = text.substr(text.find("[[Points]]"), text.find("[[Fit]]") - text.find("[[Points]]"));
-  EXPECT_THAT(points, HasSubstr("residual [deg]  left out [deg]\n       124         31.5"));  // the largest comes first
+  EXPECT_THAT(points, HasSubstr("residual [deg]  left out [deg]\n       124         31.5"));  // the largest residual
+                                                                                              // comes first
   EXPECT_EQ(std::ranges::count(points, '\n'), 2 + kShownPoints);
 }
 
@@ -126,7 +127,7 @@ TEST(CalibrationText, SaysWhyThereAreNoErrors) {
 }
 
 TEST(CalibrationText, SaysWhereTheCurveTurnsInTheSensorsRange) {
-  // 60 - (x - 60)² / 60: rises up to 60 counts, where the table does not reach.
+  // 60 - (x - 60)² / 60 rises up to 60 counts, which is outside the table.
   const CalibrationTable table = TableOf("counts,angle_deg\n0,0\n10,18\n20,33\n30,45\n40,53\n");
   EXPECT_THAT(Unwrapped(TextOf(table, 2, SensorRange{0, 1023})),
               AllOf(HasSubstr("sensor's range 0 to 1023 counts"), HasSubstr("In the sensor's range it turns at about "),

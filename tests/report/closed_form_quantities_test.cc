@@ -14,7 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Name, symbol, unit, value and error of each, one text for each.
+/// A text per estimate: name, symbol, unit, value and error.
 std::vector<std::string> Lines(const std::vector<ReportedEstimate>& estimates) {
   std::vector<std::string> lines;
   for (const auto& [name, symbol, estimate, unit] : estimates) {

@@ -20,7 +20,7 @@ using testing::StartsWith;
 std::string ClosedFormText(const Identification& report) { return ToText(ClosedFormSections(report)); }
 std::string SamplingText(const Identification& report) { return ToText(SamplingSections(report)); }
 
-/// Turning points beyond those of the example, each 0.65 s after the one before it.
+/// The example with more turning points, each 0.65 s after the previous one.
 Identification ReportWithTurningPoints(int count) {
   Identification report = ExampleReport();
   ClosedForms& forms = *report.closed_forms;
@@ -32,7 +32,7 @@ Identification ReportWithTurningPoints(int count) {
   return report;
 }
 
-/// Lines of the table of turning points, that of its headers left out.
+/// Lines of the table of turning points, without its headers.
 std::vector<std::string> TurningPointLines(const Identification& report) {
   const std::string text = ClosedFormText(report);
   std::vector<std::string> lines;
@@ -44,7 +44,7 @@ std::vector<std::string> TurningPointLines(const Identification& report) {
   return lines;
 }
 
-// Rounding by hand; G = 1.8 N m, and 1 rad = 57.2958 deg.
+// Expected values rounded by hand; G = 1.8 N m, and 1 rad = 57.2958 deg.
 TEST(ClosedFormText, GivesTheClosedFormsInSi) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), StartsWith(R"([[Closed forms]]
     Formulas of the linear pendulum, over 2 periods from turning point 1 on;

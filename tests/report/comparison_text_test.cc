@@ -16,7 +16,7 @@ using testing::Not;
 std::string ComparisonText(const Identification& report) { return ToText(ComparisonSections(report)); }
 std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report, 0)); }
 
-// Rounding by hand: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
+// Expected values: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
 TEST(ComparisonSections, RecommendFirst) {
   EXPECT_EQ(ComparisonText(ExampleComparedReport()), R"([[Comparison]]
     Recommended: coulomb.

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// Two parameters: one that passes, one at its bound that does not cover.
+/// Two parameters: one that passes, and one at its bound whose coverage fails.
 CoverageStudy ExampleStudy() {
   CoverageStudy study;
   study.scenario.name = "breeze";

@@ -7,7 +7,7 @@
 
 namespace pendulum {
 
-/// What stands in the script element of that id.
+/// The content of the script element with that id.
 inline nlohmann::ordered_json Embedded(const std::string& html, const std::string& id) {
   const std::size_t element = html.find("id=\"" + id + "\"");
   const std::size_t begin = html.find('>', element) + 1;

@@ -27,7 +27,7 @@ std::vector<std::string> Keys(const Json& object) {
 
 Json HomogeneityOf(const Identification& report) { return JointFitJson(report, 0)["homogeneity"]; }
 
-// tests/tools/result_schema_test.py holds what the tool writes against the schema.
+// tests/tools/result_schema_test.py checks the tool's output with the schema.
 TEST(ToJson, OfAJointFitHasArraysOfItsRecordings) {
   const Json json = ToJson(ExampleJointReport());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
@@ -102,7 +102,7 @@ TEST(JointFitJson, SaysWhatARecordingLacks) {
   EXPECT_EQ(run["constancy_reason"], "it was not looked into");
 }
 
-// The numbers are those of ExampleSharedInertia, by hand.
+// The numbers are those of ExampleSharedInertia, calculated there.
 TEST(JointFitJson, TellsWhatEachRecordingAloneSays) {
   const Json inertia = HomogeneityOf(ExampleJointReport())["parameters"]["inertia"];
   EXPECT_EQ(
@@ -190,7 +190,7 @@ TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
   EXPECT_EQ(fit["runs"][1]["parameters"]["inertia"]["reason"], "the fit failed");
 }
 
-// dump() would write null for each, but no reason.
+// dump() would also write null for each, but without a reason.
 TEST(JointFitJson, HasAReasonForWhatIsNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Identification report = ExampleJointReport();

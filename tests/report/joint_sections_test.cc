@@ -36,7 +36,7 @@ std::string TextOf(const Identification& report, const std::string& title) {
   return "";
 }
 
-/// The section on agreement; blanks at which no line is broken are blanks here.
+/// The section on agreement, with no-break spaces replaced by blanks.
 std::string Agreement(const Identification& report, TextStyle style = {}) {
   return WithBlanks(ToText(Sections{AgreementSection(report, 0)}, style));
 }
@@ -98,9 +98,9 @@ TEST(JointSections, SayWhatIsSharedByHowMany) {
   EXPECT_THAT(text, HasSubstr("    status  converged: the step left to make is below 0.1 standard errors\n"));
 }
 
-// By hand: the strip has 21 places from 0.078312 (first - 1.96 errors) to 0.079884 (second + 1.96 errors), 0.0000786
-// each: 0.0789 is at 7.5, its upper end at 15.0; 0.0791 at 10.0; the joint 0.0790 ± 0.00049 at 2.5 to 8.8 to 15.0; the
-// mean 0.078972 ± 0.00047 at 2.4 to 8.4 to 14.4.
+// Expected positions: the strip has 21 places from 0.078312 (first - 1.96 errors) to 0.079884 (second + 1.96 errors),
+// 0.0000786 each. 0.0789 is at 7.5, its upper end at 15.0; 0.0791 is at 10.0; the joint 0.0790 ± 0.00049 is at 2.5 to
+// 8.8 to 15.0; the mean 0.078972 ± 0.00047 is at 2.4 to 8.4 to 14.4.
 TEST(AgreementSection, DrawsEachRecordingTheJointFitAndTheMean) {
   EXPECT_THAT(Agreement(ExampleJointReport()), HasSubstr(R"([[Do the recordings agree?]]
     Verdict: the recordings agree on inertia, viscous.
@@ -126,8 +126,8 @@ TEST(AgreementSection, CountsDegreesOfFreedom) {
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 2 degrees of freedom, "));
 }
 
-// By hand: the widest interval, of the mean 0.0034 ± 0.00196, has 21 places of 0.0002; there 0.0025 ± 0.00049 has 3 to
-// 8, 0.0045 ± 0.00098 has 10 to 20, and 0.0033 is 9.
+// Expected positions: the widest interval, of the mean 0.0034 ± 0.00196, has 21 places of 0.0002. In it 0.0025 ±
+// 0.00049 has places 3 to 8, 0.0045 ± 0.00098 has 10 to 20, and 0.0033 is at 9.
 TEST(AgreementSection, MarksTheJointEstimateWhereARecordingDoesNotReachIt) {
   Identification report = ExampleJointReport();
   report.fits[0].parameters[1].estimate = 0.0033;
@@ -171,7 +171,7 @@ TEST(AgreementSection, GoesWithoutTheJointEstimateOfAFailedFit) {
   EXPECT_THAT(text, HasSubstr("\n    random effects"));
 }
 
-// The unit of a pure number is 1, as coulomb has without a rig.
+// The unit of a dimensionless number is 1; coulomb without a rig is an example.
 TEST(AgreementSection, HasNoUnitBehindAPureNumber) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity.parameters[1].unit = "1";
@@ -218,7 +218,7 @@ TEST(ToText, OfAJointFitEndsWithTheWarningsOfEachRecording) {
               HasSubstr("[[Warnings]]\n  - recording 1 (run.csv): there is a gap of 0.5 s after 7 s\n"));
 }
 
-// ESC [ 2 J clears a terminal. Labels of recordings stand in verdicts, and in the status that repeats them.
+// ESC [ 2 J clears a terminal. Labels of recordings occur in verdicts and in the status that repeats them.
 TEST(ToText, OfAJointFitHidesWhatWouldSteerATerminal) {
   Identification report = ExampleJointReport();
   report.runs[1].data.path = "a\x1B[2J\n.csv";
@@ -229,7 +229,7 @@ TEST(ToText, OfAJointFitHidesWhatWouldSteerATerminal) {
   EXPECT_THAT(ToText(report), Not(HasSubstr("\x1B")));
 }
 
-/// The example with the longest names, units and numbers that fits give.
+/// The example with the longest possible names, units and numbers of fits.
 Identification WideReport() {
   Identification report = ExampleComparedJointReport();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
@@ -259,7 +259,7 @@ TEST(JointSections, FitATerminalOfEightyColumns) {
   EXPECT_LE(WidestOf(ToText(WideReport())), 80) << ToText(WideReport());
 }
 
-// The amplitude of a recording that alone could not be fitted.
+// The amplitude of a recording whose separate fit failed.
 TEST(JointSections, HaveADashForAnAmplitudeThatIsNotKnown) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity.amplitudes[0] = std::numeric_limits<double>::quiet_NaN();

@@ -34,7 +34,7 @@ std::string FileText(const char* path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The example was written from design and schema, number by number; tests/tools/result_schema_test.py validates it.
+// The example was written by hand from the design and the schema; tests/tools/result_schema_test.py validates it.
 TEST(ToJsonText, GivesTheExampleByteForByte) {
   EXPECT_EQ(ToJsonText(ExampleComparedReport()), FileText("tests/report/result_example.json"));
 }

@@ -22,7 +22,7 @@ TEST(TableWithin, IsAnAlignedTableWhereThatFits) {
   EXPECT_EQ(TableWithin({}, {}, 2, 20), "");
 }
 
-// Value and error are one: both go below, beside the name, and the row that has neither is left out there.
+// Value and error stay together: both continue below, next to the name. A row without either is left out there.
 TEST(TableWithin, GoesOnBelowWithTheFirstColumn) {
   const std::vector<Column> columns = {{"name"}, {"unit"}, {"value", true}, {"± error", false, 1}};
   EXPECT_EQ(TableWithin(columns, {{"b", "s", "12", "± 3"}, {"c", "m", "", ""}}, 0, 20),

@@ -19,7 +19,7 @@ using testing::StartsWith;
 
 std::string MarkdownOf(Block block) { return ToMarkdown(Sections{{"T", "", {std::move(block)}}}); }
 
-// GitHub-flavoured Markdown, version 0.29, sections 4.10, 6.1, 6.4, 6.6 and 6.10: what is active.
+// Active characters of GitHub-flavoured Markdown, version 0.29, sections 4.10, 6.1, 6.4, 6.6 and 6.10.
 TEST(MarkdownText, EscapesWhatIsActive) {
   EXPECT_EQ(MarkdownText("a|b*c`d<e&f~g$h\\i"), "a\\|b\\*c\\`d\\<e\\&f\\~g\\$h\\\\i");
   EXPECT_EQ(MarkdownText("[x](javascript:y) ![z][w] [v]: u"), "[x\\](javascript:y) ![z\\][w] [v\\]: u");
@@ -117,7 +117,7 @@ TEST(ToMarkdown, OfAJointFitBeginsWithWhetherTheRecordingsAgree) {
 )"));
 }
 
-// The stars and bars of a strip would be emphasis and cells.
+// Unescaped, the stars and bars of a strip would be emphasis and cells.
 TEST(ToMarkdown, OfAJointFitShowsStripsAsTheyAre) {
   EXPECT_THAT(ToMarkdown(ExampleJointReport()),
               HasSubstr("| 1 alone | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));

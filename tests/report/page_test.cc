@@ -62,7 +62,7 @@ TEST(ToHtml, LetsNoNameEndItsScript) {
   EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
 }
 
-// No address of a server, and no way to load one.
+// The page has no address of a server, and its policy forbids loading.
 TEST(ToHtml, FetchesNothing) {
   const std::string html = ToHtml(SampledReport(), "");
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));

@@ -21,7 +21,7 @@ Rig ExampleRig(double std_dev = 0) {
   return rig;
 }
 
-/// Inertia and viscous friction from a release angle, 20 s or 40 s.
+/// Inertia and viscous friction from a release angle, for 20 s and 40 s.
 Plan ExamplePlan() {
   Plan plan;
   plan.parameters = {kInertia, kViscousInfo, kReleaseAngle, kReleaseTime, kZeroAngle};
@@ -35,7 +35,7 @@ Plan ExamplePlan() {
   return plan;
 }
 
-// 5.2e-7 s² · 2 N m of 0.08 kg m², 1.5e-5 of 0.0015 s; rounded as the Particle Data Group does.
+// 5.2e-7 s² · 2 N m of 0.08 kg m², 1.5e-5 of 0.0015 s; rounded by the rules of the Particle Data Group.
 TEST(PlanText, GivesTheBaseInSiWithARigAndTheRowsInPercent) {
   EXPECT_EQ(
       PlanText(ExamplePlan(), ExampleRig()),

@@ -20,7 +20,7 @@ TEST(PdgText, GivesThePublishedExamples) {
 TEST(PdgText, ChangesDigitsAtTheLimitsOfTheRule) {
   EXPECT_EQ(Pdg(0.827, 0.100), "0.83 ± 0.10");
   EXPECT_EQ(Pdg(0.827, 0.354), "0.83 ± 0.35");
-  EXPECT_EQ(Pdg(0.827, 0.3549), "0.83 ± 0.35");  // three digits are read, not rounded
+  EXPECT_EQ(Pdg(0.827, 0.3549), "0.83 ± 0.35");  // three digits are compared without rounding
   EXPECT_EQ(Pdg(0.827, 0.355), "0.8 ± 0.4");
   EXPECT_EQ(Pdg(0.827, 0.949), "0.8 ± 0.9");
   EXPECT_EQ(Pdg(0.827, 0.950), "0.8 ± 1.0");

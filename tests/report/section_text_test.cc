@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// One section of one block.
+/// A section with one block, as text.
 std::string TextOf(Block block, TextStyle style = {}) { return ToText(Sections{{"T", "", {std::move(block)}}}, style); }
 
 TEST(SectionText, IsIndentedBelowItsTitleAndRemark) {

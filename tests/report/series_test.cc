@@ -135,8 +135,8 @@ TEST(SeriesJson, IsNullForWhatThereIsNot) {
   EXPECT_EQ(SeriesJson(report)["models"], Json::object());
 }
 
-// cos(2π t / 1 s) over 0.2 to 3.8 s turns at every half second from 0.5 to 3.5 s, by -1 and 1 in turn; a parabola
-// through samples 0.01 s apart is off by some (2π 0.01)³.
+// cos(2π t / 1 s) over 0.2 to 3.8 s has turning points at every half second from 0.5 to 3.5 s, alternately -1 and 1. A
+// parabola through samples 0.01 s apart has an error of about (2π 0.01)³.
 TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
   Identification report;
   report.used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);

@@ -29,7 +29,7 @@ TEST(SummaryHtml, LetsNoRunEndItsScript) {
   EXPECT_EQ(Embedded(html, "summary"), summary);
 }
 
-// No address of a server, and no way to load one.
+// The page has no address of a server, and its policy forbids loading.
 TEST(SummaryHtml, FetchesNothing) {
   const std::string html = SummaryHtml(nullptr);
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));

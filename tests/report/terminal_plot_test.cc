@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-/// cos(2π f t) of amplitude 0.4 rad, N samples over 20 s, and a fit that is 0.01 rad above it.
+/// cos(2π f t) with an amplitude of 0.4 rad, N samples over 20 s, and a fit that is 0.01 rad higher.
 struct Drawn {
   Recording used;
   FitReport fit;
@@ -39,7 +39,7 @@ Drawn Swing(double frequency, int samples) {
   return drawn;
 }
 
-/// What gnuplot makes of the script, line by line; reads and writes files of its own, as a shell does.
+/// gnuplot's output for the script, line by line; uses temporary files and a shell.
 std::vector<std::string> Draw(const Drawn& drawn) {
   const std::string script = testing::TempDir() + "terminal_plot_test.gp";
   std::ofstream(script) << TerminalPlot(drawn.used, drawn.fit);
@@ -61,7 +61,7 @@ std::string Joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// How many characters of that kind stand in the frame of the upper plot.
+/// Number of marks of that kind in the frame of the upper plot.
 long CountAbove(const std::vector<std::string>& lines, char mark) {
   long count = 0;
   for (std::size_t i = 2; i < 13; ++i) count += std::ranges::count(lines.at(i).substr(9), mark);
@@ -89,7 +89,7 @@ TEST(TerminalPlot, HasMeasuredDotsFittedStarsAndResidualsInDegrees) {
   EXPECT_GT(CountAbove(Draw(Swing(0.76, 2000)), '*'), 67);
 }
 
-// 100 swings a second of which every column has hundreds: each reaches from one end to the other.
+// 100 swings per second; every column has hundreds of samples, which must fill it from end to end.
 TEST(TerminalPlot, LosesNoSwingHoweverMany) {
   const std::vector<std::string> lines = Draw(Swing(100, 200'000));
   EXPECT_GT(CountAbove(lines, '.'), 67 * 7);

@@ -8,7 +8,7 @@
 namespace pendulum::text_parts_test {
 namespace {
 
-// 0.0790 ± 0.0012: leading digits 120 keep two (PDG); other numbers have the same decimal.
+// 0.0790 ± 0.0012: the leading digits 120 keep two digits (PDG); other numbers have the same last decimal.
 TEST(QuantityNumbers, ShowsAllToTheDecimalOfTheError) {
   const QuantityNumbers numbers(0.07901, 0.0012);
   EXPECT_EQ(numbers.Value(), "0.0790");
@@ -52,7 +52,7 @@ TEST(ReadingText, AddsDegreesToRadians) {
 
 TEST(Prose, IsIndentedBelowItsHeading) { EXPECT_EQ(Heading("Data") + Prose("one two"), "[[Data]]\n    one two\n"); }
 
-// ESC [ clears screens; U+009B is the same in one character.
+// ESC [ starts control sequences, such as clearing the screen; U+009B is the same in one character.
 TEST(Printable, HasNothingThatSteersATerminal) {
   EXPECT_EQ(Printable("a\x1B[2Jb\n\x7F\xC2\x9Bm.csv"), "a?[2Jb???m.csv");
   EXPECT_EQ(Printable("Mañana τ ±.csv"), "Mañana τ ±.csv");

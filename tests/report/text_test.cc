@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Lines joined, for sentences that are broken anywhere.
+/// The text with lines joined, to search for wrapped sentences.
 std::string OneLine(const std::string& text) {
   std::string line;
   for (const char c : text) {
@@ -28,7 +28,7 @@ std::string OneLine(const std::string& text) {
   return line;
 }
 
-// Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg. The rest is rounding by hand; closed forms:
+// Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg. The other values are rounded by hand; closed forms are in
 // closed_form_text_test.cc.
 constexpr const char* kWholeFit = R"([[Data]]
     file        swing.csv
@@ -249,7 +249,7 @@ int WidestOf(const std::string& text) {
   return widest;
 }
 
-/// The example with the longest names, units and numbers that fits give.
+/// The example with the longest possible names, units and numbers of fits.
 Identification WideReport() {
   Identification report = ExampleComparedReport();
   FitReport& fit = report.fits[0];

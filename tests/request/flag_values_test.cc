@@ -23,7 +23,8 @@ TEST(NearestName, FindsWhatWasMeant) {
   EXPECT_EQ(NearestName("modle", kNames), "model");
   EXPECT_EQ(NearestName("form", kNames), "from");
   EXPECT_EQ(NearestName("temperature", kNames), "");
-  constexpr std::array<std::string_view, 2> kNear = {"lose", "noise"};  // two slips from the one, a swap from the other
+  constexpr std::array<std::string_view, 2> kNear = {"lose", "noise"};  // two edits from the first name, one swap from
+                                                                        // the second
   EXPECT_EQ(NearestName("niose", kNear), "noise");
 }
 

@@ -27,7 +27,7 @@ void ExpectRefused(const Result<Flags>& flags, const std::string& message) {
 
 // ---- Names ---------------------------------------------------------------------------------------------------------
 
-// Those of the tools that may be asked from afar: no files, no threads of the machine that is asked.
+// The flags of the tools without files and threads, which a remote client must not set.
 TEST(FlagNames, AreThoseOfTheTools) {
   EXPECT_THAT(RunFlagNames(),
               UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
@@ -112,7 +112,7 @@ TEST(RunFlagsOf, RefusesWhatIsNoFlagOfAFit) {
   ExpectRefused(RunFlagsOf({{"from", ""}}), "--from has an empty value; leave the flag out for its default");
   ExpectRefused(RunFlagsOf({{"model", "drag"}, {"models", "drag"}}),
                 "--model and --models are one flag, and both are given; leave one of them out");
-  // What names a file of the machine that serves, or takes its processors.
+  // Flags that name files of the server or use its processors, and invalid names.
   for (const char* name : {"rig", "calibration", "threads", "data", "json", "report", "Model", ""}) {
     const auto flags = RunFlagsOf({{name, "1"}});
     ASSERT_FALSE(flags) << name;

@@ -21,7 +21,7 @@ using testing::StartsWith;
 
 constexpr double kRadPerDeg = 0.017453292519943295;  // π / 180
 
-/// What the tool does with these flags, for a pendulum of 1 rad/s about 0.3 rad.
+/// The simulation for these flags, with a release angle of 0.3 rad.
 Simulation Options(SimulationFlags flags = {}) {
   flags.set = "inertia=0.04,coulomb=0.001,release_angle=0.3,release_time=0.5";
   const Result<Simulation> options = MakeSimulation(flags, {});
@@ -35,7 +35,7 @@ Recording Simulated(const Simulation& options) {
   return *recording;
 }
 
-/// The fields of a CSV file's value column, as text.
+/// The texts in a CSV file's value column.
 std::vector<std::string> ValueFields(const std::string& csv) {
   std::vector<std::string> fields;
   std::size_t at = csv.find("time_s,");

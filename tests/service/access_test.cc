@@ -21,7 +21,7 @@ HttpRequest Request(const std::string& method, Fields fields, const std::string&
   return {method, target, std::move(fields), ""};
 }
 
-/// "403 the sentence", or "allowed".
+/// Result of RefuseAccess: "403 the sentence", or "allowed".
 std::string Answer(const HttpRequest& request, const AccessRules& rules, Audience audience = Audience::kTokenHolders) {
   const auto problem = RefuseAccess(request, rules, audience);
   return problem ? std::to_string(problem->status()) + " " + problem->detail : "allowed";
@@ -35,7 +35,7 @@ std::string AnswerOfToken(const std::string& authorization) {
   return Answer(Request("GET", {{"Host", "lab.example"}, {"Authorization", authorization}}), {kToken, {}});
 }
 
-/// Whether a request with these fields beside its Host comes from elsewhere.
+/// Whether a request with these fields in addition to its Host is cross-site.
 bool IsForeign(const std::string& method, Fields fields, const std::string& host = "localhost:8080") {
   fields.push_back({"Host", host});
   return IsCrossSite(Request(method, std::move(fields)));
@@ -130,7 +130,7 @@ TEST(RefuseAccess, AllowsAnyHostWithAToken) {
   EXPECT_EQ(Answer(Request("GET", fields), {kToken, {}}), "allowed");
 }
 
-// RFC 9112, section 3.2: a server must answer 400 to none and to several.
+// RFC 9112, section 3.2: a server must answer 400 to a request without Host and to one with several.
 TEST(RefuseAccess, RefusesARequestWithoutOneHost) {
   EXPECT_EQ(Answer(Request("GET", {}), {}), "400 the request has 0 Host fields; it must have one (RFC 9112)");
   EXPECT_EQ(Answer(Request("GET", {{"Host", "localhost"}, {"HOST", "localhost"}}), {}),
@@ -138,7 +138,7 @@ TEST(RefuseAccess, RefusesARequestWithoutOneHost) {
   EXPECT_EQ(Answer(Request("GET", {{"Host", ""}}), {}).substr(0, 3), "403");
 }
 
-// RFC 9112, section 3.2.2: of a target in absolute form its own host counts; here both must be right.
+// RFC 9112, section 3.2.2: a target in absolute form overrides Host; here both must be allowed.
 TEST(RefuseAccess, LooksAtTheHostOfAnAbsoluteTarget) {
   const Fields local = {{"Host", "localhost"}}, foreign = {{"Host", "evil.example"}};
   EXPECT_EQ(Answer(Request("GET", local, "http://localhost/v1/fits"), {}), "allowed");
@@ -159,7 +159,7 @@ TEST(IsSameSecret, ComparesBytes) {
   EXPECT_FALSE(IsSameSecret("token", "toke"));
 }
 
-// RFC 9110, section 11.1: the scheme in either case, one blank or more behind it.
+// RFC 9110, section 11.1: the scheme in either case, followed by one or more blanks.
 TEST(RefuseAccess, TakesTheRightToken) {
   EXPECT_EQ(AnswerOfToken(std::string("Bearer ") + kToken), "allowed");
   EXPECT_EQ(AnswerOfToken(std::string("bearer   ") + kToken), "allowed");
@@ -208,7 +208,7 @@ TEST(RefuseAccess, ChallengesWithAnErrorOnlyWhereATokenIsWrong) {
 
 // ---- Browsers ------------------------------------------------------------------------------------------------------
 
-// As Chromium 156 sends it when a page of the service calls fetch(), Fetch Metadata and Origin included.
+// Fields that Chromium 156 sends when a page of the service calls fetch(), including Fetch Metadata and Origin.
 TEST(IsCrossSite, AllowsTheServicesOwnPage) {
   EXPECT_FALSE(IsForeign("POST", {{"Origin", "http://localhost:8080"},
                                   {"Sec-Fetch-Site", "same-origin"},
@@ -218,7 +218,7 @@ TEST(IsCrossSite, AllowsTheServicesOwnPage) {
   EXPECT_FALSE(IsForeign("GET", {{"Sec-Fetch-Site", "none"}, {"Sec-Fetch-Mode", "navigate"}}));
 }
 
-// Node's fetch sends Sec-Fetch-Mode: cors alone; curl and Python nothing at all.
+// Node's fetch sends only Sec-Fetch-Mode: cors; curl and Python send no such field.
 TEST(IsCrossSite, AllowsWhatIsNoBrowser) {
   EXPECT_FALSE(IsForeign("POST", {{"sec-fetch-mode", "cors"}}));
   EXPECT_FALSE(IsForeign("POST", {}));
@@ -248,7 +248,7 @@ TEST(IsCrossSite, AllowsALinkFromElsewhere) {
   EXPECT_TRUE(IsForeign("GET", {site, mode, {"Sec-Fetch-Mode", "cors"}}));
 }
 
-// RFC 6454, sections 5 and 6: scheme, host and port; that of the scheme where there is none.
+// RFC 6454, sections 5 and 6: scheme, host and port are compared; a missing port is the scheme's default.
 TEST(IsCrossSite, ComparesOriginWithHost) {
   const auto foreign = [](const std::string& origin, const std::string& host) {
     return IsForeign("POST", {{"Origin", origin}}, host);
@@ -273,7 +273,7 @@ TEST(IsCrossSite, ComparesOriginWithHost) {
   EXPECT_TRUE(IsCrossSite(Request("POST", {{"Origin", "http://localhost"}})));  // no Host
 }
 
-// A sandboxed frame and a file:// page are of origin null (WHATWG HTML, section 7.1.1).
+// The origin of a sandboxed frame or a file:// page is null (WHATWG HTML, section 7.1.1).
 TEST(IsCrossSite, RefusesOriginNullWhereItWrites) {
   EXPECT_TRUE(IsForeign("POST", {{"Origin", "null"}}));
   EXPECT_TRUE(IsForeign("DELETE", {{"Origin", "null"}}));

@@ -20,7 +20,7 @@
 #include "pendulum/service/fitting_service.h"
 #include "tests/batch/small_batch.h"
 
-/// A fitting service that is asked without a socket.
+/// A fitting service that tests call without a socket.
 namespace pendulum::asked_service {
 
 using Json = nlohmann::ordered_json;
@@ -36,7 +36,7 @@ inline std::string FieldOf(const HttpResponse& response, const std::string& name
   return found == response.fields.end() ? "" : found->value;
 }
 
-/// "404 the sentence" of a problem, or the status alone.
+/// "404 the sentence" for a problem, otherwise the status alone.
 inline std::string AnswerOf(const HttpResponse& response) {
   const std::string status = std::to_string(response.status);
   if (FieldOf(response, "Content-Type") != "application/problem+json") return status;
@@ -45,13 +45,13 @@ inline std::string AnswerOf(const HttpResponse& response) {
   return status + " " + problem["detail"].get<std::string>();
 }
 
-/// A short recording, which is fitted within some hundredths of a second.
+/// A short recording that is fitted in a few hundredths of a second.
 inline const std::string& Recording() {
   static const std::string text = small_batch::RecordingText(1);
   return text;
 }
 
-/// One that no model fits: it rests.
+/// A pendulum at rest, which no model fits.
 inline std::string RestingRecording() {
   std::string text = "time_s,angle_rad\n";
   for (int i = 0; i < 100; ++i) text += std::to_string(i) + ",0.25\n";
@@ -67,7 +67,7 @@ inline std::string PartOf(const std::string& name, const std::string& content, c
 
 inline std::string FormOf(const std::string& parts) { return parts + "--X--\r\n"; }
 
-/// A service with a store in a folder of its own.
+/// A service with a store in its own folder.
 class ServiceTest : public testing::Test {
  protected:
   ServiceTest() {
@@ -109,7 +109,7 @@ class ServiceTest : public testing::Test {
     return Json::parse(response.body);
   }
 
-  /// Where the fit of a recording is.
+  /// Posts a recording and returns the location of its fit.
   std::string Fitted(const std::string& query = "?model=viscous") {
     const HttpResponse response = Post("/v1/fits" + query, "text/csv", Recording());
     EXPECT_EQ(response.status, 200) << response.body;

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Server-sent events as a browser takes them: the rules of the HTML standard, section 9.2.6 "Interpreting an event stream"."""
+"""Parses server-sent events like a browser: the rules of the HTML standard, section 9.2.6 "Interpreting an event stream"."""
 
 import codecs
 import json
 
 
 class Event:
-    """What a page would be told: its type, data and the identifier last seen."""
+    """An event for a page: its type, its data and the last seen identifier."""
 
     def __init__(self, kind, data, identifier):
         self.kind, self.data, self.id = kind, data, identifier
@@ -19,10 +19,10 @@ class Event:
 
 
 class EventParser:
-    """Takes bytes as they come, gives events as they are complete; comments are counted."""
+    """Takes bytes as they arrive and returns complete events; comments are counted."""
 
     def __init__(self):
-        self._decoder = codecs.getincrementaldecoder("utf-8")("strict")  # the standard would replace; a server must not need that
+        self._decoder = codecs.getincrementaldecoder("utf-8")("strict")  # strict, because a server must send valid UTF-8
         self._text, self._is_first, self._data, self._kind, self._id = "", True, [], "", ""
         self.comments = 0
 
@@ -39,7 +39,7 @@ class EventParser:
                 self._take(line)
 
     def _next_line(self):
-        """A line without its end, which is CRLF, LF or CR; a CR that may yet be followed by LF waits."""
+        """A line without its end (CRLF, LF or CR); a final CR waits for a possible LF."""
         ends = [place for place in (self._text.find("\n"), self._text.find("\r")) if place >= 0]
         if not ends or (self._text[min(ends)] == "\r" and min(ends) + 1 == len(self._text)):
             return None
@@ -66,7 +66,7 @@ class EventParser:
 
 
 def events(response, most=None):
-    """The events of a stream, until it ends or there were so many."""
+    """The events of a stream until it ends, or until there are `most`."""
     parser, count = EventParser(), 0
     while content := response.read1(65536):
         for event in parser.feed(content):

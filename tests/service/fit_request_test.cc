@@ -35,7 +35,7 @@ HttpRequest Post(const std::string& target, const std::string& type, std::string
   return {"POST", target, std::move(fields), std::move(body)};
 }
 
-/// A part of a form whose boundary is X.
+/// A part of a form with the boundary X.
 std::string Part(const std::string& name, const std::string& content, const std::string& filename = "") {
   return "--X\r\nContent-Disposition: form-data; name=\"" + name + "\"" +
          (filename.empty() ? "" : "; filename=\"" + filename + "\"") + "\r\n\r\n" + content + "\r\n";
@@ -53,7 +53,7 @@ OrProblem<FitRequest> Batch(const HttpRequest& request, const RequestLimits& lim
   return ParseBatchRequest(request, TargetOf(request), limits);
 }
 
-/// "400 the sentence", or "taken".
+/// "400 the sentence" for a problem, otherwise "taken".
 std::string Answer(const OrProblem<FitRequest>& request) {
   return request ? "taken" : std::to_string(request.error().status()) + " " + request.error().detail;
 }
@@ -123,7 +123,7 @@ TEST(ParseFitRequest, TakesAJsonObject) {
 
 TEST(ParseFitRequest, CutsLongNamesOfFilesBetweenCharacters) {
   std::string name = "x";
-  while (name.size() < 300) name += "ü";  // of two bytes, so that the 200th byte is the first of one
+  while (name.size() < 300) name += "ü";  // two bytes each, so the 200th byte is the first of a pair
   const auto request = Fit(Post("/v1/fits", kForm, Form(Part("data", kCsv, name))));
   ASSERT_TRUE(request) << request.error().detail;
   EXPECT_EQ(request->data[0].name, name.substr(0, 199));
@@ -135,7 +135,7 @@ TEST(ParseFitRequest, TakesTheNameOfTheQueryBeforeThatOfTheFile) {
   EXPECT_EQ(form->data[0].name, "mine");
 }
 
-// ---- What is refused -----------------------------------------------------------------------------------------------
+// ---- Refused requests ----------------------------------------------------------------------------------------------
 
 TEST(ParseFitRequest, RefusesOtherKindsOfContent) {
   constexpr const char* kWanted = "; it must be text/csv, multipart/form-data or application/json";
@@ -151,7 +151,7 @@ TEST(ParseFitRequest, RefusesOtherKindsOfContent) {
   EXPECT_EQ(Answer(Fit(request)), "taken");
 }
 
-// What is there but cannot be read is not called missing.
+// An invalid Content-Type is shown, not reported as missing.
 TEST(ParseFitRequest, ShowsAContentTypeThatIsNone) {
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "csv", kCsv))), HasSubstr("\"csv\""));
 }
@@ -226,7 +226,7 @@ TEST(ParseFitRequest, TakesAsManyLinesAsItMay) {
             "use fit_pendulum");
 }
 
-// Ten thousand runs of a batch keep them ten thousand times.
+// A batch of ten thousand runs stores the options ten thousand times.
 TEST(ParseBatchRequest, TakesNoOptionsOfAnyLength) {
   const auto answer = [](std::size_t blanks) {
     const std::string options = R"({"model": "drag)" + std::string(blanks, ' ') + "\"}";
@@ -236,7 +236,7 @@ TEST(ParseBatchRequest, TakesNoOptionsOfAnyLength) {
   EXPECT_THAT(answer(8176), Not(StartsWith("413")));
 }
 
-// A name goes into files and messages: what a terminal would obey has no place in it, as in a query (RequestTarget).
+// A name is used in files and messages, so control characters are refused, as in a query (RequestTarget).
 TEST(ParseFitRequest, LetsNoControlCharactersIntoNames) {
   for (const auto& request : {Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\nb"})")),
                               Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\u001b[2J"})")),
@@ -279,7 +279,7 @@ TEST(ParseBatchRequest, RefusesWhatIsWrongAndSaysWhy) {
 
 // ---- Refits --------------------------------------------------------------------------------------------------------
 
-/// A refit of a run that had these flags, a rig and a calibration.
+/// A refit of a run with these flags, a rig and a calibration.
 OrProblem<FitRequest> Refit(const std::string& query, const std::string& body = "",
                             const std::string& type = "application/json") {
   const HttpRequest request = Post("/v1/fits/1/refits" + query, body.empty() ? "" : type, body);
@@ -326,7 +326,7 @@ TEST(ParseRefitRequest, RefusesWhatIsWrongAndSaysWhy) {
   EXPECT_THAT(Answer(Refit("", R"({"name": ""})")), StartsWith("400 "));
 }
 
-// What would be passed over in silence: a flag that is none, and a name in the body.
+// An unknown flag, or a name in the body, would otherwise be ignored silently.
 TEST(ParseRefitRequest, PassesOverNothing) {
   EXPECT_EQ(Answer(Refit("?modle=")), "400 --modle is not a flag of this request; did you mean --model?");
   const auto named = Refit("", R"({"name": "again"})");

@@ -14,7 +14,7 @@
 
 #include "tests/service/asked_service.h"
 
-extern "C" [[gnu::weak]] void __asan_init();  // of the address sanitizer's library, where that is linked
+extern "C" [[gnu::weak]] void __asan_init();  // from the address sanitizer's library; null without it
 
 namespace pendulum::fitting_service_batches_test {
 namespace {
@@ -44,7 +44,7 @@ struct Event {
   Json data;
 };
 
-/// The events of whole texts, each of lines "field: value" and an empty line (WHATWG HTML, 9.2.5).
+/// The events of a complete text. An event has lines "field: value" and ends with an empty line (WHATWG HTML, 9.2.5).
 std::vector<Event> EventsOf(const std::string& text) {
   std::vector<Event> events;
   Event event;
@@ -62,7 +62,7 @@ std::vector<Event> EventsOf(const std::string& text) {
 
 class FittingServiceBatchesTest : public asked_service::ServiceTest {
  protected:
-  /// Recordings a.csv, rest.csv, which no model fits, and b.csv.
+  /// Recordings a.csv, rest.csv (which no model fits) and b.csv.
   static std::string ThreeRecordings() {
     return PartOf("data", Recording(), "a.csv") + PartOf("data", RestingRecording(), "rest.csv") +
            PartOf("data", small_batch::RecordingText(2), "b.csv");
@@ -74,7 +74,7 @@ class FittingServiceBatchesTest : public asked_service::ServiceTest {
     return FieldOf(response, "Location");
   }
 
-  /// The batch once nothing of it waits.
+  /// Waits until no run of the batch is left and returns the batch.
   Json Done(const std::string& location) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < end) {
@@ -86,7 +86,7 @@ class FittingServiceBatchesTest : public asked_service::ServiceTest {
     return JsonAt(location);
   }
 
-  /// All events to the last.
+  /// All events up to the last one.
   std::vector<Event> Listened(const std::string& location, const Fields& fields = {}) {
     const HttpResponse response = Ask("GET", location + "/events", fields);
     EXPECT_EQ(response.status, 200) << response.body;
@@ -103,7 +103,7 @@ class FittingServiceBatchesTest : public asked_service::ServiceTest {
   }
 };
 
-// ---- To its end ----------------------------------------------------------------------------------------------------
+// ---- Complete batches ----------------------------------------------------------------------------------------------
 
 TEST_F(FittingServiceBatchesTest, FitsAllOfThemInTheOrderSent) {
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
@@ -130,7 +130,7 @@ TEST_F(FittingServiceBatchesTest, FitsAllOfThemInTheOrderSent) {
   EXPECT_EQ(batch["fits"][1]["reason"], "the reading is constant: no swing");
 }
 
-// What a fit alone would answer.
+// A run's answer equals that of a single fit.
 TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForAFitAlone) {
   const Json batch = Done(Sent(ThreeRecordings()));
   const auto fit = [&](std::size_t i) { return "/v1/fits/" + batch["fits"][i]["id"].get<std::string>(); };
@@ -146,7 +146,7 @@ TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForAFitAlone) {
 
 TEST_F(FittingServiceBatchesTest, GoesOnAtTheNextStart) {
   const std::string location = Sent(ThreeRecordings() + ThreeRecordings());
-  End();  // whatever is under way
+  End();  // ends the service in any state
   const Json batch = Done(location);
   EXPECT_EQ(batch["runs"], 6);
   EXPECT_EQ(batch["done"], 6);
@@ -156,7 +156,7 @@ TEST_F(FittingServiceBatchesTest, GoesOnAtTheNextStart) {
 }
 
 TEST_F(FittingServiceBatchesTest, TellsWhoStoppedThatItGoesOnLater) {
-  Service().Stop();  // so that nothing is taken up
+  Service().Stop();  // no run is started
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
   ASSERT_EQ(response.status, 202) << response.body;
   const Json batch = Json::parse(response.body);
@@ -192,7 +192,7 @@ TEST_F(FittingServiceBatchesTest, ListsBatchesLatestFirst) {
   EXPECT_EQ(Json::parse(Get("/v1/batches").body)["batches"][0]["runs"], 1);
 }
 
-/// KiB that the process has had in memory at most since ForgetMostMemory.
+/// Largest memory of the process since ForgetMostMemory, in KiB.
 std::int64_t MostMemory() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -204,12 +204,12 @@ std::int64_t MostMemory() {
 
 void ForgetMostMemory() { std::ofstream("/proc/self/clear_refs") << 5; }  // proc(5)
 
-// Who sends a megabyte costs the service some megabytes, however many runs share a rig.
+// A request of one megabyte needs only a few megabytes of memory, even if many runs share a rig.
 TEST_F(FittingServiceBatchesTest, HoldsASharedRigOnce) {
-  constexpr std::size_t kRig = 60'000, kRuns = 3000;  // 170 MiB if each had its own
+  constexpr std::size_t kRig = 60'000, kRuns = 3000;  // 170 MiB with a separate rig per run
   std::string parts = PartOf("rig", small_batch::kRigText + std::string(kRig, ' '));
   for (std::size_t i = 0; i < kRuns; ++i) parts += PartOf("data", "x", "a.csv");
-  const std::int64_t most = 1024 * (__asan_init == nullptr ? 60 : 260);  // KiB; the sanitizer keeps what is freed
+  const std::int64_t most = 1024 * (__asan_init == nullptr ? 60 : 260);  // KiB; the sanitizer keeps freed memory
   Service().Stop();
   ForgetMostMemory();
   const std::int64_t before = MostMemory();
@@ -230,7 +230,7 @@ TEST_F(FittingServiceBatchesTest, DeletesABatchWithItsFits) {
   for (const Json& fit : batch["fits"]) EXPECT_EQ(Get("/v1/fits/" + fit["id"].get<std::string>()).status, 404);
   EXPECT_THAT(IdsAt("/v1/fits"), IsEmpty());
   const std::string next = Sent(PartOf("data", Recording(), "a.csv"));
-  EXPECT_EQ(Done(next)["done"], 1);  // its threads are alive
+  EXPECT_EQ(Done(next)["done"], 1);  // its threads still run
 }
 
 TEST_F(FittingServiceBatchesTest, EndsTheEventsOfABatchThatIsDeleted) {
@@ -310,7 +310,7 @@ TEST_F(FittingServiceBatchesTest, GoesOnAfterTheLastEventThatAClientHas) {
   EXPECT_EQ(Listened(location, {{"Last-Event-ID", "none"}}).size(), 4U);
 }
 
-// A run that waits is never told to be done.
+// Waiting runs have no "done" event.
 TEST_F(FittingServiceBatchesTest, TellsNothingOfRunsThatWait) {
   Service().Stop();
   const std::string location = Sent(ThreeRecordings());
@@ -337,7 +337,7 @@ TEST_F(FittingServiceBatchesTest, KeepsSoManyWaitingAndNoMore) {
 TEST_F(FittingServiceBatchesTest, StopsARunThatTakesTooLongAndGoesOn) {
   SyntheticOptions minutes = small_batch::Truth(1);
   minutes.duration = 300;
-  minutes.sample_rate = 200;  // a fit of seconds, wherever it runs
+  minutes.sample_rate = 200;  // a fit takes seconds on any machine
   options_.fit_time = std::chrono::milliseconds(1);
   const std::string location =
       Sent(PartOf("data", small_batch::RecordingText(minutes), "a.csv") + PartOf("data", RestingRecording(), "b"));

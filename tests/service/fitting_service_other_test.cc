@@ -98,7 +98,7 @@ TEST_F(FittingServiceOtherTest, CalibratesTheTextbooksTable) {
   EXPECT_EQ(json["calibration"]["input_range"], Json::array({0, 1023}));
   EXPECT_EQ(json["order"], 1);
   ASSERT_EQ(json["points"].size(), 7U);
-  const Json& point = json["points"][3];  // README.md: 261 counts, 0 deg, curve 2.21, left out -2.58
+  const Json& point = json["points"][3];  // README.md: 261 counts, 0 deg, curve 2.21, left-out error -2.58
   EXPECT_EQ(point["reading"], 261);
   EXPECT_EQ(point["angle"], 0);
   EXPECT_NEAR(point["fitted"].get<double>(), 2.21, 5e-3);
@@ -106,7 +106,7 @@ TEST_F(FittingServiceOtherTest, CalibratesTheTextbooksTable) {
   EXPECT_NEAR(point["left_out"].get<double>(), -2.58, 5e-3);
   EXPECT_NEAR(json["leave_one_out_rms"].get<double>(), 1.32, 5e-3);
   EXPECT_THAT(json["text"].get<std::string>(), HasSubstr("-49.6077 + 0.198544 x deg"));
-  EXPECT_TRUE(ParseCalibration(json["calibration"].dump(), "calibration"));  // that of a fit
+  EXPECT_TRUE(ParseCalibration(json["calibration"].dump(), "calibration"));  // a fit accepts it
 }
 
 TEST_F(FittingServiceOtherTest, LeavesNothingOutOfTwoPoints) {
@@ -132,7 +132,8 @@ std::set<std::string> Names(const Json& list) {
   return names;
 }
 
-// The laws' formulas (MODEL.md eq. (7) to (9), (47), (48)) tell which is which; the small-angle model is in none.
+// Nesting follows from the formulas of the laws (MODEL.md eq. (7) to (9), (47), (48)); the small-angle model is nested
+// in none.
 TEST_F(FittingServiceOtherTest, TellsWhichModelIsWithinWhich) {
   const std::map<std::string, std::set<std::string>> expected = {
       {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}}, {"coulomb", {"drag", "stribeck", "asymmetric"}}};
@@ -161,7 +162,7 @@ TEST_F(FittingServiceOtherTest, HasExamplesThatCanBeFitted) {
     const Json body = {{"data", example["recording"]},
                        {"rig", example["rig"]},
                        {"options", {{"models", example["models"]}, {"closed_form_only", true}}}};
-    // Which takes one model; that all are models is what counts.
+    // This request takes one model; the test only needs that all names are models.
     const std::string answer = AnswerOf(Post("/v1/fits", "application/json", body.dump()));
     EXPECT_THAT(answer, Not(HasSubstr("there is no model"))) << name;
     const Json one = {
@@ -188,7 +189,7 @@ TEST_F(FittingServiceOtherTest, AnswersThatItStopsToFitsThatAreStopped) {
   EXPECT_FALSE(FieldOf(response, "Retry-After").empty());
 }
 
-/// The value of a line of the metrics; NaN: there is none.
+/// The value in a line of the metrics; NaN if there is none.
 double MetricOf(const std::string& text, const std::string& name) {
   const std::size_t at = ("\n" + text).find("\n" + name + " ");
   return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + name.size() + 1));
@@ -225,7 +226,7 @@ TEST_F(FittingServiceOtherTest, DescribesEachRouteAndNoOther) {
   EXPECT_THAT(document["openapi"].get<std::string>(), StartsWith("3.1"));
   std::set<std::string> described, answered;
   for (const auto& [path, item] : document["paths"].items()) {
-    std::string pattern = path;  // whatever what differs is called there
+    std::string pattern = path;  // the path with placeholders for its variable parts
     if (const std::size_t open = pattern.find('{'); open != std::string::npos) {
       pattern.replace(open, pattern.find('}') - open + 1, "{id}");
     }
@@ -234,7 +235,7 @@ TEST_F(FittingServiceOtherTest, DescribesEachRouteAndNoOther) {
     }
   }
   for (const Route& route : Routes()) {
-    if (route.audience == Audience::kAnybody && route.path != "/healthz") continue;  // the page
+    if (route.audience == Audience::kAnybody && route.path != "/healthz") continue;  // files of the page
     std::string method(route.method);
     for (char& c : method) c = static_cast<char>(c - 'A' + 'a');
     answered.insert(method + " " + std::string(route.path));
@@ -258,7 +259,7 @@ TEST_F(FittingServiceOtherTest, HasThePageAtEachOfItsPaths) {
   EXPECT_THAT(FieldOf(Get("/app.css"), "Content-Type"), StartsWith("text/css"));
 }
 
-// A browser that keeps to the policy runs and draws nothing that does not come as a file of ours.
+// With this policy a browser runs and displays only files of the service.
 TEST_F(FittingServiceOtherTest, LetsThePageRunItsOwnFilesOnly) {
   const HttpResponse response = Get("/");
   const std::string policy = FieldOf(response, "Content-Security-Policy");

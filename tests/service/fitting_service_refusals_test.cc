@@ -27,14 +27,14 @@ class FittingServiceRefusalsTest : public asked_service::ServiceTest {
     return AnswerOf(Ask(method, target, fields));
   }
 
-  /// Whether the head alone is refused.
+  /// Whether the request is refused by its head alone.
   bool IsRefusedAtOnce(const std::string& method, const std::string& target, Fields fields = {}) {
     fields.push_back({"Host", "localhost"});
     return Service().RefuseHead({method, target, std::move(fields), ""}).has_value();
   }
 };
 
-// ---- Strangers -----------------------------------------------------------------------------------------------------
+// ---- Unknown clients -----------------------------------------------------------------------------------------------
 
 TEST_F(FittingServiceRefusalsTest, AnswersThisMachineOnlyUnlessToldOtherwise) {
   EXPECT_THAT(Answer("GET", "/v1/fits", {{"Host", "evil.example"}}), StartsWith("403 "));
@@ -61,7 +61,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersThoseWhoKnowTheTokenAndNobodyElse) {
     EXPECT_THAT(Answer("GET", "/v1/fits", {{"Authorization", value}}), StartsWith("401 ")) << value;
   }
   for (const char* path : {"/healthz", "/", "/fits/abc", "/app.js", "/app.css"}) EXPECT_EQ(Answer("GET", path), "200");
-  // Who has none is not told what there is.
+  // Without a token the service does not reveal which paths exist.
   for (const char* path : {"/metrics", "/openapi.json", "/v1/models", "/v1/none", "/none", "/v1//x"}) {
     EXPECT_THAT(Answer("GET", path), StartsWith("401 ")) << path;
   }
@@ -94,7 +94,7 @@ TEST_F(FittingServiceRefusalsTest, TellsWhichMethodsThereAre) {
   EXPECT_EQ(allowed("POST", "/v1/fits/abc"), "GET, HEAD, DELETE");
   EXPECT_EQ(allowed("HEAD", "/v1/simulations"), "POST");
   EXPECT_EQ(allowed("DELETE", "/"), "GET, HEAD");
-  EXPECT_EQ(allowed("get", "/v1/models"), "GET, HEAD");  // methods have their letters (RFC 9110, section 9.1)
+  EXPECT_EQ(allowed("get", "/v1/models"), "GET, HEAD");  // method names are case-sensitive (RFC 9110, section 9.1)
   EXPECT_EQ(Ask("HEAD", "/v1/models").status, 200);
 }
 
@@ -115,7 +115,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesParametersOutOfTheirDomain) {
   }
 }
 
-// Else a slip of the pen would be an empty list, or the whole.
+// Otherwise a typing error would return an empty list, or all fits.
 TEST_F(FittingServiceRefusalsTest, RefusesATimeThatIsNone) {
   Fitted("?closed_form_only=true");
   for (const char* text : {"yesterday", "2026-13-01T00:00:00Z", "now", "12", "2026-11-23T00:00:00Z%20x"}) {
@@ -125,7 +125,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesATimeThatIsNone) {
   EXPECT_EQ(Answer("GET", "/v1/fits?since=2026-11-23T01:00:00%2B01:00"), "200");
 }
 
-// ---- Lanes and what the server refuses -----------------------------------------------------------------------------
+// ---- Lanes and refusals of the server ------------------------------------------------------------------------------
 
 TEST_F(FittingServiceRefusalsTest, LetsWhatCalculatesWaitElsewhere) {
   const auto lane = [&](const std::string& method, const std::string& target) {
@@ -154,7 +154,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersForTheServerToo) {
 TEST_F(FittingServiceRefusalsTest, SaysNothingThatWouldEndAHeader) {
   const HttpResponse fit = Post("/v1/fits?closed_form_only=true", "application/json",
                                 Json{{"data", Recording()}, {"name", "a\r\nSet-Cookie: x=1"}}.dump());
-  if (fit.status != 200) return;  // such a name may be refused as well
+  if (fit.status != 200) return;  // the service may refuse such a name
   for (const char* part : {"/recording", "/report", "/markdown"}) {
     for (const HttpField& field : Get(FieldOf(fit, "Location") + part).fields) {
       EXPECT_EQ(field.value.find_first_of("\r\n"), std::string::npos) << field.name;

@@ -41,7 +41,7 @@ using testing::StrCaseEq;
 
 class FittingServiceTest : public asked_service::ServiceTest {};
 
-/// What fit_pendulum makes of a recording with these models, and its result JSON without a path.
+/// The fit by fit_pendulum with these models.
 Identification FitOf(const std::vector<std::string>& models, RunFiles files) {
   return IdentifyBytes(small_batch::OptionsFor(models), std::move(files)).value();
 }
@@ -82,7 +82,7 @@ TEST_F(FittingServiceTest, KeepsWhatItAnsweredOverARestart) {
   const std::string series = Get(location + "/series").body;
   End();
   EXPECT_EQ(Get(location).body, response.body);
-  EXPECT_EQ(Get(location + "/series").body, series);  // of a fit that is made once more
+  EXPECT_EQ(Get(location + "/series").body, series);  // the fit is repeated
   EXPECT_THAT(IdsAt("/v1/fits"), ElementsAre(IdOf(location)));
 }
 
@@ -95,10 +95,10 @@ TEST_F(FittingServiceTest, SaysWhyARecordingCannotBeFitted) {
   EXPECT_THAT(AnswerOf(backwards), StartsWith("422 run.csv:2:"));
   EXPECT_EQ(Json::parse(backwards.body)["code"], "unusable_data");
   EXPECT_EQ(AnswerOf(Post("/v1/fits?model=magic", "text/csv", Recording())).substr(0, 4), "400 ");
-  EXPECT_THAT(IdsAt("/v1/fits"), IsEmpty());  // nothing is kept of them
+  EXPECT_THAT(IdsAt("/v1/fits"), IsEmpty());  // failed fits are not stored
 }
 
-// A fit that is stopped at any time is refused, or it is as it would have been: nothing half done is kept.
+// A fit stopped at any time is either refused or complete; a partial result is never stored.
 TEST_F(FittingServiceTest, StopsAFitThatTakesTooLong) {
   const std::string whole = ResultOf(FitOf({"viscous", "coulomb", "drag"}, {{"a", Recording()}, {}, {}}));
   std::size_t stopped = 0, done = 0;
@@ -140,7 +140,7 @@ TEST_F(FittingServiceTest, FitsForManyAtATime) {
   EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), kThreads * kFits);
 }
 
-// ---- Asking again --------------------------------------------------------------------------------------------------
+// ---- Repeated requests ---------------------------------------------------------------------------------------------
 
 TEST_F(FittingServiceTest, AnswersOnceForEachKey) {
   const Fields key = {{"Idempotency-Key", "k1"}};
@@ -175,7 +175,7 @@ TEST_F(FittingServiceTest, KnowsAFormAgainWhoseBoundaryIsAnother) {
   EXPECT_EQ(FieldOf(again, "Idempotency-Replayed"), "true");
 }
 
-// A short boundary also stands within the data: two forms that differ there only are two requests.
+// A short boundary may also occur in the data: two forms that differ only there are different requests.
 TEST_F(FittingServiceTest, TellsFormsApartThatDifferByTheirBoundary) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const auto post = [&](const std::string& name) {
@@ -202,7 +202,7 @@ TEST_F(FittingServiceTest, KnowsAKeyAfterARestart) {
   EXPECT_EQ(FieldOf(again, "Idempotency-Replayed"), "true");
 }
 
-// Of those who ask at once with one key one is answered, the others are told to wait, or get the same answer.
+// Of several simultaneous requests with one key, one is answered. The others must wait or get the same answer.
 TEST_F(FittingServiceTest, FitsOnceForAKeyHoweverManyAskAtOnce) {
   FittingService& service = Service();
   std::vector<HttpResponse> responses(4);
@@ -224,7 +224,7 @@ TEST_F(FittingServiceTest, FitsOnceForAKeyHoweverManyAskAtOnce) {
   EXPECT_THAT(IdsAt("/v1/fits"), SizeIs(1));
 }
 
-// ---- What is kept --------------------------------------------------------------------------------------------------
+// ---- Stored data ---------------------------------------------------------------------------------------------------
 
 TEST_F(FittingServiceTest, TellsWhatAFitWasMadeFrom) {
   const std::string rig = small_batch::kRigText;
@@ -260,7 +260,7 @@ TEST_F(FittingServiceTest, GivesSeriesResidualsReportAndMarkdown) {
   EXPECT_THAT(report.body, StartsWith("<!doctype html>"));
   EXPECT_THAT(report.body, HasSubstr("my run.csv"));
   EXPECT_EQ(FieldOf(report, "Content-Disposition"), "attachment; filename*=UTF-8''my%20run.csv.html");
-  EXPECT_THAT(FieldOf(report, "Content-Security-Policy"), HasSubstr("sandbox"));  // it is a file, not our page
+  EXPECT_THAT(FieldOf(report, "Content-Security-Policy"), HasSubstr("sandbox"));  // a file, not the service's page
   const HttpResponse markdown = Get(location + "/markdown");
   EXPECT_THAT(FieldOf(markdown, "Content-Type"), StartsWith("text/markdown"));
   EXPECT_THAT(markdown.body, HasSubstr("my run.csv"));
@@ -280,7 +280,7 @@ TEST_F(FittingServiceTest, GivesAllSamplesBeforeAnyWindow) {
   EXPECT_EQ(samples["time_s"].size(), 320U);
   EXPECT_EQ(samples["measured"].size(), 320U);
   EXPECT_EQ(samples["time_s"][0], 0.0);
-  EXPECT_NEAR(samples["measured"][0].get<double>(), 0.4, 0.02);  // held at its release angle
+  EXPECT_NEAR(samples["measured"][0].get<double>(), 0.4, 0.02);  // held at the release angle
 }
 
 TEST_F(FittingServiceTest, ThinsLongRecordings) {
@@ -307,7 +307,7 @@ TEST_F(FittingServiceTest, RefitsTheSameRecordingWithOtherOptions) {
   EXPECT_NE(other, location);
   EXPECT_EQ(JsonAt(other + "/request")["options"], (Json{{"model", "coulomb"}}));
   EXPECT_EQ(JsonAt(other + "/request")["name"], "run.csv");
-  EXPECT_EQ(Get(location).body, first.body);  // which stays
+  EXPECT_EQ(Get(location).body, first.body);  // the first fit is unchanged
   const HttpResponse without_rig = Post(location + "/refits", "application/json", R"({"rig": null})");
   EXPECT_TRUE(Json::parse(without_rig.body)["rig"].is_null()) << without_rig.body;
   EXPECT_EQ(AnswerOf(Ask("POST", "/v1/fits/none/refits")), "404 there is no fit none; it may have been deleted");
@@ -318,7 +318,7 @@ TEST_F(FittingServiceTest, RefitsWhatWasDeletedNoMore) {
   const std::string refit = FieldOf(Ask("POST", location + "/refits?model=coulomb"), "Location");
   ASSERT_EQ(Ask("DELETE", location).status, 204);
   EXPECT_EQ(Ask("POST", location + "/refits").status, 404);
-  EXPECT_EQ(Get(refit + "/recording").body, Recording());  // the refit has it still
+  EXPECT_EQ(Get(refit + "/recording").body, Recording());  // the refit still has its recording
 }
 
 // ---- Lists and deleting --------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ using testing::StartsWith;
 
 constexpr const char* kType = "multipart/form-data; boundary=X";
 
-/// name|filename|content type|content of each part.
+/// Parts in the form "name|filename|content type|content".
 std::vector<std::string> PartsOf(const std::string& content_type, const std::string& body) {
   const auto parts = ParseFormData(content_type, body);
   if (!parts) return {"refused: " + parts.error().message};
@@ -28,20 +28,20 @@ std::vector<std::string> PartsOf(const std::string& content_type, const std::str
   return shown;
 }
 
-/// A form of one part with this head and content.
+/// A form with one part of this head and content.
 std::string Form(const std::string& head, const std::string& content = "x") {
   return "--X\r\n" + head + "\r\n\r\n" + content + "\r\n--X--\r\n";
 }
 
 std::string Named(const std::string& parameters) { return "Content-Disposition: form-data; " + parameters; }
 
-/// name|filename of one part with this head.
+/// "name|filename" of one part with these parameters.
 std::string NamesOf(const std::string& parameters) {
   const std::vector<std::string> parts = PartsOf(kType, Form(Named(parameters)));
   return parts.size() == 1 ? parts.front().substr(0, parts.front().find("||x")) : "not one part";
 }
 
-/// Why a form is refused.
+/// The error message for a refused form.
 std::string FaultOf(const std::string& content_type, const std::string& body) {
   const auto parts = ParseFormData(content_type, body);
   if (parts) return "not refused";
@@ -52,8 +52,7 @@ std::string FaultOf(const std::string& content_type, const std::string& body) {
 
 std::string FaultOf(const std::string& body) { return FaultOf(kType, body); }
 
-// ---- What clients send: bodies caught on the wire
-// ---------------------------------------------------------------------
+// ---- Bodies recorded from clients ----------------------------------------------------------------------------------
 
 // curl 7.88.1 -F 'data=@run ä.csv;type=text/csv' -F 'data=@"q\"b\\c.csv"'
 //   -F 'rig=@rig.json;type=application/json;filename="x.json"' -F 'options={"model":"drag"}'
@@ -98,7 +97,7 @@ TEST(ParseFormData, ReadsWhatRequestsSends) {
 }
 
 // Chromium 156: append("data", csv, 'a "b"\\c\r\n%22 äπ.csv'), append("options", '{"model": "drag"}\r\nx\ny'),
-// append('na"me\n', ""), append("plain", a Blob without a type). A %22 of the name itself cannot be told apart.
+// append('na"me\n', ""), append("plain", a Blob without a type). A literal %22 in the name is decoded too.
 TEST(ParseFormData, ReadsWhatABrowserSends) {
   const std::string body =
       "------WebKitFormBoundaryepWWNMvwjaQ52KHP\r\nContent-Disposition: form-data; name=\"data\"; filename=\"a "
@@ -112,13 +111,13 @@ TEST(ParseFormData, ReadsWhatABrowserSends) {
       PartsOf("multipart/form-data; boundary=----WebKitFormBoundaryepWWNMvwjaQ52KHP", body),
       ElementsAre("data|a \"b\"\\c\r\n\" äπ.csv|text/csv|t,a\n0,1\n", "options|||{\"model\": \"drag\"}\r\nx\r\ny",
                   "na\"me\r\n|||", "plain|blob|application/octet-stream|"));
-  // The same browser, and Node's fetch, of a form without fields.
+  // The same browser, and Node's fetch, send this for a form without fields.
   EXPECT_THAT(PartsOf("multipart/form-data; boundary=----WebKitFormBoundaryq7wAslCctbBtKqqZ",
                       "------WebKitFormBoundaryq7wAslCctbBtKqqZ--\r\n"),
               IsEmpty());
 }
 
-// Python's email package, as_bytes(policy=email.policy.HTTP) and SMTP, which folds long fields.
+// Python's email package, as_bytes(policy=email.policy.HTTP) and SMTP, which folds long lines.
 TEST(ParseFormData, ReadsWhatPythonsEmailWrites) {
   const std::string type = "multipart/form-data;\t boundary=\"===============8676321469719812468==\"";
   const std::string begin =
@@ -135,11 +134,10 @@ TEST(ParseFormData, ReadsWhatPythonsEmailWrites) {
       ElementsAre("data|a\tb.csv|text/csv; charset=\"us-ascii\"|t,a\r\n0,1\r\n"));
 }
 
-// ---- The standards' own examples
-// ---------------------------------------------------------------------------------------
+// ---- Examples from the standards -----------------------------------------------------------------------------------
 
-// RFC 2046, section 5.1.1, of its example the boundaries: preamble and epilogue are passed over, a part's last line end
-// is its own only if there are two.
+// RFC 2046, section 5.1.1, the boundaries of its example. Preamble and epilogue are ignored. The last line end before a
+// boundary belongs to the boundary, a second one before it to the part.
 TEST(ParseFormData, PassesOverPreambleAndEpilogue) {
   const std::string body =
       "This is the preamble.  It is to be ignored, though it\r\nis a handy place for composers to include an\r\n"
@@ -152,7 +150,7 @@ TEST(ParseFormData, PassesOverPreambleAndEpilogue) {
                           "b||text/plain; charset=us-ascii|This DOES end with a linebreak.\r\n"));
 }
 
-// RFC 7578, section 4.2 and 5.1 in form; RFC 6266, section 5 and RFC 8187, section 3.2.3 in names.
+// The form of RFC 7578, sections 4.2 and 5.1, with names of RFC 6266, section 5, and RFC 8187, section 3.2.3.
 TEST(ParseFormData, ReadsNamesOfFiles) {
   EXPECT_EQ(NamesOf("name=\"data\"; filename=\"example.csv\""), "data|example.csv");
   EXPECT_EQ(NamesOf("name=data; filename=example.csv"), "data|example.csv");
@@ -163,10 +161,10 @@ TEST(ParseFormData, ReadsNamesOfFiles) {
   EXPECT_EQ(NamesOf("name=data; filename*=utf-8'en'%C2%A3%20rates"), "data|£ rates");
   EXPECT_EQ(NamesOf("name=data"), "data|");
   EXPECT_EQ(NamesOf("name=data; filename=\"\""), "data|");
-  EXPECT_EQ(NamesOf("name=data; filename=\"../../etc/passwd\""), "data|../../etc/passwd");  // nobody's path
+  EXPECT_EQ(NamesOf("name=data; filename=\"../../etc/passwd\""), "data|../../etc/passwd");  // never used as a path
 }
 
-// WHATWG HTML, section 4.10.21.8: a quote and line breaks are escaped, nothing else.
+// WHATWG HTML, section 4.10.21.8: only a quote and line breaks are escaped.
 TEST(ParseFormData, DecodesTheEscapesOfBrowsersOnly) {
   EXPECT_EQ(NamesOf("name=\"%22%0d%0A\"; filename=\"100%25 %41 %2 %\""), "\"\r\n|100%25 %41 %2 %");
   EXPECT_EQ(NamesOf("name=\"%2522\"; filename=\"%%22\""), "%2522|%\"");
@@ -189,7 +187,7 @@ TEST(ParseFormData, ReadsFieldsInAnyCaseAndOrder) {
 
 TEST(ParseFormData, TakesABoundaryForOneOnALineOfItsOwnOnly) {
   const std::string content = "--X\r\n--X\n\r\n--XY\r\n --X\r\nx--X\r\n--X-\r\n--X--y\r\n--x\r\n\n--X--\r\r\n- -X--";
-  // The first of these lines would end the part if it did not follow other bytes.
+  // At the start of the content the first of these lines would end the part; "-" prevents that.
   EXPECT_THAT(PartsOf(kType, Form(Named("name=a"), "-" + content)), ElementsAre("a|||-" + content));
 }
 
@@ -209,7 +207,7 @@ TEST(ParseFormData, ReadsContentOfAnyBytes) {
   EXPECT_THAT(PartsOf(kType, Form(Named("name=a"), "")), ElementsAre("a|||"));
 }
 
-// RFC 2046, section 5.1.1: body-part := MIME-part-headers [CRLF *OCTET], so the blank line may be the boundary's.
+// RFC 2046, section 5.1.1: body-part := MIME-part-headers [CRLF *OCTET], so the blank line may belong to the boundary.
 TEST(ParseFormData, ReadsAPartOfAHeadAlone) {
   EXPECT_THAT(PartsOf(kType, "--X\r\n" + Named("name=a") + "\r\n\r\n--X--"), ElementsAre("a|||"));
 }
@@ -295,7 +293,7 @@ TEST(ParseFormData, RefusesContentThatIsEncoded) {
 
 TEST(ParseFormData, RefusesNamesInOtherEncodings) {
   const auto fault = [](const std::string& value) { return FaultOf(Form(Named("name=a; filename*=" + value))); };
-  EXPECT_EQ(fault("iso-8859-1'en'%A3%20rates"),  // RFC 5987's example, which RFC 8187 has no more
+  EXPECT_EQ(fault("iso-8859-1'en'%A3%20rates"),  // RFC 5987's example, which is not in RFC 8187
             "part 1 of the form has the filename* \"iso-8859-1'en'%A3%20rates\"; write UTF-8''name, or "
             "filename=\"name\"");
   EXPECT_THAT(fault("a.csv"), HasSubstr("write UTF-8''name"));
@@ -341,7 +339,7 @@ TEST(ParseFormData, LimitsTheNumberOfParts) {
   EXPECT_EQ(FaultOf(body + part + "--X--"), "the form has more than 20000 parts; send it in several");
 }
 
-// What began again at every line, or at every byte of a line, would not be through with them today.
+// A parser that restarts at every line, or at every byte of a line, would need quadratic time.
 TEST(ParseFormData, ReadsLongBodiesOfAlmostBoundaries) {
   constexpr std::size_t kBytes = std::size_t{1} << 21;
   const std::string head = "--X\r\n" + Named("name=a") + "\r\n\r\n";

@@ -33,7 +33,7 @@ TEST(Field, ThatComesTwiceIsTheFirst) {
   EXPECT_EQ(request.Field("x"), "1");
 }
 
-TEST(Field, HasOnlyLettersOfTwoCases) {  // RFC 9110, section 5.1: '@' and '`' are 0x20 apart as 'A' and 'a' are
+TEST(Field, HasOnlyLettersOfTwoCases) {  // RFC 9110, section 5.1; '@' and '`' differ by 0x20 like 'A' and 'a'
   const HttpRequest request = {"GET", "/", {{"^", "1"}}, ""};
   EXPECT_EQ(request.Field("~"), std::nullopt);
 }

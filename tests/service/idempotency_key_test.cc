@@ -20,10 +20,10 @@ std::string KeyOf(const std::string& value) {
 }
 
 TEST(IdempotencyKey, IsWhatTheClientWrote) {
-  // The example of draft-ietf-httpapi-idempotency-key-header, section 2.1, with its quotes; and a bare one.
+  // The example of draft-ietf-httpapi-idempotency-key-header, section 2.1, with its quotes, and without quotes.
   EXPECT_EQ(KeyOf("\"8e03978e-40d5-43e8-bc93-6894a57f9324\""), "\"8e03978e-40d5-43e8-bc93-6894a57f9324\"");
   EXPECT_EQ(KeyOf("8e03978e-40d5-43e8-bc93-6894a57f9324"), "8e03978e-40d5-43e8-bc93-6894a57f9324");
-  EXPECT_EQ(KeyOf(" \tk\t "), "k");  // RFC 9110, section 5.5: blanks about a value are none of it
+  EXPECT_EQ(KeyOf(" \tk\t "), "k");  // RFC 9110, section 5.5: surrounding blanks are not part of the value
   std::string visible;
   for (char c = '!'; c <= '~'; ++c) visible += c;
   EXPECT_EQ(KeyOf(visible), visible);

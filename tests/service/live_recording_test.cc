@@ -28,7 +28,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-// What record_pendulum wrote above the rows of a simulated logger.
+// The header that record_pendulum writes for a simulated logger.
 constexpr const char* kHead =
     "# pendulum_logger version 1.0, Arduino Uno, reference: supply voltage (AVcc)\n"
     "# run 1 of this logger, begun 2026-05-06T07:08:09Z\n# sample_rate_hz: 200\n# resolution: 1\n# range: 0,1023\n"
@@ -62,14 +62,14 @@ class LiveRecordingTest : public testing::Test {
   void Append(const std::string& text) const { std::ofstream(part_, std::ios::binary | std::ios::app) << text; }
   void Begin(const std::string& text) const { std::ofstream(part_, std::ios::binary | std::ios::trunc) << text; }
 
-  /// As record_pendulum ends a run: the whole recording under its name, and then no part.
+  /// Ends a run like record_pendulum: the complete recording gets its name, then the part file is removed.
   void End(const std::string& text) const {
     std::ofstream(folder_ / "whole", std::ios::binary) << text;
     fs::rename(folder_ / "whole", run_);
     fs::remove(part_);
   }
 
-  /// "state samples unit rate" once what is there has been read.
+  /// Reads the available data and returns "state samples unit rate".
   std::string Look() {
     live_.Poll();
     const Json json = Json::parse(live_.StatusJson());
@@ -78,7 +78,7 @@ class LiveRecordingTest : public testing::Test {
            " " + json["rate_hz"].dump();
   }
 
-  /// What a listener hears after everything has been read.
+  /// The events for a listener after all data has been read.
   std::vector<Event> Hear(const NextEvents& next) {
     live_.Poll();
     const EventText events = next();
@@ -91,7 +91,7 @@ class LiveRecordingTest : public testing::Test {
   LiveRecording live_{run_};
 };
 
-/// The names of events, and of states what they are.
+/// The names of events; for a state event the state.
 std::vector<std::string> NamesOf(const std::vector<Event>& events) {
   std::vector<std::string> names;
   for (const auto& [name, data] : events) names.push_back(name == "state" ? data["state"].get<std::string>() : name);
@@ -106,7 +106,7 @@ std::vector<double> NumbersOf(const std::vector<Event>& events, const std::strin
   return numbers;
 }
 
-/// Rows at a rate, of a swing in counts that decays.
+/// Rows of a decaying swing in counts, at a sampling rate.
 std::string Rows(int first, int end, double rate = 200) {
   std::string rows;
   for (int i = first; i < end; ++i) {
@@ -131,7 +131,7 @@ TEST_F(LiveRecordingTest, FollowsARunFromItsHeadToItsEnd) {
   Begin("");
   EXPECT_EQ(Look(), "waiting 0  null");
   Append(kHead);
-  EXPECT_EQ(Look(), "waiting 0  null");  // no column yet
+  EXPECT_EQ(Look(), "waiting 0  null");  // no column names yet
   Append("time_s,adc_counts\n");
   EXPECT_EQ(Look(), "recording 0 counts 200.0");
   Append("0,500\n0.005,501\n");
@@ -167,7 +167,7 @@ TEST_F(LiveRecordingTest, TakesWholeLinesOnly) {
   EXPECT_EQ(*live_.Bytes(), kCounts + "0,500\n0.005,501\r\n");
 }
 
-// What came after the time that was asked for is in the part alone.
+// Rows after the requested time are only in the part file.
 TEST_F(LiveRecordingTest, ReadsTheWholeRecordingOnceItIsThere) {
   Begin(kCounts + Rows(0, 1218));
   const NextEvents next = live_.Listen();
@@ -205,7 +205,7 @@ TEST_F(LiveRecordingTest, BeginsAnewWithAnotherRun) {
   EXPECT_EQ(Look(), "recording 2 counts 200.0");
   End(kCounts + Rows(0, 2));
   EXPECT_EQ(Look(), "ended 2 counts 200.0");
-  End(kCounts + Rows(0, 5));  // of which no part was seen
+  End(kCounts + Rows(0, 5));  // its part file was never seen
   EXPECT_EQ(Look(), "ended 5 counts 200.0");
 }
 
@@ -221,7 +221,7 @@ TEST_F(LiveRecordingTest, ReadsAnyBytes) {
   std::string noise;
   std::uint32_t state = 1;
   for (int i = 0; i < 1'000'000; ++i) {
-    state = state * 1664525 + 1013904223;  // Numerical Recipes, section 7.1
+    state = state * 1664525 + 1013904223;  // random numbers: Numerical Recipes, section 7.1
     noise += static_cast<char>(state >> 24);
   }
   Begin(noise);
@@ -309,17 +309,17 @@ TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsASecondWithTheirExtremes) {
   for (int step = 0; step < 10 * kSeconds; ++step) {
     const int first = step * kRate / 10;
     std::string rows = Rows(first, first + kRate / 10, kRate);
-    if (step == 123) rows.replace(rows.rfind(',') + 1, std::string::npos, "1023\n");  // one sample that sticks out
+    if (step == 123) rows.replace(rows.rfind(',') + 1, std::string::npos, "1023\n");  // one extreme sample
     Append(rows);
     hear();
   }
   EXPECT_TRUE(std::ranges::adjacent_find(times, std::ranges::greater_equal()) == times.end());
   EXPECT_EQ(std::ranges::max(values), 1023);
   EXPECT_GT(times.back(), kSeconds - 0.1);
-  // The first event is all of the run so far, a tenth of a second.
+  // The first event has the whole run so far, a tenth of a second.
   for (double second = 0.1; second + 1 <= kSeconds; second += 0.13) {
     const auto count = std::ranges::count_if(times, [&](double t) { return t >= second && t < second + 1; });
-    EXPECT_LE(count, 52) << second;  // two more where a block begins before the second does
+    EXPECT_LE(count, 52) << second;  // two more if a block begins before the second
     EXPECT_GE(count, 40) << second;
   }
 }
@@ -365,7 +365,7 @@ TEST_F(LiveRecordingTest, KeepsALongRunThinnedWithItsEndsAndExtremes) {
 
 TEST_F(LiveRecordingTest, RefusesToGiveMoreThanAFitReads) {
   Begin(kCounts);
-  fs::resize_file(part_, (std::uintmax_t{1} << 29) + 1);  // a hole: it takes no room
+  fs::resize_file(part_, (std::uintmax_t{1} << 29) + 1);  // a sparse file: it uses no disk space
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Optional;
 
-/// What the lines of a recording make of them.
+/// The result of reading lines of a recording.
 struct Read {
   explicit Read(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
@@ -92,7 +92,8 @@ TEST(LiveRows, TellsTheRateThatTheFileSays) {
   EXPECT_FALSE(Read({"time_s,adc_counts", "# sample_rate_hz: 200"}).rows.rate());
 }
 
-// By hand: 1.5 counts - 20 is the angle in degrees; in radians 180/pi times as much, 130 rad = 7448.4513 deg.
+// Expected values: 1.5 counts - 20 is the angle in degrees; in radians it is multiplied by 180/pi, 130 rad = 7448.4513
+// deg.
 TEST(LiveRows, ShowsCalibratedCountsInDegrees) {
   const Read deg({CalibrationLine("deg", "counts"), "time_s,adc_counts", "0,100", "1,0"});
   EXPECT_EQ(deg.rows.unit(), "deg");

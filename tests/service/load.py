@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Many clients in one thread that take little of the machine: requests are bytes made beforehand, answers compared as bytes."""
+"""Many clients in one thread with little CPU time: requests are prepared bytes, answers are compared as bytes."""
 
 import selectors
 import socket
@@ -7,7 +7,7 @@ import time
 
 
 class Request:
-    """What is sent, and what must come back; a body of None may be anything."""
+    """A request and its expected answer; a body of None matches any body."""
 
     def __init__(self, method, target, body=b"", content_type=None, status=200, expected=None):
         head = f"{method} {target} HTTP/1.1\r\nHost: localhost\r\n"
@@ -19,7 +19,7 @@ class Request:
 
 
 class Outcome:
-    """What the clients saw."""
+    """Statistics of the clients."""
 
     def __init__(self):
         self.times, self.fits, self.refused, self.errors = [], 0, 0, []
@@ -30,7 +30,7 @@ class Outcome:
 
 
 class Client:
-    """One connection that is kept, with one request under way."""
+    """One persistent connection with one request at a time."""
 
     def __init__(self, port, requests, first, outcome):
         self.port, self.requests, self.next, self.outcome = port, requests, first, outcome
@@ -38,7 +38,7 @@ class Client:
         self.answered = 0
 
     def begin(self, selector):
-        """Sends its next request, on a new connection where the last was closed."""
+        """Sends its next request, on a new connection if the last one was closed."""
         if self.connection is None:
             self.connection = socket.create_connection(("127.0.0.1", self.port), 60)
             self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -56,11 +56,11 @@ class Client:
         except BlockingIOError:
             pass
         except OSError:
-            self.unsent = b""  # an answer may be there already
+            self.unsent = b""  # the server may have answered already
         selector.modify(self.connection, selectors.EVENT_READ | (selectors.EVENT_WRITE if self.unsent else 0), self)
 
     def receive(self, selector):
-        """Takes what has come; whether the answer is whole, or there will be none."""
+        """Reads available bytes; returns whether the answer is complete or will not come."""
         try:
             content = self.connection.recv(1 << 18)
         except BlockingIOError:
@@ -83,7 +83,7 @@ class Client:
         return True
 
     def fail(self, selector):
-        """The server ended the connection: its right between two requests, an error within one."""
+        """The server closed the connection: allowed between two requests, an error within one."""
         if self.answered == 0 or self.received or time.monotonic() - self.begun > 1:
             self.outcome.errors.append(f"{self.request.name}: ended after {bytes(self.received[:200])!r}")
         else:
@@ -110,7 +110,8 @@ class Client:
 
 
 def drive(port, requests, clients, seconds, every_tenth_second=lambda: None):
-    """So many clients at once for so long, each going round the requests from a place of its own; then what is under way ends."""
+    """Runs `clients` clients for `seconds`; each cycles through the requests from a different start. Running requests finish at
+    the end."""
     outcome, selector = Outcome(), selectors.DefaultSelector()
     everyone = [Client(port, requests, i * 5, outcome) for i in range(clients)]
     end, next_tick, under_way = time.monotonic() + seconds, 0, len(everyone)

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 class MalformedRequestsTest : public Served {
  protected:
-  /// Sends it, with a request behind that must not be taken for one, and gives all that comes until the end.
+  /// Sends bytes followed by a second request, which must not be parsed, and returns everything received until the end.
   RawAnswer Ask(const std::string& bytes) {
     RawClient client = Connect();
     client.Send(bytes + Get("/smuggled"));

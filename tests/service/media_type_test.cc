@@ -22,7 +22,7 @@ MediaType TypeOf(const std::string& text) {
   return type ? *type : MediaType();
 }
 
-/// Why a media type is refused.
+/// The error message for a refused media type.
 std::string FaultOf(const std::string& text) {
   const auto type = ParseMediaType(text);
   if (type) return "not refused";
@@ -59,7 +59,7 @@ TEST(ParseMediaType, AllowsBlanksAndNothingAboutSemicolons) {
   EXPECT_THAT(TypeOf("text/csv;").parameters, IsEmpty());
 }
 
-// RFC 9110, section 5.6.4: a backslash escapes whatever follows.
+// RFC 9110, section 5.6.4: a backslash escapes any character.
 TEST(ParseMediaType, ReadsQuotedValues) {
   EXPECT_THAT(TypeOf(R"(a/b; c="x; y=\"z\" \\ \q"; d="")").parameters,
               ElementsAre(Pair("c", R"(x; y="z" \ q)"), Pair("d", "")));
@@ -80,7 +80,8 @@ TEST(ParseMediaType, RefusesParametersThatAreNone) {
   const auto fault = [](const std::string& parameters) { return FaultOf("text/csv;" + parameters); };
   EXPECT_EQ(fault("charset"), "the parameters of the content type have \"charset\", which is not name=value");
   EXPECT_THAT(fault("=utf-8"), HasSubstr("which is not name=value"));
-  EXPECT_THAT(fault("charset =utf-8"), HasSubstr("which is not name=value"));  // RFC 9110, 5.6.6: no blanks there
+  EXPECT_THAT(fault("charset =utf-8"), HasSubstr("which is not name=value"));  // RFC 9110, 5.6.6: no blanks are allowed
+                                                                               // there
   EXPECT_THAT(fault("charset= utf-8"), HasSubstr("whose value must stand in quotes"));
   EXPECT_THAT(fault("charset=;a=b"), HasSubstr("whose value must stand in quotes"));
   EXPECT_THAT(fault("charset=\xC3\xA9"), HasSubstr("whose value must stand in quotes"));
@@ -94,8 +95,8 @@ TEST(ParseMediaType, RefusesParametersThatAreNone) {
             "the parameters of the content type have \"a\", which is given twice; keep one of them");
 }
 
-// What browsers do with the name of a file: WHATWG HTML, section 4.10.21.8 (multipart/form-data encoding), escapes
-// quotes and line breaks, a backslash not.
+// Browsers encode file names by WHATWG HTML, section 4.10.21.8 (multipart/form-data encoding): quotes and line breaks
+// are escaped, a backslash is not.
 TEST(ParseFieldParameters, LeavesABackslashThatEscapesNoQuote) {
   EXPECT_THAT(ParametersOf(R"(;filename="C:\runs\a.csv")", Backslash::kEscapesQuotes),
               ElementsAre(Pair("filename", R"(C:\runs\a.csv)")));
@@ -124,7 +125,7 @@ TEST(ParseFieldParameters, ReadsManyOfThem) {
 }
 
 TEST(IsToken, KnowsItsLetters) {
-  EXPECT_TRUE(IsToken("!#$%&'*+-.^_`|~09azAZ"));  // RFC 9110, section 5.6.2: all of them
+  EXPECT_TRUE(IsToken("!#$%&'*+-.^_`|~09azAZ"));  // all characters of RFC 9110, section 5.6.2
   for (const char c : std::string("\"(),/:;<=>?@[\\]{} \t\x7F\x80\xFF") + '\0') {
     EXPECT_FALSE(IsToken("a" + std::string(1, c))) << static_cast<int>(c);
   }

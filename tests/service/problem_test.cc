@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using std::chrono::seconds;
 
-/// The value of a field of an answer; "none" where it has not exactly one.
+/// The value of a field of an answer; "none" unless there is exactly one.
 std::string FieldOf(const HttpResponse& response, const std::string& name) {
   std::vector<std::string> values;
   for (const HttpField& field : response.fields) {
@@ -39,7 +39,7 @@ std::string Figures(const Problem& problem) {
          (json["exit_code"].is_null() ? "-" : json["exit_code"].dump());
 }
 
-// RFC 9457, section 3: the five members, and that extensions stand beside them.
+// RFC 9457, section 3: the five members, and extensions at the same level.
 TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
   const HttpResponse response = ProblemResponse(ProblemOf(Status{StatusCode::kDataLoss, "run.csv:118: no time"}));
   EXPECT_EQ(response.status, 422);
@@ -51,7 +51,7 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
             "\n");
 }
 
-// The exit codes are those that the tools give (README.md).
+// The exit codes are those of the tools (README.md).
 TEST(ProblemOf, GivesEachStatusCodeItsHttpStatusAndExitCode) {
   const auto figures = [](StatusCode code) { return Figures(ProblemOf(Status{code, "why"})); };
   EXPECT_EQ(figures(StatusCode::kInvalidArgument), "400 wrong_request 2");
@@ -82,7 +82,7 @@ TEST(ProblemOf, GivesTheRefusalsOfHttpTheirCodes) {
 
 TEST(ProblemOf, TakesAStatusItDoesNotKnowForOneOfItsClass) {
   EXPECT_EQ(ProblemOf(418, "why").status(), 400);
-  EXPECT_EQ(ProblemOf(422, "why").status(), 400);  // several kinds have it
+  EXPECT_EQ(ProblemOf(422, "why").status(), 400);  // several kinds share this status
   EXPECT_EQ(ProblemOf(0, "why").status(), 400);
   EXPECT_EQ(ProblemOf(505, "why").status(), 500);
   EXPECT_EQ(ProblemOf(999, "why").status(), 500);
@@ -98,7 +98,7 @@ TEST(Problem, OfEachKindHasACodeAndATitleOfItsOwn) {
   }
   EXPECT_EQ(codes.size(), kKinds);
   EXPECT_EQ(titles.size(), kKinds);
-  EXPECT_EQ(static_cast<int>(ProblemKind::kCannotWrite), kKinds - 1);  // the last
+  EXPECT_EQ(static_cast<int>(ProblemKind::kCannotWrite), kKinds - 1);  // the last one
   EXPECT_EQ(Figures({ProblemKind::kKeyReused, "why", {}}), "422 key_reused -");
 }
 
@@ -125,7 +125,7 @@ TEST(RetryLater, SaysHowManySeconds) {
   EXPECT_EQ(Figures(RetryLater(ProblemKind::kConflict, "why")), "409 conflict -");
 }
 
-// RFC 6750, section 3: one parameter at least, and no error where nothing was shown.
+// RFC 6750, section 3: at least one parameter, and no error if the request had no token.
 TEST(Unauthorized, ChallengesTheClient) {
   const HttpResponse none = ProblemResponse(Unauthorized("there is no token"));
   EXPECT_EQ(none.status, 401);
@@ -144,7 +144,7 @@ TEST(MethodNotAllowed, NamesThoseThatAre) {
             R"(the method "PO\x0d\x0aST" is none of this resource; it has GET, DELETE)");
 }
 
-// Unicode 15, section 3.9: U+FFFD for a byte that is none of UTF-8; RFC 8259, section 7, for the rest.
+// Unicode 15, section 3.9: U+FFFD for each invalid byte of UTF-8; the rest follows RFC 8259, section 7.
 TEST(ProblemResponse, CarriesADetailOfAnyBytes) {
   EXPECT_EQ(JsonOf({ProblemKind::kUnusableData, "a\xFF\"\\\n" + std::string(1, '\0') + "π", {}})["detail"],
             "a\uFFFD\"\\\n" + std::string(1, '\0') + "π");

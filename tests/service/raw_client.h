@@ -20,16 +20,16 @@
 
 namespace pendulum {
 
-/// What came back.
+/// The answer to a request.
 struct RawAnswer {
-  int status = 0;  ///< 0: nothing did.
+  int status = 0;  ///< 0: no answer.
   std::string head, body;
-  std::map<std::string, std::string> fields;  ///< By names in small letters.
+  std::map<std::string, std::string> fields;  ///< Values by field names in lower case.
 
   std::string operator[](const std::string& name) const { return fields.contains(name) ? fields.at(name) : ""; }
 };
 
-/// The bytes of one connection to 127.0.0.1, as they are. What does not come within ten seconds does not come.
+/// A connection to 127.0.0.1 at the level of bytes. Reads time out after ten seconds.
 class RawClient {
  public:
   explicit RawClient(std::uint16_t port, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -56,7 +56,7 @@ class RawClient {
 
   bool is_connected() const { return is_connected_; }
 
-  /// False where the other side takes no more.
+  /// False if the other side accepts no more bytes.
   bool Send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -66,7 +66,7 @@ class RawClient {
     return true;
   }
 
-  /// Reads on until `end` has come, which is taken away with what is before it; all there is if it never comes.
+  /// Reads up to and including `end` and returns it; returns all bytes if `end` never arrives.
   std::string ReadUntil(const std::string& end) {
     std::size_t found = 0;
     while ((found = ahead_.find(end)) == std::string::npos) {
@@ -75,7 +75,7 @@ class RawClient {
     return TakeAhead(found + end.size());
   }
 
-  /// One answer, whose body has a Content-Length, comes in chunks or ends with the connection.
+  /// Reads one answer, whose body has a Content-Length, is chunked, or ends with the connection.
   RawAnswer Read(bool is_of_head = false) {
     RawAnswer answer;
     answer.head = ReadUntil("\r\n\r\n");
@@ -99,13 +99,13 @@ class RawClient {
     return Read(bytes.starts_with("HEAD "));
   }
 
-  /// Until the end of the connection.
+  /// Reads until the end of the connection.
   std::string ReadAll() {
     while (ReadMore()) continue;
     return std::exchange(ahead_, "");
   }
 
-  /// Whether the other side has ended, or ends within ten seconds, and sends nothing before.
+  /// Whether the other side closes the connection within ten seconds without sending anything.
   bool IsEnded() {
     std::array<char, 1> byte = {};
     return ahead_.empty() && ::recv(socket_, byte.data(), byte.size(), 0) != 1 && errno != EAGAIN;
@@ -117,7 +117,7 @@ class RawClient {
     if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   }
 
-  /// Closes so that the other side is told of it as of an error.
+  /// Closes with a reset, which the other side sees as an error.
   void Reset() {
     const linger at_once = {1, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);

@@ -29,7 +29,7 @@ Query QueryOf(const std::string& query) {
   return parsed ? parsed->query : Query();
 }
 
-/// Why a target is refused.
+/// The error message for a refused target.
 std::string FaultOf(const std::string& target) {
   const auto parsed = ParseTarget(target);
   if (parsed) return "not refused";
@@ -49,13 +49,13 @@ TEST(ParseTarget, GivesPathAndQueryOfAPlainTarget) {
   EXPECT_EQ(PathOf("/app.js"), "/app.js");
 }
 
-// RFC 3986, section 2.1: the digits in either case; 2.3: escaped or not, unreserved characters are the same.
+// RFC 3986, section 2.1: digits in either case; 2.3: an escaped unreserved character equals the character.
 TEST(ParseTarget, DecodesEscapesInThePath) {
   EXPECT_EQ(PathOf("/v1/%66its"), "/v1/fits");
   EXPECT_EQ(PathOf("/%7Euser/%7euser/~"), "/~user/~user/~");
-  EXPECT_EQ(PathOf("/a%20b+c"), "/a b+c");  // a plus sign is one, but in a query
+  EXPECT_EQ(PathOf("/a%20b+c"), "/a b+c");  // a plus sign means a blank only in a query
   EXPECT_EQ(PathOf("/100%25"), "/100%");
-  EXPECT_EQ(PathOf("/%2525"), "/%25");  // once only
+  EXPECT_EQ(PathOf("/%2525"), "/%25");  // decoded only once
   EXPECT_EQ(PathOf("/a%3Fb%23c"), "/a?b#c");
   EXPECT_EQ(PathOf("/a:@!$&'()*,;=-._"), "/a:@!$&'()*,;=-._");
 }
@@ -66,7 +66,7 @@ TEST(ParseTarget, ReadsLettersBeyondAscii) {
   EXPECT_THAT(QueryOf("name=%F0%9F%95%B0"), ElementsAre(Pair("name", "\U0001F570")));
 }
 
-// RFC 9112, section 3.2.2: a server must accept the absolute form; RFC 3986, section 3.1: schemes in either case.
+// RFC 9112, section 3.2.2: a server must accept the absolute form; RFC 3986, section 3.1: schemes ignore case.
 TEST(ParseTarget, TakesTheAbsoluteForm) {
   EXPECT_EQ(PathOf("http://www.example.org/pub/WWW/TheProject.html"), "/pub/WWW/TheProject.html");
   EXPECT_EQ(PathOf("HTTPS://localhost:8080/a?b=c"), "/a");
@@ -116,7 +116,7 @@ TEST(ParseTarget, RefusesEscapesThatAreNone) {
             "the path segment \"run%\" has a % without two hexadecimal digits behind it; write a percent sign as %25");
 }
 
-// The table of ill-formed sequences: Unicode 15, table 3-8 and those after it; RFC 3629, section 10.
+// Ill-formed sequences: Unicode 15, table 3-8 and the following tables; RFC 3629, section 10.
 TEST(ParseTarget, RefusesBytesThatAreNoUtf8) {
   for (const char* bytes :
        {"%80",          "%FF",          "%C0%80",    "%C0%AF",    "%C1%BF",       "%E0%80%AF",    "%E0%9F%BF",
@@ -141,7 +141,7 @@ TEST(ParseTarget, RefusesControlCharacters) {
 
 // ---- The query -----------------------------------------------------------------------------------------------------
 
-// WHATWG, URL Standard, section 5.1 (application/x-www-form-urlencoded parsing): its own example, and + as a blank.
+// WHATWG, URL Standard, section 5.1 (application/x-www-form-urlencoded parsing): its example, and + as a blank.
 TEST(ParseTarget, ReadsTheQueryAsFormsWriteIt) {
   EXPECT_THAT(QueryOf("a=b&c"), ElementsAre(Pair("a", "b"), Pair("c", "")));
   EXPECT_THAT(QueryOf("a+b=c+d&e=%2B"), ElementsAre(Pair("a b", "c d"), Pair("e", "+")));
@@ -152,7 +152,8 @@ TEST(ParseTarget, ReadsTheQueryAsFormsWriteIt) {
   EXPECT_THAT(QueryOf("a=%26%3D%3F%23&b=/?:@"), ElementsAre(Pair("a", "&=?#"), Pair("b", "/?:@")));
 }
 
-// urllib.parse.urlencode({"name": "Öl & Wasser/1+1", "init": "inertia=0.01,viscous=2e-3", "path": "C:\\a"}) of Python.
+// Output of Python's urllib.parse.urlencode({"name": "Öl & Wasser/1+1", "init": "inertia=0.01,viscous=2e-3", "path":
+// "C:\\a"}).
 TEST(ParseTarget, ReadsWhatPythonWrites) {
   EXPECT_THAT(
       QueryOf("name=%C3%96l+%26+Wasser%2F1%2B1&init=inertia%3D0.01%2Cviscous%3D2e-3&path=C%3A%5Ca"),

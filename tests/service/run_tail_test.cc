@@ -24,7 +24,7 @@ class RunTailTest : public testing::Test {
   void Write(const std::string& text) const { std::ofstream(part_, std::ios::binary | std::ios::trunc) << text; }
   void Append(const std::string& text) const { std::ofstream(part_, std::ios::binary | std::ios::app) << text; }
 
-  /// What one look finds: its lines, behind "new: " where they are of another file.
+  /// The lines of one look, after "new: " if they come from another file.
   std::string Look() {
     const RunTail::News news = tail_.Look();
     EXPECT_FALSE(news.has_more);
@@ -56,7 +56,7 @@ TEST_F(RunTailTest, SaysWhenTheFileIsAnother) {
   EXPECT_EQ(Look(), "new: 2\n");
   Write("third, longer\n");  // longer, but other bytes
   EXPECT_EQ(Look(), "new: third, longer\n");
-  std::ofstream(folder_ / "other") << "third, longer\nand more\n";  // begins alike, but is another file
+  std::ofstream(folder_ / "other") << "third, longer\nand more\n";  // the same beginning, but another file
   fs::rename(folder_ / "other", part_);
   EXPECT_EQ(Look(), "new: third, longer\nand more\n");
   fs::rename(part_, run_);  // the same file under the other name
@@ -89,7 +89,7 @@ TEST_F(RunTailTest, OpensNothingButFiles) {
   EXPECT_EQ(Look(), "");
   EXPECT_LT(OpenRegularFile(part_), 0);
   fs::remove(part_);
-  ASSERT_EQ(::mkfifo(part_.c_str(), 0600), 0);  // with nobody at its other end, who opens it waits
+  ASSERT_EQ(::mkfifo(part_.c_str(), 0600), 0);  // opening it would block, because the other end is not open
   EXPECT_EQ(Look(), "");
   EXPECT_LT(OpenRegularFile(part_), 0);
   EXPECT_LT(OpenRegularFile(folder_ / "absent"), 0);

@@ -21,8 +21,8 @@
 
 namespace pendulum {
 
-/// Answers with the request itself. Paths that begin otherwise do what they are called: /fit goes to the lane of fits
-/// and waits for `gate`, /refused is refused by its head, /throw throws.
+/// Answers with the request itself. Some paths have a special behavior: /fit uses the lane of fits and waits for
+/// `gate`, /refused is refused by its head, /throw throws.
 class EchoHandler : public HttpHandler {
  public:
   Lane LaneOf(const HttpRequest& request) const override {
@@ -57,10 +57,10 @@ class EchoHandler : public HttpHandler {
   std::atomic<int> calls = 0, waiting = 0;
   std::latch gate{1};
   std::mutex mutex;
-  std::function<HttpResponse(const HttpRequest&)> answer;  ///< Instead of the request itself.
+  std::function<HttpResponse(const HttpRequest&)> answer;  ///< Used instead of the request itself.
 };
 
-/// A server with limits that tests can reach, on a free port, until the end of the test.
+/// A server on a free port during a test, with limits small enough to reach.
 class Served : public testing::Test {
  protected:
   Served() {
@@ -95,7 +95,7 @@ class Served : public testing::Test {
 
   RawClient Connect(int receive_buffer = 0) const { return RawClient(server_->port(), receive_buffer); }
 
-  /// Waits for what other threads do, ten seconds at most: whether it has come true.
+  /// Waits at most ten seconds for a condition set by other threads; returns whether it became true.
   static bool Eventually(const std::function<bool()>& is_true) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (!is_true()) {
@@ -125,7 +125,7 @@ inline std::string Get(const std::string& target, const std::string& fields = ""
   return "GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + fields + "\r\n";
 }
 
-/// One with a body of known length.
+/// A request with a body of known length.
 inline std::string Post(const std::string& target, const std::string& body, const std::string& fields = "") {
   return "POST " + target + " HTTP/1.1\r\nHost: localhost\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" +
          fields + "\r\n" + body;

@@ -16,8 +16,8 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-/// /events tells the numbers 1 to 3, one at a time; /endless goes on, /silent says nothing, /large much, /broken
-/// throws.
+/// /events sends the numbers 1 to 3, one at a time; /endless never ends, /silent sends nothing, /large sends large
+/// events, /broken throws.
 class ServerEventsTest : public Served {
  protected:
   ServerEventsTest() {
@@ -40,7 +40,7 @@ class ServerEventsTest : public Served {
     };
   }
 
-  /// One whose stream has begun.
+  /// A client whose stream has begun.
   RawClient Listening(const std::string& target) {
     RawClient client = Connect();
     client.Send(Get(target));

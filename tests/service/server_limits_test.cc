@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class ServerLimitsTest : public Served {
  protected:
-  /// Occupies all threads of the fits and their queue: 2 that run, 3 that wait.
+  /// Fills the threads of the fits and their queue: 2 running and 3 waiting requests.
   std::vector<RawClient> FillFits() {
     std::vector<RawClient> clients;
     for (int i = 0; i < 5; ++i) {
@@ -95,7 +95,7 @@ TEST_F(ServerLimitsTest, AllBodiesTogetherHaveALimit) {
   options_.max_connections = 20;
   Start();
   std::vector<RawClient> clients;
-  for (int i = 0; i < 3; ++i) {  // all but one byte of what they announce, 3 times 99999 of 300000
+  for (int i = 0; i < 3; ++i) {  // each announces 99999 of 300000 bytes and sends all but one of them
     clients.push_back(Connect());
     clients.back().Send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n" + std::string(99'999, 'x'));
   }
@@ -128,7 +128,7 @@ TEST_F(ServerLimitsTest, WhatWaitsTooLongIsNotBegun) {
   options_.wait_time = milliseconds(50);
   Start();
   std::vector<RawClient> fits = FillFits();
-  std::this_thread::sleep_for(milliseconds(100));  // longer than it may take, whatever else the machine does
+  std::this_thread::sleep_for(milliseconds(100));  // longer than the limit, also on a busy machine
   handler_.gate.count_down();
   std::vector<int> statuses;
   for (RawClient& fit : fits) statuses.push_back(fit.Read().status);
@@ -175,7 +175,7 @@ TEST_F(ServerLimitsTest, OneConnectionTooManyIsToldSo) {
   EXPECT_EQ(Connect().Ask(Get("/")).status, 200);
 }
 
-// Nobody keeps others out by holding connections that ask nothing, or that never come to the end of a head.
+// Connections without a request, or with an endless head, must not block other clients.
 TEST_F(ServerLimitsTest, WhoAsksNothingMakesRoom) {
   options_.max_connections = 4;
   options_.yield_time = milliseconds(0);
@@ -294,7 +294,7 @@ TEST_F(ServerLimitsTest, WithoutFileDescriptorsConnectionsWaitUntilThereAreSome)
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   const rlimit for_one_more = {static_cast<rlim_t>(lowest) + 1, before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &for_one_more), 0);
-  RawClient late = Connect();  // takes the last one, so that none is left to accept it with
+  RawClient late = Connect();  // takes the last file descriptor, so accept fails
   EXPECT_TRUE(late.is_connected());
   late.Send(Get("/late"));
   EXPECT_EQ(early.Ask(Get("/")).status, 200) << "meanwhile";

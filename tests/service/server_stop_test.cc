@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 
 class ServerStopTest : public Served {
  protected:
-  /// Stops, once `client` waits for a fit; its gate stays shut.
+  /// Stops the server while `client` waits for a fit; the gate stays closed.
   RawClient StopWithAFitUnderWay() {
     RawClient client = Connect();
     client.Send(Get("/fit"));

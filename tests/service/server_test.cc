@@ -295,7 +295,7 @@ TEST(Listen, TakesAnAddressOfIpVersion6) {
   options.address = "::1";
   options.port = 0;
   const auto server = Server::Listen(options, handler, nullptr);
-  // A machine may be without it, which the system says, not the address.
+  // A machine may lack this address; the system reports that when binding.
   EXPECT_TRUE(server ? (*server)->port() > 0 : server.error().code == StatusCode::kCannotWrite);
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A running serve_pendulum and its clients, for the tests of the service, and the command line's word to compare with."""
+"""A running serve_pendulum and its clients for the tests of the service, and the command line's output for comparison."""
 
 import http.client
 import json
@@ -17,7 +17,7 @@ import time
 import unittest
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "tools"))
-sys.path.append("/usr/lib/python3/dist-packages")  # Debian's modules, for a Python that is not Debian's
+sys.path.append("/usr/lib/python3/dist-packages")  # Debian's modules, for a Python from elsewhere
 
 from sanitizers import is_sanitized  # noqa: E402  (found by the path above)
 
@@ -37,7 +37,7 @@ SIMULATED = ["--model", "coulomb", "--rig", str(RIG), "--duration", "6", "--rate
 
 
 class Server:
-    """serve_pendulum on a free port of this machine, its store and its log in a folder."""
+    """serve_pendulum on a free port of this machine, with its store and its log in a folder."""
 
     def __init__(self, folder, *flags, port=0, environment=None):
         self.folder, self.flags, self.environment = pathlib.Path(folder), flags, environment or {}
@@ -45,7 +45,7 @@ class Server:
         self.start(port)
 
     def start(self, port=0):
-        """Begins, again after an end, and waits for the line that tells the port."""
+        """Starts or restarts it and waits for the line with the port."""
         environment = {name: value for name, value in os.environ.items() if name != "PENDULUM_TOKEN"}
         command = [TOOL, "--port", str(port), "--store", "fits.sqlite", *map(str, self.flags)]
         if self.process:
@@ -78,7 +78,7 @@ class Server:
         self.process.communicate(timeout=TIMEOUT_S)
 
     def stop(self, number=signal.SIGTERM):
-        """Ends it as an operator does; gives its exit code."""
+        """Stops it like an operator does; returns its exit code."""
         if self.is_alive():
             self.process.send_signal(number)
         self.process.communicate(timeout=TIMEOUT_S)
@@ -92,12 +92,12 @@ class Server:
         return socket.create_connection(("127.0.0.1", self.port), timeout)
 
     def ask(self, method, target, body=None, **headers):
-        """One request on a connection of its own; names of headers with _ for -."""
+        """Sends one request on a separate connection; in header names _ stands for -."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=TIMEOUT_S)
         try:
             try:
                 connection.request(method, target, body, {name.replace("_", "-"): value for name, value in headers.items()})
-            except OSError:  # it may have answered before it took everything
+            except OSError:  # it may answer before it has received everything
                 if connection.sock is None:
                     raise
                 return read_answer(connection.sock)
@@ -106,7 +106,7 @@ class Server:
             connection.close()
 
     def open(self, target, **headers):
-        """An answer that is still to be read, such as a stream of events; its close() ends the connection."""
+        """Returns an answer that is not read yet, such as a stream of events; its close() ends the connection."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=TIMEOUT_S)
         connection.request("GET", target, headers={"Connection": "close",
                                                    **{name.replace("_", "-"): value for name, value in headers.items()}})
@@ -126,17 +126,17 @@ class Server:
         return self.ask("POST", target, body, Content_Type=content_type, **headers)
 
     def raw(self, data, timeout=TIMEOUT_S):
-        """Sends bytes as they are; gives the answer to the one request in them, None where the connection ended without one."""
+        """Sends bytes unchanged; returns the answer to their one request, or None if the connection ended without an answer."""
         with self.connect(timeout) as connection:
             try:
                 connection.sendall(data)
             except OSError:
-                pass  # it may have answered and closed before it took everything
+                pass  # it may answer and close before it has received everything
             return read_answer(connection)
 
 
 class Response:
-    """Status, headers by their names in lower case, and body."""
+    """Status, headers by lower-case names, and body."""
 
     def __init__(self, status, headers, body):
         self.status, self.headers, self.body = status, headers, body
@@ -186,21 +186,21 @@ def json_part(name, value):
 
 
 def run_tool(name, *arguments, folder):
-    """Exit code, standard output and the last sentence on standard error, without the tool's name before it."""
+    """Exit code, standard output, and the last sentence on standard error without the tool's name."""
     done = subprocess.run([TOOLS / name, *map(str, arguments)], cwd=folder, capture_output=True, timeout=TIMEOUT_S)
     lines = [line for line in done.stderr.decode().splitlines() if not line.startswith(f"{name}: warning: ")]
     return done.returncode, done.stdout, lines[-1].removeprefix(f"{name}: ") if lines else ""
 
 
 def without_path(result, path):
-    """Result JSON of the command line as the service gives it."""
+    """Result JSON of the command line in the form of the service."""
     there = b'"path": ' + json.dumps(path, ensure_ascii=False).encode()
     assert result.count(there) == 1, result[:300]
     return result.replace(there, b'"path": null')
 
 
 def flags_of(options):
-    """FLAGS of a request as flags of the command line."""
+    """Flags of the command line for the flags of a request."""
     return [f"--{name}={value}" for name, value in options.items()]
 
 
@@ -209,7 +209,7 @@ def query_of(options):
 
 
 class Lab(unittest.TestCase):
-    """A folder of its own for each test, and servers in it."""
+    """A separate folder for each test, and servers in it."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="service_"))
@@ -230,7 +230,7 @@ class Lab(unittest.TestCase):
             self.assertNotIn(words, log, log[max(0, log.find(words)):][:4000].decode(errors="replace"))
 
     def check_problem(self, response, status, code, pattern="."):
-        """That an answer is a problem document (RFC 9457) that says what it should."""
+        """Checks that an answer is a problem document (RFC 9457) with this status, code and text."""
         self.assertIsNotNone(response, "the connection ended without an answer")
         self.assertEqual((response.status, response.type), (status, "application/problem+json"), response)
         problem = response.json()
@@ -244,19 +244,19 @@ class Lab(unittest.TestCase):
         return problem
 
     def check_same_problem(self, response, exit_code, sentence):
-        """That an answer says what the command line said, which left with that exit code."""
+        """Checks that an answer has the sentence of the command line, which had that exit code."""
         status, code = EXIT_TO_PROBLEM[exit_code]
         problem = self.check_problem(response, status, code)
         self.assertEqual((problem["detail"], problem["exit_code"]), (sentence, exit_code))
 
     def fitted(self, path, *flags):
-        """Bytes of the result as the service gives it, by the command line; path is relative to the test's folder or absolute."""
+        """Result of the command line in the service's form, as bytes; path is relative to the test's folder or absolute."""
         code, out, said = run_tool("fit_pendulum", "--data", path, "--json", "-", *flags, folder=self.folder)
         self.assertIn(code, (0, 1), said)
         return without_path(out, str(path))
 
     def simulate(self, count, *flags, seed=1, name="run.csv"):
-        """Names of so many recordings in the test's folder."""
+        """Simulates `count` recordings in the test's folder and returns their names."""
         before = set(self.folder.glob("*.csv"))
         code, _, said = run_tool("simulate_pendulum", *SIMULATED, "--count", count, "--seed", seed, *flags, "--out", name,
                                  folder=self.folder)
@@ -264,7 +264,7 @@ class Lab(unittest.TestCase):
         return sorted(path.name for path in set(self.folder.glob("*.csv")) - before)
 
     def wait_until(self, holds, what, seconds=TIMEOUT_S):
-        """What holds() gives once that is true."""
+        """Waits until holds() is true and returns its value."""
         end = time.monotonic() + seconds
         while not (found := holds()):
             self.assertLess(time.monotonic(), end, f"never: {what}")
@@ -291,14 +291,14 @@ class Served(Lab):
         assert not any(words in cls.server.log() for words in SANITIZERS_SAY), cls.server.log().decode(errors="replace")[-8000:]
 
     def check_lives(self):
-        """That the same server goes on to answer."""
+        """Checks that the same server still answers."""
         self.assertTrue(self.server.is_alive(), self.server.log()[-3000:])
         response = self.server.get("/healthz")
         self.assertEqual((response.status, response.json()["status"]), (200, "ok"))
 
 
 class Curl(Served):
-    """Requests by curl, files of the datasets at hand in the test's folder."""
+    """Requests by curl, with files of the datasets in the test's folder."""
 
     def setUp(self):
         super().setUp()
@@ -308,7 +308,7 @@ class Curl(Served):
         (self.folder / "counts.csv").write_text(in_counts((DATASETS / "coulomb.csv").read_text()))
 
     def curl(self, target, *arguments, method=None):
-        """What curl gets; its own exit code must be 0."""
+        """The output of curl, whose exit code must be 0."""
         command = ["curl", "-sS", "--noproxy", "*", "-D", "head", "-o", "body", *(["-X", method] if method else []), *arguments,
                    self.server.url(target)]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=TIMEOUT_S)
@@ -328,13 +328,13 @@ class Curl(Served):
         return self.post_file(target, "request.json", "application/json")
 
     def fit(self, name="coulomb.csv", **options):
-        """The identifier of a fit that is made."""
+        """Makes a fit and returns its identifier."""
         response = self.post_file("/v1/fits?" + query_of({"name": name, **options}), name)
         self.assertEqual(response.status, 200, response)
         return re.fullmatch(r"/v1/fits/([\w-]+)", response.headers["location"])[1]
 
 
 def in_counts(text):
-    """A recording in degrees as that of the converter of datasets/potentiometer_calibration.json, without notes."""
+    """Converts a recording in degrees to counts of datasets/potentiometer_calibration.json, without comments."""
     rows = (line.split(",") for line in text.splitlines() if line[0].isdigit())
     return "time_s,counts\n" + "".join(f"{time},{round((float(angle) + 49.6077) / 0.1985)}\n" for time, angle in rows)

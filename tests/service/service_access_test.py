@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests who may ask serve_pendulum what, how often, and where it serves: service_access_test.py PATH_OF_THE_TOOL."""
+"""Tests the access rules, rates and addresses of serve_pendulum: service_access_test.py PATH_OF_THE_TOOL."""
 
 import hashlib
 import pathlib
@@ -21,7 +21,7 @@ PAGE_POLICY = {"default-src 'none'", "script-src 'self'", "style-src 'self'", "i
 
 
 class Guarded(Lab):
-    """What every answer carries."""
+    """The fields that every answer has."""
 
     def check_guarded(self, response):
         for name, value in (("x-content-type-options", "nosniff"), ("referrer-policy", "no-referrer"),
@@ -121,11 +121,11 @@ class Headers(Guarded, Served):
 
     def test_a_type_that_is_not_there_is_answered_or_406(self):
         answer = self.server.get("/v1/models", Accept="image/png")
-        self.assertIn(answer.status, (200, 406))  # RFC 9110, section 12.5.1 leaves it to the server
+        self.assertIn(answer.status, (200, 406))  # RFC 9110, section 12.5.1 leaves the choice to the server
 
 
 class Origins(Guarded, Served):
-    """Without a token only this machine's own pages may ask."""
+    """Without a token only pages of this machine's own service may send requests."""
 
     FLAGS = ("--allowed_hosts", "lab.example,other.example")
 
@@ -255,7 +255,7 @@ class Idempotency(Served):
 
 
 class Beginnings(Lab):
-    """The exit code tells why it does not serve."""
+    """The exit code identifies why the server does not start."""
 
     def check_refused(self, code, pattern, *flags, store="other.sqlite"):
         done = subprocess.run([TOOL, *(["--store", store] if store else []), *map(str, flags)], cwd=self.folder,
@@ -314,7 +314,7 @@ class Beginnings(Lab):
 
 
 class Curious(Curl):
-    """curl's own ways: a body announced with Expect, a connection that is kept, chunks."""
+    """Special features of curl: a body announced with Expect, a persistent connection, chunks."""
 
     def test_bodies_are_taken_as_curl_sends_them(self):
         expected = self.fitted("coulomb.csv")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests batches, streams of events and survival of serve_pendulum: service_batches_test.py PATH_OF_THE_TOOL."""
+"""Tests batches, streams of events, and recovery after a crash of serve_pendulum: service_batches_test.py PATH_OF_THE_TOOL."""
 
 import csv
 import http.client
@@ -16,8 +16,8 @@ import unittest
 from event_stream import EventParser, events
 from service import (DATASETS, IS_SANITIZED, RIG, TIMEOUT_S, Lab, Served, data_part, json_part, query_of, run_tool)
 
-MANY = 12 if IS_SANITIZED else 24  # runs, some of which are under way for a moment
-SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds a run
+MANY = 12 if IS_SANITIZED else 24  # runs, enough that some are in progress for a moment
+SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds per run
 ENDLESS = {"model": "all", "interval": "bootstrap"}  # many seconds
 BAD = {"word.csv": b"time_s,angle_deg\n0,1\n0.1,x\n", "empty.csv": b"", "binary.csv": bytes(range(256)) * 50,
        "header.csv": b"0,1\n" * 20,
@@ -44,7 +44,7 @@ class Parsing(unittest.TestCase):
 
 class Batched(Lab):
     def post_batch(self, server, names, query="", *parts, **headers):
-        """A batch of files of the test's folder; what the server says of it."""
+        """Posts files of the test's folder as a batch; returns the server's answer."""
         data = [data_part(name, (self.folder / name).read_bytes()) for name in names]
         answer = server.post_parts(f"/v1/batches{query}", [*data, *parts], **headers)
         self.assertEqual(answer.status, 202, answer)
@@ -54,7 +54,7 @@ class Batched(Lab):
         return batch
 
     def finished(self, server, batch, seconds=TIMEOUT_S):
-        """The batch once all of it is done; its progress never falls on the way."""
+        """Waits until the batch is done and returns it; checks that its progress never decreases."""
         last = [0, 0]
 
         def is_done():
@@ -73,7 +73,7 @@ class Batched(Lab):
         return found
 
     def check_complete(self, server, batch, expected):
-        """That all of a batch is there, each run once, with the bytes of the command line."""
+        """Checks that the batch is complete: each run once, with the bytes of the command line."""
         done = self.finished(server, batch)
         self.assertEqual((done["done"], done["failed"], len(done["fits"])), (len(batch["fits"]), 0, len(batch["fits"])))
         self.assertEqual([fit["id"] for fit in done["fits"]], [fit["id"] for fit in batch["fits"]])
@@ -86,7 +86,7 @@ class Batched(Lab):
 
 class Batches(Batched, Served):
     def write_mixture(self):
-        """Names of good recordings and bad ones between them."""
+        """Writes good and bad recordings in alternation and returns their names."""
         good = self.simulate(6)
         for name, content in BAD.items():
             (self.folder / name).write_bytes(content)
@@ -115,7 +115,7 @@ class Batches(Batched, Served):
         self.assertEqual({fit["name"]: fit["reason"] for fit in listed}, {fit["name"]: fit["reason"] for fit in done["fits"]})
 
     def check_events(self, found, runs, first=0):
-        """Every run once, counts that rise by one, the end."""
+        """Checks the events: every run once, counts that rise by one, and the end."""
         *fits, last = found
         self.assertEqual([event.kind for event in fits], ["fit"] * (runs - first))
         self.assertEqual([event.id for event in fits], [str(i + 1) for i in range(first, runs)])
@@ -171,7 +171,7 @@ class Batches(Batched, Served):
         response = self.server.open(f"/v1/batches/{batch['id']}/events")
         begin = time.monotonic()
         self.assertEqual(self.server.ask("DELETE", f"/v1/batches/{batch['id']}").status, 204)
-        list(events(response))  # a stream of what is gone ends
+        list(events(response))  # a stream ends if its batch was deleted
         response.close()
         for target in (f"/v1/batches/{batch['id']}", f"/v1/batches/{batch['id']}/events", f"/v1/fits/{last}",
                        f"/v1/fits/{batch['fits'][0]['id']}"):
@@ -179,7 +179,7 @@ class Batches(Batched, Served):
         self.assertNotIn(batch["id"], [each["id"] for each in self.server.get("/v1/batches?limit=1000").json()["batches"]])
         self.assertEqual(self.server.get(f"/v1/fits?batch={batch['id']}").json()["fits"], [])
         after = self.post_batch(self.server, names[:1], "?model=viscous")
-        self.finished(self.server, after)  # the rest is not fitted first
+        self.finished(self.server, after)  # the deleted batch is not fitted first
         self.assertEqual([fit["id"] for fit in self.server.get(f"/v1/fits?batch={after['id']}").json()["fits"]],
                          [after["fits"][0]["id"]])
         self.assertLess(time.monotonic() - begin, TIMEOUT_S)
@@ -216,7 +216,7 @@ class Batches(Batched, Served):
 
 
 class Survival(Batched):
-    """What was acknowledged is kept, each once, whatever becomes of the process."""
+    """Acknowledged requests are kept exactly once, even if the process is killed."""
 
     def setUp(self):
         super().setUp()
@@ -228,7 +228,7 @@ class Survival(Batched):
         return self.expected[name, flags]
 
     def ask_on(self, server, names, number, answers, is_over):
-        """Fits one recording after the other, whether the server is there or not."""
+        """Fits one recording after another, also while the server is down."""
         while not is_over.is_set():
             name, number = names[number % len(names)], number + 7
             try:
@@ -246,7 +246,7 @@ class Survival(Batched):
             client.start()
         try:
             for kill in range(5):
-                # Moments that differ: multiples of the golden ratio stand for chance.
+                # Different moments: multiples of the golden ratio act as random numbers.
                 batches.append(self.post_batch(server, names[kill * MANY // 10:][:MANY // 2], "?model=viscous,coulomb"))
                 time.sleep(0.05 + 0.5 * ((0.618 * (kill + 1)) % 1))
                 server.kill()
@@ -273,13 +273,13 @@ class Survival(Batched):
         self.assertEqual(server.post_csv("/v1/fits", (self.folder / names[0]).read_bytes()).status, 507)
         self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
         told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again within \d+ s\n")
-        self.wait_until(lambda: told.search(server.log()), "a run is put back")  # the log may not grow by questions
+        self.wait_until(lambda: told.search(server.log()), "a run is put back")  # requests would fill the log, limited too
         self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_retried_runs_total [1-9]")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "all"))
 
     def check_store(self, server):
-        """That the tool of batches reads what a server leaves."""
+        """Checks that the batch tool reads a server's store."""
         self.assertEqual(server.stop(), 0)
         self.check_log(server)
         with sqlite3.connect(self.folder / "fits.sqlite") as database:
@@ -334,7 +334,7 @@ class Survival(Batched):
         try:
             found += events(response)
         except http.client.IncompleteRead:
-            pass  # cut, not closed
+            pass  # truncated by the crash, not closed
         response.close()
         self.assertNotIn("done", [event.kind for event in found])
 

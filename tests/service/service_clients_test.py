@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests serve_pendulum as curl meets it, against the command line's word: service_clients_test.py PATH_OF_THE_TOOL."""
+"""Tests serve_pendulum with curl and compares it with the command line: service_clients_test.py PATH_OF_THE_TOOL."""
 
 import hashlib
 import json
@@ -11,12 +11,12 @@ import unittest
 
 from service import CALIBRATION, DATASETS, RIG, Curl, flags_of, in_counts, query_of, run_tool
 
-DEGREES = {"deg": 1, "rad": math.degrees(1)}  # of one unit of samples
+DEGREES = {"deg": 1, "rad": math.degrees(1)}  # per unit of the samples
 COULOMB = (DATASETS / "coulomb.csv").read_bytes()
 
 
 class SameAsFitPendulum(Curl):
-    """The answer is the command line's JSON, byte for byte but for data.path, however the recording is sent."""
+    """The answer equals the command line's JSON byte for byte except for data.path, for every way to send a recording."""
 
     CASES = (
         ("coulomb.csv", None, None, {}),
@@ -82,14 +82,14 @@ class SameAsFitPendulum(Curl):
 
 
 def without_command(page):
-    """A report without what differs by how it was asked for: command and path."""
+    """A report without the command and the path, which depend on the request."""
     page, count = re.subn(rb'(id="command">).*?(</script>)', rb"\1\2", page, flags=re.DOTALL)
     assert count == 1
     return re.sub(rb'"path":(?:null|"coulomb\.csv")', b'"path":', page)
 
 
 class SameSentences(Curl):
-    """A mistake is told in the sentence of the command line, with its exit code."""
+    """An error has the sentence and the exit code of the command line."""
 
     def check_mistake(self, name, **options):
         exit_code, _, sentence = run_tool("fit_pendulum", "--data", name, *flags_of(options), "--json", "-", folder=self.folder)
@@ -178,7 +178,7 @@ class SameSentences(Curl):
 
 
 class Stored(Curl):
-    """What was fitted is there again."""
+    """Fits can be read again."""
 
     def test_a_fit_keeps_its_request_recording_and_samples(self):
         answer = self.curl("/v1/fits?model=viscous&from=1&name=Monday%20%C3%BC", "-F", "data=@coulomb.csv;filename=a.csv", "-F",
@@ -239,7 +239,7 @@ class Stored(Curl):
 
 
 class Listed(Curl):
-    """The list of fits, from an empty store on: newest first, filtered, in pages."""
+    """The list of fits, starting with an empty store: newest first, filtered, in pages."""
 
     def test_fits_are_listed_filtered_paged_and_deleted(self):
         self.assertEqual(self.curl("/v1/fits").json(), {"fits": [], "next": None})

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests serve_pendulum with requests that mean it no good: service_hostile_test.py PATH_OF_THE_TOOL.
+"""Tests serve_pendulum with hostile requests: service_hostile_test.py PATH_OF_THE_TOOL.
 
-Each is refused with a problem that says why, or is harmless; the same process answers the next.
+Each is refused with a problem that gives the reason, or is harmless; the same process answers the next request.
 """
 
 import gzip
@@ -22,7 +22,7 @@ FORM = "multipart/form-data; boundary=b"
 
 
 def request(method, target, *fields, body=b""):
-    """Bytes of a request as they are given, Host apart."""
+    """Bytes of a request with a Host field; everything else is sent as given."""
     head = [method + b" " + target + b" HTTP/1.1", b"Host: localhost", *fields, b"Connection: close"]
     return b"\r\n".join(head) + b"\r\n\r\n" + body
 
@@ -34,7 +34,7 @@ class Hostile(Served):
         self.check_lives()
 
     def refused(self, answer, *statuses):
-        """Checks that an answer is a problem with one of some statuses."""
+        """Checks that an answer is a problem with one of the statuses."""
         self.assertIsNotNone(answer, "the connection ended without an answer")
         self.assertIn(answer.status, statuses, answer)
         self.check_problem(answer, answer.status, answer.json()["code"])
@@ -67,7 +67,7 @@ class Places(Hostile):
                        b"GET /\x00 HTTP/1.1\r\nHost: localhost\r\n\r\n", b"GET / HTTP/1.1\r\nHost : localhost\r\n\r\n",
                        b"GET / HTTP/1.1\r\nHost: localhost\r\n folded\r\n\r\n", b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"):
             answer = self.server.raw(broken)
-            if answer:  # the connection may simply be ended
+            if answer:  # the server may also close the connection
                 self.assertGreaterEqual(answer.status, 200 if b"folded" in broken else 400, broken[:40])
 
     def test_a_million_parameters(self):
@@ -201,7 +201,7 @@ class Bodies(Hostile):
 
     def test_a_body_that_never_comes_whole_times_out(self):
         answer = self.server.raw(request(b"POST", b"/v1/fits", b"Content-Type: text/csv", b"Content-Length: 100", body=b"time_s"))
-        if answer:  # or it is ended
+        if answer:  # or the connection was closed
             self.check_problem(answer, 408, "timed_out")
 
     def test_too_many_samples(self):
@@ -258,7 +258,7 @@ class Parts(Hostile):
 
 
 class Overload(Lab):
-    """What takes too long or would wait too long is told so, and what it held is free again."""
+    """Work that takes or would wait too long gets an error, and its resources are released."""
 
     def at_once(self, server, count, data, options):
         answers = []
@@ -277,7 +277,7 @@ class Overload(Lab):
                                      "not done after 1 s")
         self.assertEqual(problem["exit_code"], 75)
         self.assertEqual(server.get("/v1/fits").json()["fits"], [])
-        # The worker is free again: it fits something else well before the other fit would have been done.
+        # The worker is free again: it finishes another fit well before the first fit would have ended.
         self.assertEqual(server.post_csv("/v1/fits?closed_form_only=true", SHORT).status, 200)
         self.assertLess(time.monotonic() - begin, 200 if IS_SANITIZED else 20)
 
@@ -286,7 +286,7 @@ class Overload(Lab):
         place = server.post_parts(f"/v1/batches?{query_of(LONG_FIT)}", [data_part("long.csv", COULOMB)]).headers["location"]
         done = self.wait_until(lambda: (now := server.get(place).json())["state"] == "done" and now, "the run is ended")
         self.assertEqual((done["failed"], done["fits"][0]["exit_code"]), (1, 75))
-        self.assertIn("not done after 4 s", done["fits"][0]["reason"])  # four times that of one asked alone
+        self.assertIn("not done after 4 s", done["fits"][0]["reason"])  # four times the limit of a single fit
 
     def test_a_full_queue_refuses_and_the_rest_is_answered(self):
         server = self.serve("--threads", "1", "--max_queue", "2")

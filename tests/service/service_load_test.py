@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests serve_pendulum under load: service_load_test.py PATH_OF_THE_TOOL [--seconds 10] [--assert_throughput].
 
-64 clients ask at once for so many seconds; then clients that misbehave stand beside others that do not.
+64 clients send requests for that many seconds; then misbehaving clients run next to normal ones.
 """
 
 import argparse
@@ -37,7 +37,7 @@ class Load(Lab):
         (self.folder / "still.csv").write_text("time_s,angle_deg\n" + "".join(f"{i / 100},12.5\n" for i in range(500)))
 
     def fits(self, server):
-        """The requests of MIX, with what the command line says of each."""
+        """The requests of MIX, with the expected results from the command line."""
         requests = []
         for name, models in MIX:
             data = (self.folder / name).read_bytes()
@@ -52,7 +52,7 @@ class Load(Lab):
         return requests
 
     def mixture(self, server):
-        """Fits with other requests between them."""
+        """Fits mixed with other requests."""
         fits = self.fits(server)
         stored = server.post_csv("/v1/fits?name=coulomb.csv", (self.folder / "coulomb.csv").read_bytes())
         place = stored.headers["location"]
@@ -70,7 +70,7 @@ class Load(Lab):
         self.assertGreaterEqual(len(outcome.times) - outcome.refused, at_least)
 
     def refit_rate(self, seconds):
-        """Fits a second that refit_pendulums makes of the same mix, for a while."""
+        """Fits per second of refit_pendulums on the same mix."""
         rounds = 4
         while True:
             with open(self.folder / "runs.csv", "w", newline="", encoding="utf-8") as file:
@@ -104,9 +104,9 @@ class Crowd(Load):
               f"{rate:.1f} fits a second; resident "
               f"{' -> '.join(f'{size / 2**20:.1f}' for size in resident)} MiB")
         self.check_outcome(outcome, CLIENTS)
-        self.assertLess(outcome.percentile(0.99), 2 * FIT_SECONDS)  # as the README has it
+        self.assertLess(outcome.percentile(0.99), 2 * FIT_SECONDS)  # the limit in the README
         self.assertTrue(server.is_alive())
-        if not IS_SANITIZED:  # which keeps what was freed
+        if not IS_SANITIZED:  # the sanitizer keeps freed memory
             self.assertLess(resident[-1], 1.25 * resident[0] + (16 << 20))
         listed = server.get("/v1/fits?limit=1").json()
         self.assertEqual(len(listed["fits"]), 1)
@@ -126,7 +126,7 @@ class Crowd(Load):
 
 
 class Misbehaving(Load):
-    """Whoever sends slowly, too much, or never reads costs the others nothing."""
+    """Clients that send slowly, send too much, or never read do not affect the others."""
 
     FLAGS = ("--request_seconds", "5", "--max_body_mb", "2")
 
@@ -146,7 +146,7 @@ class Misbehaving(Load):
         self.assertTrue(self.server.is_alive())
 
     def ended(self, connections, seconds=60):
-        """What each was told until the server ended it; that it does is bounded."""
+        """The answers to connections until the server closed them, within a time limit."""
         selector, told, end = selectors.DefaultSelector(), {}, time.monotonic() + seconds
         for each in connections:
             each.setblocking(False)
@@ -165,7 +165,7 @@ class Misbehaving(Load):
         return list(told.values())
 
     def drip(self, connections, content):
-        """A function that sends one byte more on each connection, as long as it is taken."""
+        """Returns a function that sends one more byte on each connection, as long as the server accepts it."""
         place = [0]
 
         def one_byte():
@@ -173,7 +173,7 @@ class Misbehaving(Load):
                 try:
                     each.send(content[place[0]:place[0] + 1])
                 except OSError:
-                    pass  # the server has ended it
+                    pass  # the server has closed it
             place[0] = min(place[0] + 1, len(content) - 1)
         return one_byte
 
@@ -193,12 +193,12 @@ class Misbehaving(Load):
             self.assertIn(told[9:12], (b"", b"408"), told[:200])
 
     def test_connections_that_say_nothing_or_half_and_go(self):
-        self.connections(100)  # which say nothing
+        self.connections(100)  # they send nothing
         for number in range(200):
             with self.server.connect() as connection:
                 connection.sendall(b"POST /v1/fits HTTP/1.1\r\nHost: localhost\r\nContent-Le"[:number % 60])
         self.check_others()
-        # Silent clients do not delay the stop. server_limits_test checks the time after which they are ended.
+        # Silent clients do not delay the stop. server_limits_test checks their time limit.
         self.assertEqual(self.server.stop(), 0)
 
     def test_clients_that_go_before_their_answer(self):
@@ -207,7 +207,7 @@ class Misbehaving(Load):
             with self.server.connect() as connection:
                 connection.sendall(fit[:len(fit) - number % 2])
                 if number % 4 == 0:
-                    connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")  # ends with a reset
+                    connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")  # closes with a reset
         self.check_others()
 
     def test_bodies_beyond_the_bound(self):
@@ -218,7 +218,7 @@ class Misbehaving(Load):
             for head, body in ((b"Content-Length: 99999999999", b"1" * 65536), (b"Content-Length: 3000000", b"1" * 3000000),
                                (b"Transfer-Encoding: chunked", chunk * 40)):
                 answer = self.server.raw(post + head + b"\r\n\r\n" + body)
-                if answer:  # none where a reset overtook it
+                if answer:  # no answer if a reset arrived first
                     self.check_problem(answer, 413, "too_large")
         self.check_others(oversized)
 
@@ -234,14 +234,14 @@ class Misbehaving(Load):
                 try:
                     each.send(request)
                 except OSError:
-                    pass  # its window is full, as it should be, or the server has ended it
+                    pass  # the window is full, as intended, or the server has closed the connection
         before = self.server.resident_bytes()
         self.check_others(ask)
         self.assertLess(self.server.resident_bytes() - before, 256 << 20)
         self.wait_until(lambda: all(self.is_ended(each) for each in deaf), "the server ends who never reads", 90)
 
     def is_ended(self, connection):
-        """Whether the server has given a connection up: what is sent on it meets a reset."""
+        """Whether the server has closed a connection: sending on it causes a reset."""
         try:
             connection.send(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
         except BlockingIOError:
@@ -267,7 +267,7 @@ class Misbehaving(Load):
             each.sendall(health)
             self.assertIn(b" 200 ", each.recv(4096))
         answer = self.server.raw(health)
-        if answer:  # none where a reset overtook it
+        if answer:  # no answer if a reset arrived first
             self.assertEqual((answer.status, answer.type), (503, "application/problem+json"), answer)
             self.assertRegex(answer.headers["retry-after"], r"^[1-9]\d*$")
         for each in kept:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what serve_pendulum counts: service_metrics_test.py PATH_OF_THE_TOOL."""
+"""Tests the metrics of serve_pendulum: service_metrics_test.py PATH_OF_THE_TOOL."""
 
 import itertools
 import math
@@ -27,18 +27,18 @@ class Metrics(Served):
         return answer, list(text_string_to_metric_families(answer.body.decode()))
 
     def samples(self, kinds=("counter", "gauge", "histogram")):
-        """{(name, labels): value} of all families of some kinds."""
+        """{(name, labels): value} of all families of these kinds."""
         return {(sample.name, tuple(sorted(sample.labels.items()))): sample.value
                 for family in self.scrape()[1] if family.type in kinds for sample in family.samples}
 
     def risen(self, before, after):
-        """What rose by how much; the scrapes themselves apart."""
+        """The increases between two scrapes, without those caused by the scrapes."""
         changes = {key: value - before.get(key, 0) for key, value in after.items()}
         self.assertGreaterEqual(min(changes.values()), 0, [key for key, value in changes.items() if value < 0])
         return {key: value for key, value in changes.items() if value and "metrics" not in str(key[1])}
 
     def by_label(self, changes, value_pattern, name_pattern=""):
-        """{label value: rise} of the one counter whose labels hold such values."""
+        """{label value: increase} of the only counter with such label values."""
         names = {name for name, labels in changes if re.search(name_pattern, name)
                  and any(re.fullmatch(value_pattern, v) for _, v in labels)}
         self.assertEqual(len(names), 1, (name_pattern, sorted(changes)))
@@ -98,7 +98,7 @@ class Metrics(Served):
                          3, changes)
 
     def settled(self):
-        """Counters once they do not rise any more but by the scrapes: an answer is counted after its last byte."""
+        """Counters when only the scrapes still increase them; an answer is counted after its last byte."""
         last = []
 
         def still():
@@ -115,7 +115,7 @@ class Metrics(Served):
         self.wait_until(lambda: self.server.get(place).json()["state"] == "done", "the batch is done")
         changes = self.risen(before, self.settled())
         counted = sorted(value for (name, _), value in changes.items() if re.search(r"(?:fits|runs)(?:_\w+)?_total$", name))
-        self.assertIn(sum(counted), (3, 6), changes)  # three runs, counted as fits or as runs or as both
+        self.assertIn(sum(counted), (3, 6), changes)  # three runs, counted as fits, as runs, or as both
 
     def test_histograms_are_cumulative(self):
         self.server.post_csv("/v1/fits", SHORT)
@@ -138,7 +138,7 @@ class Metrics(Served):
             self.assertLess(low, high, what)
             self.assertLessEqual(few, many, what)
         least = sum((many - few) * low for (low, few), (_, many) in itertools.pairwise(buckets))
-        self.assertGreaterEqual(total * (1 + 1e-9), least, what)  # each lies above the bound of the bucket below its own
+        self.assertGreaterEqual(total * (1 + 1e-9), least, what)  # each value is above the bound of the bucket below
         self.assertEqual(count == 0, total == 0, what)
 
     def test_a_histogram_counts_as_many_as_were_asked(self):
@@ -164,7 +164,7 @@ class Metrics(Served):
         def at_rest():
             gauges = self.samples(("gauge",))
             found = [value for (name, _), value in gauges.items() if re.search("waiting|running|queue|in_flight|streams", name)]
-            return found and sum(found) <= 1  # the scrape itself may count
+            return found and sum(found) <= 1  # the scrape itself may be counted
         self.wait_until(at_rest, "nothing waits or runs")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that serve_pendulum and its OpenAPI document say the same: service_openapi_test.py PATH_OF_THE_TOOL."""
+"""Tests that serve_pendulum and its OpenAPI document agree: service_openapi_test.py PATH_OF_THE_TOOL."""
 
 import json
 import re
@@ -15,7 +15,7 @@ RESULT_SCHEMA = json.loads((DATASETS.parent / "include/pendulum/report/result.sc
 SHORT = b"".join((DATASETS / "runs_1.csv").read_bytes().splitlines(keepends=True)[:800])
 METHODS = {"get", "put", "post", "delete", "patch", "options", "trace"}
 
-# Every place of the service but the page's, which are no interface for programs.
+# Every path of the service except the page's, which are not an interface for programs.
 ROUTES = {
     "/v1/fits": {"get", "post"}, "/v1/fits/{}": {"get", "delete"}, "/v1/fits/{}/request": {"get"},
           "/v1/fits/{}/recording": {"get"},
@@ -31,12 +31,12 @@ PAGES = {"/", "/fits", "/fits/{}", "/compare", "/calibration", "/live", "/batche
 
 
 def anonymous(path):
-    """A path without the names of its parameters."""
+    """A path with {} for its parameters."""
     return re.sub(r"\{[^}]*\}", "{}", path)
 
 
 class Document:
-    """The OpenAPI document of a server, and what of it requests have met."""
+    """The OpenAPI document of a server, and a record of the parts that requests have covered."""
 
     def __init__(self, server):
         self.text = server.get("/openapi.json")
@@ -57,7 +57,7 @@ class Document:
                 (_, item) in self.paths.items() for method in item if method in METHODS}
 
     def errors(self, schema, value):
-        """What a value breaks of a schema of this document."""
+        """Violations of a schema of this document by a value."""
         schemas = {name: within(each, f"#/$defs/{name}" if "$id" in each else "")
                    for name, each in self.content["components"]["schemas"].items()}
         root = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$defs": schemas, **within(schema)}
@@ -65,7 +65,8 @@ class Document:
 
 
 def within(schema, own_place=""):
-    """A schema with its references as in one whose $defs are the document's schemas; those of one with an $id are to itself."""
+    """A schema whose references lead to the document's schemas as $defs. References in a schema with an $id stay in that schema.
+    """
     if isinstance(schema, list):
         return [within(each, own_place) for each in schema]
     if not isinstance(schema, dict):
@@ -78,7 +79,7 @@ def within(schema, own_place=""):
 
 
 class Answers(Served):
-    """Every answer is one that the document describes."""
+    """Every answer matches the document."""
 
     FLAGS = ("--max_samples", "5000", "--live", "run.csv")
 
@@ -87,7 +88,7 @@ class Answers(Served):
         self.document = Document(self.server)
 
     def check(self, method, route, target, body=None, status=200, **headers):
-        """Asks, and compares the answer with the operation of a route; its parameters stand in the target."""
+        """Sends a request and compares the answer with the operation of a route; `target` contains the path parameters."""
         answer = self.server.ask(method.upper(), target, body, **headers)
         self.check_described(method, route, answer, status)
         return answer
@@ -115,7 +116,7 @@ class Answers(Served):
         return self.check("post", route, target, body, status, Content_Type=content_type, **headers)
 
     def check_fits(self):
-        """Every operation on fits; gives the place of one."""
+        """Checks every operation on fits; returns the location of a fit."""
         fits, fit = "/v1/fits", "/v1/fits/{}"
         place = self.post(fits, "/v1/fits?model=viscous,coulomb", SHORT, "text/csv").headers["location"]
         parts, parts_type = multipart([data_part("a.csv", SHORT), json_part("rig", json.loads(RIG.read_text())),
@@ -172,7 +173,7 @@ class Answers(Served):
         self.check("get", "/v1/examples/{}", "/v1/examples/none", status=404)
 
     def check_live(self):
-        """A recording that is over before anyone looks: its events end."""
+        """Checks a recording that ended before the first request: its events end."""
         head = "# sample_rate_hz: 100\ntime_s,angle_deg\n"
         (self.store_folder / "run.csv").write_text(head + "".join(f"{i / 100},{i % 7}\n" for i in range(300)))
         self.wait_until(lambda: self.server.get("/v1/live").json()["samples"] == 300, "the recording is seen")
@@ -199,7 +200,7 @@ class Answers(Served):
             self.assertEqual([error.message for error in Draft202012Validator(RESULT_SCHEMA).iter_errors(result)], [], query)
 
     def test_what_the_schemas_say_is_more_than_anything_goes(self):
-        """A body with another one's content, or with a key more, breaks the schema of its operation."""
+        """A body with another operation's content, or with an additional key, violates the schema."""
         for (route, method), operation in self.document.operations().items():
             if route in PAGES:
                 continue
@@ -240,7 +241,7 @@ class Routes(Served):
         self.assertEqual(len(names), len(self.document.operations()))
 
     def test_query_parameters_are_those_described(self):
-        """Each that is described is taken (whatever its value is worth), one that is not is refused by name."""
+        """Every described parameter is accepted (with any value); an undescribed one is refused by name."""
         for (route, method), operation in self.document.operations().items():
             if route in PAGES:
                 continue

@@ -11,7 +11,7 @@ SWING = {"set": "inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,r
 
 
 class Simulations(Curl):
-    """A simulation is what simulate_pendulum writes for the same flags."""
+    """A simulation equals the output of simulate_pendulum for the same flags."""
 
     CASES = (
         (False, {"set": "inertia=0.05,viscous=0.001,coulomb=0.002,release_angle=0.4,release_time=0.1"}),
@@ -75,7 +75,7 @@ class Simulations(Curl):
 
 
 class Calibrations(Curl):
-    """A calibration is what calibrate_sensor makes of the same table."""
+    """A calibration equals the output of calibrate_sensor for the same table."""
 
     def test_calibrations_equal_those_of_calibrate_sensor(self):
         for options in ({}, {"order": "1", "bits": "10"}, {"order": "2", "input_range": "0,1000"}, {"order": "3"}):
@@ -113,7 +113,7 @@ class Calibrations(Curl):
                 code, _, sentence = run_tool("calibrate_sensor", "--data", name, folder=self.folder)
                 problem = self.check_problem(self.post_file("/v1/calibrations", name), 422, "unusable_data")
                 self.assertEqual(problem["exit_code"], code)
-                self.assertEqual(problem["detail"].partition(": ")[2], sentence.partition(": ")[2])  # a table has no name here
+                self.assertEqual(problem["detail"].partition(": ")[2], sentence.partition(": ")[2])  # here a table has no name
 
     def test_flags_that_cannot_be(self):
         for options in ({"order": "0"}, {"order": "9"}, {"order": "x"}, {"bits": "77"}, {"input_range": "3,1"},
@@ -128,12 +128,12 @@ class Calibrations(Curl):
 
 
 def without_table(text):
-    """What is printed without the line that names the table."""
+    """The printed text without the line that names the table."""
     return [line for line in text.splitlines() if not line.strip().startswith("table ")]
 
 
 class Knowledge(Curl):
-    """What the service knows of itself: models, examples, health."""
+    """The service's information about itself: models, examples, health."""
 
     def test_models_are_those_of_the_command_line(self):
         _, out, _ = run_tool("fit_pendulum", "--help", folder=self.folder)
@@ -150,7 +150,7 @@ class Knowledge(Curl):
                 self.assertIn(parameter["name"], result["parameters"])
                 self.assertEqual(parameter["unit"], result["parameters"][parameter["name"]]["unit"])
             self.assertLessEqual(set(model["nested_in"]), set(listed))
-        self.assertIn("coulomb", by_name["viscous"]["nested_in"])  # dry friction of 0 is none
+        self.assertIn("coulomb", by_name["viscous"]["nested_in"])  # with a dry friction of 0
         self.assertIn("drag", by_name["coulomb"]["nested_in"])
         self.assertNotIn("viscous", by_name["coulomb"]["nested_in"])
 

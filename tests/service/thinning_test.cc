@@ -22,7 +22,7 @@ using Numbers = std::vector<double>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// 0, 1, ... s.
+/// Times 0, 1, ... s.
 Numbers Seconds(std::size_t count) {
   Numbers time(count);
   for (std::size_t i = 0; i < count; ++i) time[i] = static_cast<double>(i);
@@ -39,7 +39,7 @@ TEST(Thin, KeepsAllOfFew) {
   EXPECT_THAT(Thin(Numbers(), Numbers(), 4), IsEmpty());
 }
 
-// By hand: blocks [0, 5) and [5, 10] without the ends 0 and 10.
+// Expected blocks: [0, 5) and [5, 10] without the ends 0 and 10.
 TEST(Thin, KeepsTheExtremesOfEachBlockInTheirOrder) {
   const Numbers value = {9, 3, 8, 1, 5, 2, 2, 7, -4, 3, 0};
   EXPECT_THAT(Thin(Seconds(11), value, 6), ElementsAre(0, 2, 3, 7, 8, 10));
@@ -51,7 +51,7 @@ TEST(Thin, TakesOneSampleOfABlockThatIsConstant) {
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, 5.0), 6), ElementsAre(0, 1, 4, 8));
 }
 
-// Blocks are of time: a burst has one, a gap none.
+// Blocks have equal durations: a burst gets one, a gap gets no samples.
 TEST(Thin, GivesAGapNoSamples) {
   const Numbers time = {0, 1, 2, 3, 97, 98, 99, 100};
   EXPECT_THAT(Thin(time, Numbers{0, 1, 2, 3, 4, 5, 6, 7}, 6), ElementsAre(0, 1, 3, 4, 6, 7));
@@ -62,7 +62,7 @@ TEST(Thin, TakesNanForNoExtreme) {
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, kNan), 6), ElementsAre(0, 8));
 }
 
-// A decaying swing: every limit and property that the declaration gives, whatever the size.
+// A decaying swing: all limits and properties of the declaration must hold for any size.
 TEST(Thin, HoldsItsPromisesOnASwing) {
   for (const std::size_t size : {5U, 4001U, 4002U, 8001U, 100'003U}) {
     Numbers time(size), value(size);
@@ -89,7 +89,7 @@ TEST(Thin, UsesMostOfWhatItMay) {
   EXPECT_EQ(Thin(Seconds(kMany), value, 4000).size(), 4000);
 }
 
-// Nothing in a file promises it: times that stand still or are endless.
+// Files may contain times that do not increase or are infinite.
 TEST(Thin, KeepsItsLimitOnAnyTimes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Numbers value = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};

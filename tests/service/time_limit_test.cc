@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds kShort{40}, kNever{3'600'000};
 
-/// Waits for a stop, which is expected well within this; true: it came.
+/// Waits for a stop much longer than expected; true: it came.
 bool IsStopped(const std::stop_token& token) {
   constexpr std::chrono::seconds kPatience{20};
   std::mutex mutex;
@@ -82,7 +82,7 @@ TEST(TimeLimit, EndsWhileNothingIsWatched) {
   { const TimeLimit limit(kShort); }
 }
 
-// Watches that come and go in many threads, some of which are stopped: each by its own time.
+// Watches in many threads; some are stopped, each at its own time limit.
 TEST(TimeLimit, WatchesManyThreads) {
   constexpr int kThreads = 8, kWatches = 200;
   TimeLimit limit(milliseconds{5});

@@ -70,7 +70,7 @@ TEST(WorkQueue, ClosingDropsWhatWaitsAndAwaitsWhatRuns) {
   EXPECT_TRUE(queue.Offer([&, held] { has_run_later = true; }));
   begun.wait();
   std::thread opener([&] {
-    while (held.use_count() > 1) std::this_thread::yield();  // until it is dropped
+    while (held.use_count() > 1) std::this_thread::yield();  // until it is destroyed
     gate.count_down();
   });
   queue.Close();

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """calibrate_sensor as a process: table, plan, files, exit codes. calibrate_sensor_cli_test.py PATH_OF_calibrate_sensor.
 
-simulate_pendulum and fit_pendulum are those beside it.
+simulate_pendulum and fit_pendulum are taken from the same folder.
 """
 
 import csv
@@ -23,7 +23,7 @@ TABLE = "counts,angle_deg\n" + "".join(f"{counts},{angle}\n" for counts, angle i
 
 
 def straight_line(x, y):
-    """Offset, slope, their standard errors and their covariance, by the sums of the textbook."""
+    """Offset, slope, their standard errors and their covariance, from the textbook's sums."""
     n, mean_x, mean_y = len(x), sum(x) / len(x), sum(y) / len(y)
     sxx = sum((a - mean_x) ** 2 for a in x)
     slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sxx
@@ -58,7 +58,7 @@ class CalibrateSensorTest(unittest.TestCase):
         self.assertEqual(done.stdout, "")
 
     def check_bad_table(self, message, text, *arguments):
-        """A table at fault is refused with its place, and no output is written."""
+        """Checks that a wrong table is refused with the line of the error, and that no output is written."""
         (self.folder / "bad.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
         self.check_refused(4, message, "--data", "bad.csv", "--json", "bad.json", *arguments)
         self.assertFalse((self.folder / "bad.json").exists())
@@ -91,7 +91,7 @@ class CalibrateSensorTest(unittest.TestCase):
                                                         input=TABLE).stdout)["coefficients"]), 4)
 
     def simulate_counts(self):
-        """A swing about the sensor's zero, simulated in deg and read as counts of the published line."""
+        """A swing about the sensor's zero, simulated in deg and converted to counts with the published line."""
         offset, slope, *_ = straight_line(COUNTS, ANGLES)
         self.check_done("--model", "coulomb", "--duration", "20", "--rate", "100", "--noise", "0.1", "--seed", "3",
                         "--set", "inertia=0.044,viscous=0.0017,coulomb=0.0006,initial_angle=0.4,initial_rate=0,"
@@ -114,7 +114,7 @@ class CalibrateSensorTest(unittest.TestCase):
         parameters = result["fits"][0]["parameters"]
         self.assertAlmostEqual(parameters["inertia"]["estimate"], 0.044, delta=1e-4)
         self.assertAlmostEqual(parameters["initial_angle"]["estimate"], 0.4, delta=0.004)
-        # An angle of 0.4 rad inherits the relative error of the slope, 0.00299 / 0.1985 = 1.5 %.
+        # An angle of 0.4 rad has the relative error of the slope, 0.00299 / 0.1985 = 1.5 %.
         self.assertAlmostEqual(parameters["initial_angle"]["systematic_std_error"], 0.4 * 0.01506, delta=1e-3)
 
     def test_plot_is_svg_with_both_panels(self):

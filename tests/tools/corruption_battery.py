@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Proves that no hazard of recording leads to a confident wrong answer.
+"""Checks that no recording fault leads to a confident wrong result.
 
   corruption_battery.py [FOLDER_OF_THE_TOOLS] [--count 100] [--hazard gaps,knock] [--seed 1] [--jobs 2] [--keep FOLDER]
 
-Of each hazard at each strength so many recordings are simulated, corrupted and fitted as a user would fit them. A run
+For each hazard at each strength, `count` recordings are simulated, corrupted and fitted in the way of a user. A run
 ends in one of
 
-  fits            exit 0 and every parameter within 4 of its error bars of the truth
-  beyond 4        exit 0 and one between 4 and 5, which chance may do
-  warned          exit 0 and one beyond 4, but with a warning that tells the user so
+  fits            exit 0 and every parameter within 4 of its error bars of the true value
+  beyond 4        exit 0 and a parameter between 4 and 5, which may be chance
+  warned          exit 0 and a parameter beyond 4, but with a warning that covers it
   not converged   exit 1
   refused         exit 4 or 5 with a sentence
-  WRONG           exit 0 and one beyond 5 without such a warning
+  WRONG           exit 0 and a parameter beyond 5 without such a warning
   DEFECT          a crash, a timeout, another exit code, no sentence, no result
 
-and where the motion is no free swing `expected`, or `unexpected`, or WRONG when it fits without any warning. Exit code
-0 when nothing is wrong or defect and at most 0.1 % of the parameters that no warning excuses lie beyond 4; otherwise 1,
-and the offenders' files stay, with run.csv, truth.json and the command.
+For motions that are not a free swing a run ends in `expected`, `unexpected`, or WRONG if it fits without any warning.
+The exit code is 0 if no run is WRONG or DEFECT and at most 0.1 % of the parameters without a covering warning lie
+beyond 4; otherwise it is 1. The files of failed runs are kept, with run.csv, truth.json and the command.
 """
 
 import argparse
@@ -45,10 +45,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODELS = ["viscous", "coulomb", "drag"]
 TIMEOUT = 20  # s
 BEYOND, WRONG = 4, 5  # error bars
-MOST_BEYOND = 1e-3  # of the judged parameters
+MOST_BEYOND = 1e-3  # share of the judged parameters
 
-# A warning counts when whoever reads it no longer takes the error bars at their word. One that only tells of a repair
-# or of the choice of a window does not: the result after it is claimed to be right.
+# A warning counts if it tells the user not to trust the error bars. Warnings that only report a repair or the choice of
+# the window do not count: the result should still be right.
 COUNTING_WARNINGS = {
     "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "left_out", "many_spikes",
     "not_a_pendulum", "quiet_sensor", "saturated", "stale_values", "stop_is_a_kink", "time_rounded", "trace_accuracy",
@@ -74,7 +74,7 @@ class Job:
 
 @dataclasses.dataclass
 class Verdict:
-    """What became of a job."""
+    """The outcome of a job."""
 
     job: Job
     kind: str
@@ -84,22 +84,22 @@ class Verdict:
 
     @property
     def excused(self) -> bool:
-        """Whether the user was told not to trust the error bars."""
+        """Whether a warning told the user not to trust the error bars."""
         return not COUNTING_WARNINGS.isdisjoint(self.codes)
 
     @property
     def judged(self) -> list[float]:
-        """The z that must look Gaussian."""
+        """The z values that must look Gaussian."""
         return [] if self.excused or self.kind not in ("fits", "beyond 4", "WRONG") else list(self.z.values())
 
 
 @dataclasses.dataclass
 class Fit:
-    """What fit_pendulum did."""
+    """The outcome of fit_pendulum."""
 
     exit_code: int
     stderr: str
-    result: dict | None  # its JSON
+    result: dict | None  # its JSON output
 
 
 def run_fit(command: list[str], folder: pathlib.Path) -> Fit:
@@ -116,7 +116,7 @@ def run_fit(command: list[str], folder: pathlib.Path) -> Fit:
 
 
 def deviation(name: str, estimate: float, true: float, recording: Recording) -> float:
-    """Estimate minus truth, where angles may differ by whole turns."""
+    """Estimate minus true value; for angles modulo whole turns."""
     if name == "zero_angle":
         off = math.remainder(estimate - true, 2 * math.pi)
         return math.copysign(max(0, abs(off) - recording.zero_span), off)
@@ -128,7 +128,7 @@ def deviation(name: str, estimate: float, true: float, recording: Recording) -> 
 
 
 def release_to_compare(result: dict, recording: Recording) -> dict[str, float]:
-    """The release that the fit means, if its window holds one."""
+    """The release that the fit refers to, if its window contains one."""
     window = result["data"]["window_s"]
     parameters = result["fits"][0]["parameters"]
     if result["data"]["start"] != "release":
@@ -145,7 +145,7 @@ def release_to_compare(result: dict, recording: Recording) -> dict[str, float]:
 
 
 def z_scores(result: dict, recording: Recording) -> dict[str, float]:
-    """(Estimate - truth) / error of each parameter that has an error bar; one held at a bound has none."""
+    """(Estimate - true value) / error for each parameter with an error bar; a parameter at a bound has none."""
     truth = {**recording.truth, **release_to_compare(result, recording)}
     scores = {}
     for name, parameter in result["fits"][0]["parameters"].items():
@@ -156,7 +156,7 @@ def z_scores(result: dict, recording: Recording) -> dict[str, float]:
 
 
 def defect(fit: Fit) -> str:
-    """What must never happen, whatever the recording; empty if it did not."""
+    """Describes a failure that no recording may cause; empty if there is none."""
     if fit.exit_code not in (0, 1, 4, 5):
         return f"exit code {fit.exit_code}: {fit.stderr.strip()}"
     if fit.exit_code != 0 and not re.search(r"^fit_pendulum: \S+ \S+ \S+.*$", fit.stderr, re.MULTILINE):
@@ -171,7 +171,7 @@ def defect(fit: Fit) -> str:
 
 
 def judge_free_swing(job: Job, fit: Fit, recording: Recording, codes: list[str]) -> Verdict:
-    """How the answer compares with the truth."""
+    """Compares the result with the true values."""
     if fit.exit_code != 0:
         return Verdict(job, "not converged" if fit.exit_code == 1 else "refused", fit.stderr.strip(), codes=codes)
     z = z_scores(fit.result, recording)
@@ -183,7 +183,7 @@ def judge_free_swing(job: Job, fit: Fit, recording: Recording, codes: list[str])
 
 
 def judge_other_motion(job: Job, fit: Fit, codes: list[str]) -> Verdict:
-    """Whether it was recognized as no free swing."""
+    """Checks whether the recording was recognized as not a free swing."""
     hazard = HAZARDS[job.hazard]
     detail = f"exit code {fit.exit_code}, {'+'.join(codes) or 'no warning'} {fit.stderr.strip()}"
     if fit.exit_code == hazard.exit_code and (not hazard.warning or hazard.warning in codes):
@@ -192,7 +192,7 @@ def judge_other_motion(job: Job, fit: Fit, codes: list[str]) -> Verdict:
 
 
 def make_recording(job: Job, folder: pathlib.Path) -> tuple[Recording, str]:
-    """The corrupted recording, and the model that made it. Strengths of a hazard share their pendulums."""
+    """The corrupted recording and the model that generated it. All strengths of a hazard use the same pendulums."""
     model = MODELS[job.run % len(MODELS)]
     lab = Lab(job.tools / "simulate_pendulum", folder, random.Random(f"{job.seed}/{job.hazard}/{job.run}"), model)
     lab.rng = random.Random(f"{job.seed}/{job.hazard}/{job.strength}/{job.run}")
@@ -201,7 +201,7 @@ def make_recording(job: Job, folder: pathlib.Path) -> tuple[Recording, str]:
 
 
 def work(job: Job) -> Verdict:
-    """Simulates, corrupts, fits and judges; keeps the folder of an offender."""
+    """Simulates, corrupts, fits and judges; keeps the folder of a failed run."""
     name = re.sub(r"-(?=\d)", "minus ", f"{job.hazard} {job.strength} {job.run}")
     folder = job.folder / re.sub(r"[^\w.]+", "_", name)
     folder.mkdir(parents=True)
@@ -229,7 +229,7 @@ def work(job: Job) -> Verdict:
 
 
 def row(label: str, verdicts: collections.abc.Sequence[Verdict]) -> str:
-    """A line of the table."""
+    """One row of the table."""
     counts = collections.Counter(verdict.kind for verdict in verdicts)
     judged = [z for verdict in verdicts for z in verdict.judged]
     beyond = f"{sum(abs(z) > BEYOND for z in judged)} / {len(judged)}"
@@ -238,14 +238,14 @@ def row(label: str, verdicts: collections.abc.Sequence[Verdict]) -> str:
 
 
 def print_codes(title: str, groups: collections.abc.Iterable[list[str]]) -> None:
-    """How often each group of codes of warnings occurs."""
+    """Prints how often each group of warning codes occurs."""
     counts = collections.Counter("+".join(group) for group in groups if group)
     if counts:
         print(title, ", ".join(f"{codes} {count}" for codes, count in counts.most_common()))
 
 
 def print_table(verdicts: list[Verdict]) -> None:
-    """Counts by hazard and strength, and the warnings that counted and that did not."""
+    """Prints counts by hazard and strength, and the warnings that counted and those that did not."""
     print(f"{'hazard':<40}" + "  ".join(KINDS) + f"  {'|z| > 4':>10}")
     by_cell = collections.defaultdict(list)
     for verdict in verdicts:
@@ -260,7 +260,7 @@ def print_table(verdicts: list[Verdict]) -> None:
 
 
 def print_offenders(verdicts: list[Verdict]) -> None:
-    """Each run that somebody should look at."""
+    """Prints each run that needs inspection."""
     for verdict in verdicts:
         if verdict.kind in KEPT_KINDS:
             job = verdict.job
@@ -268,7 +268,7 @@ def print_offenders(verdicts: list[Verdict]) -> None:
 
 
 def passed(verdicts: list[Verdict]) -> bool:
-    """Whether the tool may be trusted."""
+    """Whether the tool passed."""
     judged = [z for verdict in verdicts for z in verdict.judged]
     few_beyond = sum(abs(z) > BEYOND for z in judged) <= MOST_BEYOND * len(judged)
     return few_beyond and not any(verdict.kind in ("WRONG", "DEFECT") for verdict in verdicts)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The recordings in datasets/ are what their script and their README say: datasets_test.py PATH_OF_simulate_pendulum."""
+"""Checks that the recordings in datasets/ match their script and their README: datasets_test.py PATH_OF_simulate_pendulum."""
 
 import json
 import math
@@ -18,7 +18,7 @@ DATASETS = ROOT / "datasets"
 RECORDINGS = ["coulomb", "textbook_rig", "to_rest"]
 FOREIGN = ["excel_export.csv", "excel_export_truth.json", "potentiometer_calibration.json", "serial_monitor.txt",
            "serial_monitor_truth.json",
-           *(f"runs_{run}{end}" for run in range(1, 5) for end in (".csv", "_truth.json"))]  # by the script alone
+           *(f"runs_{run}{end}" for run in range(1, 5) for end in (".csv", "_truth.json"))]  # made by the script only
 BINARY = pathlib.Path()
 
 
@@ -74,7 +74,7 @@ class DatasetsTest(unittest.TestCase):
         self.assertNotIn("->", paste[0])
 
     def fit(self, *flags):
-        """The result of the command of the README, but as JSON."""
+        """The result of the README's command, with JSON output."""
         tool = BINARY.parent / "fit_pendulum"
         if not tool.exists():
             self.skipTest("fit_pendulum is not built")
@@ -109,7 +109,7 @@ class DatasetsTest(unittest.TestCase):
         times, values = samples("to_rest")
         rest = [value for time, value in zip(times, values) if time >= 50]
         swing = [value for time, value in zip(times, values) if 39 <= time < 41]
-        self.assertLess(max(rest) - min(rest), 10 * 0.1985)  # noise of one count: ten counts are five sigma either way
+        self.assertLess(max(rest) - min(rest), 10 * 0.1985)  # noise of one count: ten counts are five sigma on either side
         self.assertGreater(max(swing) - min(swing), 2 * 0.1985 * 5)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum as its users do: exit codes, sentences, files.
+"""Runs fit_pendulum like a user: exit codes, sentences, files.
 
   fit_pendulum_cli_test.py PATH/TO/fit_pendulum
 """
@@ -24,7 +24,7 @@ GOOD_DATA = swing.angle_csv()
 
 
 def strict_json(text):
-    """Parses JSON that must not hold NaN or Infinity."""
+    """Parses JSON that must not contain NaN or Infinity."""
 
     def refuse(constant):
         raise ValueError(f"{constant} is not JSON")
@@ -52,7 +52,7 @@ class CliTest(unittest.TestCase):
         return {path.name for path in self.folder.iterdir()}
 
     def assert_refused(self, code, sentence, *flags):
-        """The tool stops with the code and one sentence that matches, and writes nothing."""
+        """Checks that the tool exits with the code and one sentence that matches, and writes nothing."""
         before = self.names()
         run = self.run_tool(*flags)
         self.assertEqual(run.returncode, code, run.stderr)
@@ -332,9 +332,10 @@ class ClosedFormsOnly(CliTest):
         self.assert_near_truth(forms, **{name: swing.TRUTH[name] for name in ("inertia", "viscous", "coulomb", "zero_angle")})
 
     def test_counts_need_no_calibration(self):
-        # 0.05 rad is small: sin th = th to 0.04 %, a period of 1 + 0.05^2 / 16. Viscous friction alone, as the linear law's.
+        # 0.05 rad is small: sin th = th to 0.04 %, and the period is longer by 1 + 0.05^2 / 16. Friction is only
+        # viscous, as in the linear law.
         truth = {**swing.TRUTH, "release_angle": 0.05, "coulomb": 0.0}
-        scale = 1e4  # counts in a radian
+        scale = 1e4  # counts per radian
         rows = [f"{time:.3f},{round(scale * angle + 5000)}" for time, angle, _ in swing.swing(12.0, truth=truth)]
         self.write("counts.csv", "\n".join(["time_s,adc_counts", *rows]) + "\n")
         forms, warnings = self.forms("counts.csv")

@@ -27,7 +27,7 @@ FitPendulumFlags WithData() {
   return flags;
 }
 
-/// The message with which flags are refused; empty when they are not.
+/// The error message for refused flags; empty if they are accepted.
 std::string Refusal(const FitPendulumFlags& flags) {
   const auto options = MakeFitPendulumOptions(flags);
   if (options) return "";

@@ -15,8 +15,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Options for a recording of the textbook's rig, held until 1.9 s, whose truth is I_O = 0.079 kg m² and G = 1.8033 N
-/// m.
+/// Options for a recording of the textbook's rig, held until 1.9 s, with the true values I_O = 0.079 kg m² and G =
+/// 1.8033 N m.
 FitPendulumOptions TextbookOptions() {
   FitPendulumFlags flags;
   flags.data = "datasets/textbook_rig.csv";
@@ -61,7 +61,8 @@ TEST(FitAll, MakesNoFitForClosedFormsOnly) {
   EXPECT_NEAR(1.8033 * inertia.value, 0.079, 4 * 1.8033 * inertia.std_error);
 }
 
-// sqrt(1.8033 / 0.0761) / 2π = 0.775 Hz from the rig's masses and lengths; seen, at up to 24 deg, is a slower swing.
+// The rig's masses and lengths predict sqrt(1.8033 / 0.0761) / 2π = 0.775 Hz. The recorded swing, at up to 24 deg, is
+// slower.
 TEST(FitAll, ComparesTheSwingWithWhatTheRigLetsExpect) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
@@ -93,8 +94,8 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
 
 // ---- Joint fits -----------------------------------------------------------------------------------------------------
 
-/// Options for recordings of datasets/README.md: of one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
-/// released from 0.2 and 0.45 rad.
+/// Options for recordings of datasets/README.md of one rig: I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
+/// released at 0.2 and 0.45 rad.
 FitPendulumOptions TwoRunsOptions() {
   FitPendulumFlags flags;
   flags.data = "datasets/runs_1.csv,datasets/runs_2.csv";
@@ -129,7 +130,7 @@ TEST(FitAll, MakesOneRunOfSeveralRecordings) {
   }
 }
 
-// What is known of two recordings, known of each: a shared parameter is told at least as well as by either.
+// A shared parameter has at most the standard error of either recording alone.
 TEST(FitAll, TellsSharedParametersBetterTogetherThanAlone) {
   const auto together = OnlyRun(TwoRunsOptions());
   ASSERT_TRUE(together);
@@ -199,7 +200,7 @@ TEST(CheckNumberedOutputs, LetsAJointResultBeOnStandardOutput) {
   ASSERT_TRUE(setup);
   EXPECT_TRUE(CheckNumberedOutputs(options, *setup, 2));
   options.json.clear();
-  options.residuals = "-";  // of each recording
+  options.residuals = "-";  // residuals of each recording
   const auto checked = CheckNumberedOutputs(options, *setup, 2);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kInvalidArgument);

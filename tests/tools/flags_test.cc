@@ -25,7 +25,7 @@ class FlagsTest : public testing::Test {
   }
 
  private:
-  gflags::FlagSaver saver_;  // puts all flags back after each test
+  gflags::FlagSaver saver_;  // restores all flags after each test
 };
 
 TEST(IsOwnFlag, ComparesFoldersHoweverTheWayThereIsSpelled) {
@@ -66,7 +66,7 @@ TEST_F(FlagsTest, AnswersVersion) {
   EXPECT_THAT(parsed->answer, testing::MatchesRegex("weigh_pendulum [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
-// What only gflags itself finds: the flags in a file.
+// Only gflags itself detects errors in a file of flags.
 TEST_F(FlagsTest, ExitsWithTwoWhenGflagsRefuses) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(Parse({"--flagfile=/nonexistent/flags"}), testing::ExitedWithCode(2), "");

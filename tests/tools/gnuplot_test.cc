@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// PATH as it is while this lives, then as it was.
+/// Sets PATH during its lifetime, then restores it.
 class WithPath {
  public:
   explicit WithPath(const char* path) : old_(std::getenv("PATH")) { ::setenv("PATH", path, 1); }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong in the logger and the sensor, each as a change of a simulated recording that leaves its truth true.
+"""Faults of the logger and the sensor, each as a change of a simulated recording that keeps its true values valid.
 
-What hands and pendulums do is in hazards_of_motion.py; both register in HAZARDS.
+Faults of hands and pendulums are in hazards_of_motion.py; both register in HAZARDS.
 """
 
 import collections.abc
@@ -20,15 +20,15 @@ class Hazard:
 
     strengths: dict[str, typing.Any]
     inject: Inject
-    exit_code: int = 0  # what to expect where the motion is no free swing
-    warning: str = ""  # and the code of the warning to expect with it
+    exit_code: int = 0  # expected exit code if the motion is not a free swing
+    warning: str = ""  # code of the warning expected with it
 
 
 HAZARDS: dict[str, Hazard] = {}
 
 
 def hazard(name: str, *strengths, unit: str = "", exit_code: int = 0, warning: str = ""):
-    """Registers an injection under the name. With an exit code, a recording of something else than a free swing."""
+    """Registers an injection under the name. Giving an exit code means that the recording is not a free swing."""
 
     def register(inject: Inject) -> Inject:
         labels = {f"{strength}{unit}": strength for strength in strengths or ("-",)}
@@ -39,7 +39,7 @@ def hazard(name: str, *strengths, unit: str = "", exit_code: int = 0, warning: s
 
 
 def share_of_rows(lab: Lab, recording: Recording, share: float) -> list[int]:
-    """Indices of so many rows, at least one, never the first."""
+    """Indices of this share of the rows, at least one, never the first."""
     count = max(1, round(share * len(recording.rows)))
     return sorted(lab.rng.sample(range(1, len(recording.rows)), count))
 
@@ -49,13 +49,13 @@ def _none(lab: Lab, _: str) -> Recording:
     return lab.swing()
 
 
-# The clock and the logger.
+# Clock and logger.
 
 
 @hazard("gaps", 0.5, 2, 5, unit=" s")
 def _gaps(lab: Lab, length: float) -> Recording:
     recording = lab.swing()
-    count = min(lab.rng.randint(1, 3), int(lab.seconds / 2 / length))  # at least half of it stays
+    count = min(lab.rng.randint(1, 3), int(lab.seconds / 2 / length))  # at least half of the recording remains
     starts = [lab.rng.uniform(0.5, lab.seconds - length - 0.5) for _ in range(count)]
     recording.rows = [row for row in recording.rows if not any(at <= row[0] < at + length for at in starts)]
     return recording
@@ -63,7 +63,7 @@ def _gaps(lab: Lab, length: float) -> Recording:
 
 @hazard("event-driven", 1, 2, unit=" noise")
 def _event_driven(lab: Lab, noises: float) -> Recording:
-    """A logger that writes only what is new."""
+    """A logger that writes a row only for a new value."""
     lab.rate, lab.resolution = 200, noises * lab.noise
     recording = lab.swing()
     rows = recording.rows
@@ -96,7 +96,7 @@ def _frozen(lab: Lab, length: int) -> Recording:
         first = lab.rng.randrange(len(recording.rows) - length)
         for i in range(first, first + length):
             recording.rows[i] = (recording.rows[first][0], recording.rows[i][1])
-    recording.rows.sort(key=lambda row: row[0])  # where two such runs overlap
+    recording.rows.sort(key=lambda row: row[0])  # where two such runs of rows overlap
     return recording
 
 
@@ -117,7 +117,7 @@ def _micros(lab: Lab, share: float) -> Recording:
 
 @hazard("clock scale", 0.1, 1, unit=" %")
 def _clock(lab: Lab, percent: float) -> Recording:
-    """The file tells the clock's scale with an error that obeys its standard deviation. Times stay on its clock."""
+    """The file gives the clock's scale with an error drawn from its standard deviation. Times stay on its clock."""
     stated = 1 + lab.rng.choice([-1, 1]) * percent / 100
     std_dev = 0.05 * percent / 100
     scale = lab.rng.gauss(stated, std_dev)
@@ -127,7 +127,7 @@ def _clock(lab: Lab, percent: float) -> Recording:
     return recording
 
 
-# The sensor.
+# Sensor.
 
 
 @hazard("stale values", 2, 3, 5, unit=" rows")
@@ -160,7 +160,7 @@ def _spikes_to_zero(lab: Lab, percent: float) -> Recording:
 
 
 def saturated(lab: Lab, percent: float) -> Recording:
-    """The sensor ends short of the first peaks, on one side or on both."""
+    """The sensor's range is smaller than the first peaks, on one side or on both."""
     middle, reach = math.degrees(lab.zero), math.degrees(lab.amplitude) * (1 - percent / 100)
     low, high = lab.rng.choice([(-1, 1), (-2, 1), (-1, 2)])
     low, high = lab.quantize(middle + low * reach), lab.quantize(middle + high * reach)
@@ -182,18 +182,18 @@ def _saturated_untold(lab: Lab, percent: float) -> Recording:
 
 
 def wrapped(lab: Lab, recording: Recording, low: float) -> Recording:
-    """Readings in [low, low + 360)."""
+    """Readings wrapped to [low, low + 360)."""
     return recording.readings(lambda _, value: lab.quantize((value - low) % 360 + low))
 
 
 def divide_turn(lab: Lab) -> None:
-    """Makes the sensor's levels divide the turn, as those of an encoder do."""
+    """Makes a turn a whole number of sensor levels, as for an encoder."""
     lab.resolution = 360 / math.ceil(360 / lab.resolution)
 
 
 @hazard("wraps at rest", 20, 50, 80, unit=" deg")
 def _wraps_at_rest(lab: Lab, degrees: float) -> Recording:
-    """0 to 360 with rest at 0: every passage of the bottom jumps."""
+    """Readings from 0 to 360 with rest at 0: every passage through the bottom jumps."""
     divide_turn(lab)
     lab.amplitude = math.radians(degrees)
     lab.start = lab.released()
@@ -202,7 +202,7 @@ def _wraps_at_rest(lab: Lab, degrees: float) -> Recording:
 
 @hazard("wraps in large swings", 90, 130, 170, unit=" deg")
 def _wraps_in_swing(lab: Lab, degrees: float) -> Recording:
-    """-180 to 180 with rest so far off 0 that the swing crosses the jump on the side of the release."""
+    """Readings from -180 to 180 with rest so far from 0 that the swing crosses the jump on the side of the release."""
     divide_turn(lab)
     lab.amplitude = math.radians(degrees)
     lab.start = lab.released()
@@ -229,7 +229,7 @@ def _drift(lab: Lab, degrees: float) -> Recording:
 
 @hazard("gyro with trembling hold", 0, 1, 5, unit=" deg/s")
 def _gyro(lab: Lab, bias: float) -> Recording:
-    """A hand trembles at 6 to 12 Hz until it lets go."""
+    """A hand trembles at 6 to 12 Hz until the release."""
     lab.unit, lab.hold, lab.zero = "deg_s", 2, math.radians(bias)
     lab.noise *= 2
     lab.resolution, resolution = 0, lab.resolution

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What hands and pendulums do while a recording runs: registered in hazards.HAZARDS beside the logger's faults."""
+"""Faults of hands and pendulums during a recording, registered in hazards.HAZARDS next to the logger's faults."""
 
 import collections.abc
 import math
@@ -7,7 +7,7 @@ import math
 from hazards import divide_turn, hazard, wrapped
 from simulated_lab import Lab, Recording, Row
 
-# The hand.
+# Hand.
 
 
 @hazard("junk before release", 1, 2.5, 5, unit=" s")
@@ -21,7 +21,7 @@ def _junk_before(lab: Lab, seconds: float) -> Recording:
 
 @hazard("junk at the end", 1, 3, 5, unit=" s")
 def _junk_after(lab: Lab, seconds: float) -> Recording:
-    """The sensor is taken away."""
+    """The sensor is removed after the swing."""
     recording = lab.swing()
     last = math.radians(recording.rows[-1][1]) - lab.zero
     recording.rows += lab.by_hand(len(recording.rows), last, lab.wander(seconds))
@@ -30,9 +30,10 @@ def _junk_after(lab: Lab, seconds: float) -> Recording:
 
 @hazard("hand pushes first half swing", 5, 20, 50, unit=" %")
 def _hand_contact(lab: Lab, percent: float) -> Recording:
-    """Led through the first half swing, in its own time, and let go further out than the pendulum would go itself.
+    """A hand leads the pendulum through the first half swing at its own pace and releases it farther out than a free
+    pendulum would get.
 
-    What was released where is then a matter of words: no release to compare with.
+    The moment and the angle of the release are then ambiguous, so there is no release to compare with.
     """
     held = lab.released()
     angle = held["release_angle"]
@@ -43,10 +44,10 @@ def _hand_contact(lab: Lab, percent: float) -> Recording:
 
 @hazard("knock", -40, -20, 20, 40, unit=" %")
 def _knock(lab: Lab, percent: float) -> Recording:
-    """In mid swing the rate changes by a share of its peak: less than 0 takes energy away.
+    """In mid swing the rate changes by a share of its peak; a negative share removes energy.
 
-    While the swing still stands well out of the noise: what a knock changes after that no residual can show. For the same
-    reason there are no weaker ones: at 5 % some leave no trace, and friction moves by 8 of its standard errors.
+    The knock comes while the swing is well above the noise: residuals cannot show later ones. Weaker knocks are
+    excluded for the same reason: at 5 % some leave no trace, and friction changes by 8 of its standard errors.
     """
     first = lab.swing()
     sample = int(lab.rng.uniform(0.3, 0.6) * len(first.rows))
@@ -61,7 +62,7 @@ def _knock(lab: Lab, percent: float) -> Recording:
 
 @hazard("several releases", 2, 3)
 def _several(lab: Lab, count: int) -> Recording:
-    """Between two swings the pendulum is caught, rests, and is lifted again."""
+    """Between two swings the pendulum is caught, held at rest, and lifted again."""
     rows: list[Row] = []
     releases: list[Row] = []
     for _ in range(count):
@@ -78,7 +79,7 @@ def _several(lab: Lab, count: int) -> Recording:
 
 @hazard("stopped by hand", 40, 70, 90, unit=" %")
 def _stopped(lab: Lab, percent: float) -> Recording:
-    """Caught after that part of the recording, then held where it hangs."""
+    """Caught after this part of the recording, then held at its hanging position."""
     recording = lab.swing()
     count = len(recording.rows)
     recording.rows = recording.rows[:int(percent / 100 * count)]
@@ -89,7 +90,7 @@ def _stopped(lab: Lab, percent: float) -> Recording:
     return recording
 
 
-# The pendulum: free swings that look unusual.
+# Pendulum: unusual free swings.
 
 
 @hazard("long rest at the end", 40, 80, unit=" s")
@@ -103,15 +104,15 @@ def _long_rest(lab: Lab, seconds: float) -> Recording:
 def _upright(lab: Lab, degrees: float) -> Recording:
     lab.amplitude = math.radians(degrees)
     if "coulomb" in lab.law:
-        lab.law["coulomb"] = min(lab.law["coulomb"], 0.5 * math.sin(lab.amplitude))  # else it stays up there
+        lab.law["coulomb"] = min(lab.law["coulomb"], 0.5 * math.sin(lab.amplitude))  # otherwise dry friction holds it there
     lab.start = lab.released()
     return lab.swing()
 
 
 def over_the_top(lab: Lab, turns: int) -> Recording:
-    """Pushed so that it turns over so many times: the rate is found by bisection."""
+    """Pushed so that it goes over the top this many times; the rate is found by bisection."""
     if "drag" in lab.law:
-        lab.law["drag"] *= 0.2  # else three turns would need a wild push
+        lab.law["drag"] *= 0.2  # otherwise three turns would need an extreme push
     low, high = 1.5, 24.0
     angle, side = lab.rng.uniform(-0.5, 0.5), lab.rng.choice([-1, 1])
     for _ in range(50):
@@ -135,11 +136,11 @@ def _rotations_wrapped(lab: Lab, turns: int) -> Recording:
     return wrapped(lab, over_the_top(lab, turns), -180)
 
 
-# No free swing at all.
+# Motions that are not a free swing.
 
 
 def observed(lab: Lab, angle: collections.abc.Callable[[float], float]) -> Recording:
-    """Readings of an angle [rad] that is a function of time."""
+    """Readings of an angle [rad] given as a function of time."""
     times = [i / lab.rate for i in range(int(lab.seconds * lab.rate))]
     return Recording([(time, lab.read(angle(time))) for time in times], {})
 
@@ -187,7 +188,7 @@ def _overdamped(lab: Lab, damping_ratio: float) -> Recording:
 
 @hazard("calibration sweep", 5, 9, unit=" angles", exit_code=5)
 def _sweep(lab: Lab, count: int) -> Recording:
-    """Held at one angle after the other."""
+    """Held at one angle after another."""
     angles = [math.radians(90 * i / (count - 1) - 45) for i in range(count)]
     moves = [move for angle in angles for move in ((0.5, angle), (lab.rng.uniform(1.5, 3), angle))]
     return Recording(lab.by_hand(0, angles[0], moves), {})
@@ -202,7 +203,7 @@ def _linear(lab: Lab, degrees: float) -> Recording:
 
 @hazard("two modes", 20, 50, 100, unit=" %", exit_code=1, warning="not_a_pendulum")
 def _two_modes(lab: Lab, percent: float) -> Recording:
-    """A second decaying sinusoid of that share of the first, as a bob on a string has."""
+    """Adds a second decaying sinusoid with this share of the first one, like a bob on a string."""
     modes = [(lab.amplitude / 2 * share, lab.frequency * ratio, lab.rng.uniform(0, 2 * math.pi))
              for share, ratio in ((1, 1), (percent / 100, lab.rng.uniform(1.3, 2.5)))]
     decay = lab.rng.uniform(0.005, 0.03)

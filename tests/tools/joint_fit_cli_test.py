@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on several recordings of one rig: one fit of all of them.
+"""Runs fit_pendulum on several recordings of one rig with one fit of all of them.
 
   joint_fit_cli_test.py PATH/TO/fit_pendulum
 """
@@ -55,11 +55,11 @@ class JointTest(unittest.TestCase):
         return run
 
     def joint(self, *flags, data="a.csv,b.csv", stdin=None):
-        """The result of a joint fit that converges."""
+        """The result of a converged joint fit."""
         return json.loads(self.fit("--data", data, "--rig", "rig.json", *flags, "--json", "-", stdin=stdin).stdout)
 
     def assert_refused(self, code, sentence, *flags):
-        """The tool stops with the code and that sentence, and no file is new."""
+        """Checks that the tool exits with the code and that sentence, and writes no file."""
         before = self.names()
         run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "r.csv")
         self.assertEqual(run.returncode, code, run.stderr)
@@ -166,7 +166,7 @@ class JointFit(JointTest):
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot draws the picture")
     def test_no_name_steers_a_terminal(self):
-        self.write("a\x1B[2J.csv", A)  # ECMA-48: clears it
+        self.write("a\x1B[2J.csv", A)  # ECMA-48: clears the screen
         run = self.fit("--data", "a\x1B[2J.csv,b.csv", "--terminal_plot")
         self.assertEqual([line for line in run.stdout.splitlines() if "\x1B" in line], [])
         self.assertIn("recording 1 (a?[2J.csv)\n", run.stdout)
@@ -190,7 +190,7 @@ class JointFit(JointTest):
         self.assertEqual(comparison["recommended"], "coulomb")
         k = [len(json.loads(self.fit("--data", name, "--model", "coulomb", "--json", "-").stdout)["fits"][0]["parameters"])
              for name in ("a.csv", "b.csv")]
-        self.assertEqual(comparison["rows"][1]["parameters"], sum(k) + 2)  # all of each, and both sigmas
+        self.assertEqual(comparison["rows"][1]["parameters"], sum(k) + 2)  # all parameters of each recording, and both sigmas
 
     def test_angles_and_rates_are_fitted_together(self):
         self.write("gyro.csv", swing.rate_csv())
@@ -208,7 +208,7 @@ class JointFit(JointTest):
         self.assertEqual([(run["path"], run["release"]) for run in fit["runs"]], [("two.csv", 1), ("two.csv", 2)])
         starts = [run["parameters"]["release_time"]["estimate"] for run in fit["runs"]]
         self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
-        self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s held, and a sample each
+        self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s of hold, one sample each
         self.assert_near(fit["parameters"]["inertia"], swing.TRUTH["inertia"])
 
 
@@ -245,7 +245,7 @@ class SharedParameters(JointTest):
         self.assertIsNone(fit["homogeneity"]["p"])
         self.assertEqual(fit["homogeneity"]["reason"], "all that is shared is fixed: there is nothing to compare")
 
-    # Inverse variances add up: a prior as good as the data halves the variance, whatever the number of recordings.
+    # Inverse variances add: a prior as accurate as the data halves the variance for any number of recordings.
     def test_a_prior_on_what_is_shared_counts_once(self):
         flags = ("--fix", "viscous=0.003,coulomb=0.004")
         (without,) = self.joint(*flags)["fits"]
@@ -317,7 +317,7 @@ class Refusals(JointTest):
         self.write("b.csv", f"# rig: {json.dumps(dict(swing.RIG, bob_mass=0.4))}\n" + B)
         self.assert_refused(4, "a.csv and b.csv describe different rigs (# rig), and one rig's recordings are fitted together; "
                             "give the one of all with --rig, or fit them apart with --shared none", "--data", "a.csv,b.csv")
-        self.joint()  # --rig wins
+        self.joint()  # --rig takes precedence
 
     def test_the_same_readings_in_another_file(self):
         self.write("copy.csv", "# exported again\n" + A)
@@ -331,7 +331,7 @@ class Refusals(JointTest):
         self.assert_refused(2, "--resolution is in the file's unit, and a.csv is in deg, rad.csv in rad; write it into each "
                             "file instead, as a line # resolution: VALUE", "--data", "a.csv,rad.csv", "--resolution", "0.1")
 
-    # result.schema.json: how a message says whose it is.
+    # result.schema.json: the format in which a message names its recording.
     def test_warnings_say_whose_they_are(self):
         prior = ("--prior", "inertia=0.0795:0.000001")
         messages = [warning["message"] for warning in self.joint(*prior)["warnings"] if warning["code"] == "prior_conflict"]
@@ -343,7 +343,7 @@ class Refusals(JointTest):
     def test_recordings_that_tell_of_one_rig(self):
         expected = self.joint()["fits"]
         self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
-        for text in (B, f"# rig: {json.dumps(swing.RIG)}\n" + B):  # one tells, or both
+        for text in (B, f"# rig: {json.dumps(swing.RIG)}\n" + B):  # the rig is given in one file or in both
             self.write("b.csv", text)
             result = json.loads(self.fit("--data", "a.csv,b.csv", "--json", "-").stdout)
             self.assertEqual(result["fits"][0]["parameters"], expected[0]["parameters"])

@@ -25,7 +25,7 @@ using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
-/// A trace of a function of time [s] at 100 Hz, from one time to another.
+/// A trace of a function of time [s], sampled at 100 Hz from `begin` to `end`.
 LiveTrace TraceOf(const std::function<double(double)>& value, double begin, double end) {
   LiveTrace trace("deg");
   for (int i = 0; i <= std::lround(100 * (end - begin)); ++i) {
@@ -35,12 +35,12 @@ LiveTrace TraceOf(const std::function<double(double)>& value, double begin, doub
   return trace;
 }
 
-/// Where a row's picture begins: behind the number and the bar.
+/// The plot part of a row, after the number and the bar.
 std::string Picture(const std::string& row) { return row.substr(row.find('|') + 1); }
 
 double Label(const std::string& row) { return std::stod(row); }
 
-/// Columns of the picture with a mark in some row.
+/// Columns of the plot that have a mark in some row.
 std::vector<bool> MarkedColumns(const std::vector<std::string>& rows) {
   std::vector<bool> marked(Picture(rows.front()).size());
   for (std::size_t row = 0; row + 1 < rows.size(); ++row) {
@@ -86,7 +86,7 @@ TEST(LiveTrace, ReachesFromTheLowestToTheHighestValue) {
   EXPECT_THAT(rows.back(), AllOf(HasSubstr("deg"), HasSubstr("last 10 s")));
 }
 
-// A step up after 5 of 10 s: the left half low, the right half high, nothing elsewhere.
+// A step up after 5 of 10 s: the left half is low, the right half is high, the rest is empty.
 TEST(LiveTrace, DrawsAStepWhereItIs) {
   const auto rows = TraceOf([](double t) { return t < 5 ? -20.0 : 20.0; }, 0, 10).Plot();
   const std::string top = Picture(rows[0]), bottom = Picture(rows[10]);
@@ -110,7 +110,7 @@ TEST(LiveTrace, ForgetsWhatIsOlderThanTenSeconds) {
   EXPECT_GE(Label(rows[10]), -3);
 }
 
-// Half a count of noise shall not look like a swing: at least 2 deg or counts are shown.
+// Half a count of noise must not look like a swing: the axis spans at least 2 deg or counts.
 TEST(LiveTrace, DrawsRestAsALineInTheMiddle) {
   const auto rows = TraceOf([](double t) { return 7 + 0.01 * std::sin(t); }, 0, 10).Plot();
   EXPECT_NEAR(Label(rows[0]), 8, 0.06);
@@ -140,7 +140,7 @@ TEST(LiveTrace, TellsTimeRateAndValue) {
               AllOf(StartsWith("12.4 s  200 Hz  -12.3 deg  "), HasSubstr("["), EndsWith("]  lost 0")));
 }
 
-/// What stands between the brackets and behind them for so many counts of 1023.
+/// The text in the brackets and after them for this reading, full scale 1023 counts.
 std::string LevelOf(double counts) {
   LiveTrace trace("counts");
   trace.Take(0, counts, counts, 1023);
@@ -172,7 +172,7 @@ TEST(LiveTrace, HasNoRateOfOneSample) {
 
 // ---- RedrawnLines ------------------------------------------------------------------------------------------------
 
-// ECMA-48: CSI n A is the cursor n lines up, CSI K erases to the end of the line.
+// ECMA-48: CSI n A moves the cursor up n lines, CSI K erases to the end of the line.
 TEST(RedrawnLines, DrawsOverWhatItDrewBefore) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-/// A directory of its own for each test.
+/// Each test has a separate directory.
 class OutputTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -53,7 +53,7 @@ class OutputTest : public testing::Test {
   fs::path directory_;
 };
 
-/// The status of outputs --a, --b, ... given their paths, and of inputs --in; "" when all is well.
+/// The message of CheckOutputs for outputs --a, --b, ... and inputs --in; "" if there is no error.
 std::string Check(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, StatusCode code) {
   std::vector<NamedFile> out(outputs.size());
   std::vector<NamedFile> in(inputs.size());

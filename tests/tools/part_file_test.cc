@@ -74,7 +74,7 @@ TEST(PartFile, KnowsThatOfAnEarlierRecording) {
   EXPECT_EQ(folder.Text("run.csv.part"), "new");
 }
 
-// A stream has no place for a file beside it.
+// A stream has no file next to it.
 TEST(PartFile, IsNoneOfAStream) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo(folder.Path("pipe").c_str(), 0600), 0);

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A logger that Python plays over a pseudo terminal, and a folder to record it in.
+"""A logger simulated in Python over a pseudo terminal, and a folder for its recordings.
 
-It is written after the text of firmware/README.md, "Protocol", and knows nothing of the C++ of firmware or host. A logger keeps
-what it sampled (`taken`, of all its runs), what it was told (`commands`) and what came that was no frame (`garbage`), for the
-tests to compare.
+It follows the text of firmware/README.md, "Protocol", and shares no code with the C++ of firmware or host. A logger
+stores for the tests: its samples of all runs (`taken`), the received commands (`commands`), and received bytes that
+were not a frame (`garbage`).
 """
 
 import binascii
@@ -28,7 +28,7 @@ import tty
 import unittest
 
 TOOL = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else pathlib.Path("record_pendulum")
-TIMEOUT_S = 120  # under a sanitizer everything takes ten times as long
+TIMEOUT_S = 120  # a sanitizer makes everything ten times as slow
 TICKS_PER_S = 2_000_000
 DONE, UNKNOWN, OUT_OF_RANGE, WRONG_STATE = range(4)  # status of an answer
 
@@ -49,7 +49,7 @@ assert crc16(b"123456789") == binascii.crc_hqx(b"123456789", 0xFFFF) == 0x29B1
 
 
 def cobs_encode(data):
-    """Groups of bytes without a 0, each behind its length + 1; a 0 ends each but the last (fewer than 254 bytes)."""
+    """Groups of bytes without a 0, each after its length + 1; a 0 ends each group except the last (fewer than 254 bytes)."""
     return b"".join(bytes([len(group) + 1]) + group for group in data.split(b"\0"))
 
 
@@ -68,7 +68,7 @@ def frame(payload):
 
 
 def payload_of(encoded):
-    """What a frame, without its 0, says; None where it is none."""
+    """The payload of a frame without its 0; None if the frame is invalid."""
     data = cobs_decode(encoded)
     if data is None or len(data) < 3 or struct.pack("<H", crc16(data[:-2])) != data[-2:]:
         return None
@@ -76,7 +76,7 @@ def payload_of(encoded):
 
 
 def swing(decay_s=20.0, period_s=1.0, amplitude=300.0):
-    """Counts of a decaying swing about the middle, as a function of the time in s."""
+    """Counts of a decaying swing about the middle of the range, as a function of time in s."""
 
     def counts(seconds):
         return round(512 + amplitude * math.exp(-seconds / decay_s) * math.cos(2 * math.pi * seconds / period_s))
@@ -85,16 +85,16 @@ def swing(decay_s=20.0, period_s=1.0, amplitude=300.0):
 
 
 class Line:
-    """The far end of a pseudo terminal, at `port`: takes what comes and says nothing. Subclasses say more in `speak`."""
+    """The far end of a pseudo terminal at `port`: it reads and sends nothing. Subclasses send in `speak`."""
 
     def __init__(self):
-        self.master, self.slave = os.openpty()  # the slave is kept open, so that programs may come and go
+        self.master, self.slave = os.openpty()  # the slave stays open, so programs can open and close it
         tty.setraw(self.slave)
         os.set_blocking(self.master, False)
         self.port = os.ttyname(self.slave)
-        self.waiting = bytearray()  # to be sent
+        self.waiting = bytearray()  # still to be sent
         self.closing = self.is_unplugged = False
-        self.trouble = None  # what went wrong in the thread
+        self.trouble = None  # an exception of the thread
         self.thread = threading.Thread(target=self.run, daemon=True)
 
     def __enter__(self):
@@ -110,14 +110,14 @@ class Line:
             raise self.trouble
 
     def release(self):
-        """The next program may open it, as when a real port was closed; a pseudo terminal would remember TIOCEXCL."""
+        """Lets the next program open the port, as after closing a real port; a pseudo terminal would keep TIOCEXCL."""
         fcntl.ioctl(self.slave, termios.TIOCNXCL)
 
     def run(self):
         try:
             while not self.closing and not self.is_unplugged:
                 self.turn()
-        except Exception as trouble:  # told by __exit__
+        except Exception as trouble:  # reported by __exit__
             self.trouble = trouble
 
     def turn(self):
@@ -135,7 +135,7 @@ class Line:
         pass
 
     def unplug(self):
-        """The port is gone, once the host had the time to read what was sent."""
+        """Removes the port, after the host had time to read the sent data."""
         os.set_blocking(self.master, True)
         os.write(self.master, self.waiting)
         time.sleep(0.5)
@@ -144,7 +144,7 @@ class Line:
 
 
 class Noise(Line):
-    """Random bytes, as many as the line takes."""
+    """Random bytes, as many as the line accepts."""
 
     def __init__(self, seed):
         super().__init__()
@@ -160,8 +160,9 @@ class Noise(Line):
 class PythonLogger(Line):
     """A logger that runs `speed` times as fast as the clock.
 
-    damage: of (number of a frame, its bytes) what goes over the line instead. events: by numbers of frames, what is done
-    with the logger before that frame is sent. answers: status by command, None for no answer. info: fields that differ.
+    damage: function of (number of a frame, its bytes) that returns the bytes to send instead. events: actions on the
+    logger before a frame is sent, by frame number. answers: status by command, None for no answer. info: fields that
+    differ.
     """
 
     def __init__(self, speed=1.0, swing=swing(), first_tick=0, damage=None, events=None, answers=None, **info):
@@ -174,10 +175,10 @@ class PythonLogger(Line):
         self.period, self.oversample = 10000, 1
         self.is_running = self.is_silent = self.is_endless = False
         self.taken, self.commands, self.garbage = [], [], []
-        self.dropped = self.more_sent = 0  # dropped by the logger; more in E than was sent
-        self.raw = self.heard = b""  # all that came, and what of it is not complete
+        self.dropped = self.more_sent = 0  # dropped by the logger; excess of E's count over the sent samples
+        self.raw = self.heard = b""  # all received bytes, and those of an incomplete frame
 
-    # What the host says.
+    # Input from the host.
 
     def hear(self, data):
         self.raw += data
@@ -233,7 +234,7 @@ class PythonLogger(Line):
         self.info.update(is_calibrated=1, calibration=struct.unpack("<5f", content))
         return DONE
 
-    # What it says.
+    # Output to the host.
 
     def send(self, payload):
         self.waiting += frame(payload)
@@ -262,7 +263,7 @@ class PythonLogger(Line):
                 self.send_block(block)
 
     def send_block(self, count):
-        """The next samples as one frame."""
+        """Sends the next samples as one frame."""
         if count == 0:
             return
         sums = [self.next_sum(self.tick + i * self.step) for i in range(count)]
@@ -275,14 +276,14 @@ class PythonLogger(Line):
         return b"D" + struct.pack(f"<HIHHB{len(sums)}H", self.frames % 2**16, tick % 2**32, self.dropped, 0, len(sums), *sums)
 
     def next_sum(self, tick):
-        """A sample is the sum of its conversions."""
+        """The sum of the conversions of a sample."""
         ticks = (tick - self.first_tick + i * self.period for i in range(self.oversample))
         return sum(self.swing(each / TICKS_PER_S) for each in ticks)
 
-    # What may happen to it.
+    # Events.
 
     def drop(self, samples):
-        """Its ring was full."""
+        """Drops samples as if the ring buffer was full."""
         self.dropped += samples
         self.tick += samples * self.step
 
@@ -295,7 +296,7 @@ class PythonLogger(Line):
 
 
 class Lab(unittest.TestCase):
-    """A folder of its own for each test, and what is in a recording."""
+    """A separate folder for each test, and functions to read recordings."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="record_"))
@@ -317,7 +318,7 @@ class Lab(unittest.TestCase):
             pass
 
     def finish(self, process, code=0):
-        """What it wrote to standard output and to standard error."""
+        """The process's standard output and standard error."""
         out, err = process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, code, f"{process.args}\n{out}{err}")
         return " ".join(out.split()), err
@@ -331,7 +332,7 @@ class Lab(unittest.TestCase):
         return out, err
 
     def check_refused(self, line, code, message, *arguments):
-        """One sentence says why, and nothing is left behind."""
+        """Checks that one sentence gives the reason and that no file is left."""
         before = sorted(self.folder.iterdir())
         out, err = self.run_tool(line, *arguments, code=code)
         self.assertIn(message, err)
@@ -350,7 +351,7 @@ class Lab(unittest.TestCase):
         self.wait_until(lambda: len(logger.taken) >= count, f"{count} samples")
 
     def read(self, name="run.csv"):
-        """Remarks, named remarks and rows of a recording."""
+        """Comments, named comments and rows of a recording."""
         lines = (self.folder / name).read_text(encoding="utf-8").splitlines()
         remarks = [line[2:] for line in lines if line.startswith("# ")]
         self.assertEqual(lines[len(remarks)], "time_s,adc_counts")
@@ -358,7 +359,7 @@ class Lab(unittest.TestCase):
         return remarks, dict(remark.split(": ", 1) for remark in remarks if ": " in remark), rows
 
     def expected(self, logger, samples):
-        """Rows of these samples, times since the first of them."""
+        """Expected rows for these samples, with times since the first one."""
         return [((each.tick - samples[0].tick) / TICKS_PER_S, each.sum / logger.oversample) for each in samples]
 
     def check_rows(self, logger, samples, name="run.csv"):
@@ -374,7 +375,7 @@ class Lab(unittest.TestCase):
 
 
 class ParallelSuite(unittest.TestSuite):
-    """Its tests wait for most of their time, so they wait together."""
+    """Runs its tests in parallel, because they wait most of the time."""
 
     def run(self, result, debug=False):
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
@@ -388,5 +389,5 @@ def each_test(suite):
 
 
 def load_in_parallel(_loader, tests, _pattern):
-    """What a module calls load_tests."""
+    """The function for a module's load_tests."""
     return ParallelSuite(tests)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on other people's files: what is read, what is refused, with which sentence and exit code.
+"""Runs fit_pendulum on files from other sources: files that are read, and files that are refused, with sentence and
+exit code.
 
   read_cli_test.py PATH/TO/fit_pendulum
 """
@@ -26,7 +27,7 @@ CALIBRATION = {"input": "counts", "angle_unit": "deg", "coefficients": [-49.6077
 
 
 def table(header, row, rows=None):
-    """A file of the swing: `row` makes the text of a row from time [s] and angle [deg]."""
+    """A file of the swing; `row` converts time [s] and angle [deg] to the text of a row."""
     return header + "".join(row(float(t), float(a)) + "\n" for t, a in rows or ROWS)
 
 
@@ -57,7 +58,7 @@ class ReadTest(unittest.TestCase):
         return sorted(path.name for path in self.folder.iterdir())
 
     def assert_refused(self, code, sentence, *flags, **options):
-        """The tool stops with the code and one sentence, and writes nothing."""
+        """Checks that the tool exits with the code and one sentence, and writes nothing."""
         before = self.names()
         run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "res.csv", **options)
         self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
@@ -69,7 +70,7 @@ class ReadTest(unittest.TestCase):
         self.assert_refused(code, sentence, "--data", self.write("bad.csv", content), *flags)
 
     def assert_finds_the_truth(self, *flags, **options):
-        """The fit converges on the swing's own values; gives the codes of its warnings."""
+        """Checks that the fit converges to the true values of the swing; returns the codes of its warnings."""
         run = self.run_tool("--rig", "rig.json", "--json", "-", *flags, **options)
         self.assertEqual(run.returncode, 0, run.stderr)
         result = json.loads(run.stdout)
@@ -167,7 +168,7 @@ class WhatIsRefused(ReadTest):
         self.assert_data_refused(4, f"bad.csv:3:1: {nul}", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
 
     def test_an_endless_line_from_standard_input(self):
-        """2 GB of the letter a: refused after the first MiB of it, in little memory."""
+        """2 GB of the letter a are refused after the first MiB, with little memory."""
         producer = subprocess.Popen("head -c 2000000000 /dev/zero | tr '\\0' a", shell=True, stdout=subprocess.PIPE,
                                     stderr=subprocess.DEVNULL)
         self.addCleanup(producer.wait)
@@ -176,7 +177,7 @@ class WhatIsRefused(ReadTest):
         self.assert_refused(4, 'standard input:1:1: this line is longer than 1 MiB and begins with "' + 40 * "a" +
                             '...", so this is not CSV text; name a CSV file', "--data", "-", stdin=producer.stdout,
                             preexec_fn=memory_limit(TOOL, 100_000_000))
-        self.assertLess(time.monotonic() - began, 30)  # Reading all of it would take as long as its producer.
+        self.assertLess(time.monotonic() - began, 30)  # Reading everything would take as long as the producer needs.
 
     def test_a_calibration_of_another_sensor(self):
         self.write("cal.json", json.dumps({**CALIBRATION, "input": "volts"}))

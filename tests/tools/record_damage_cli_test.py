@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What record_pendulum makes of bad lines, ports and loggers: record_damage_cli_test.py PATH_OF_record_pendulum."""
+"""record_pendulum with bad lines, ports and loggers: record_damage_cli_test.py PATH_OF_record_pendulum."""
 
 import random
 import signal
@@ -9,13 +9,13 @@ import unittest
 
 from python_logger import DONE, OUT_OF_RANGE, UNKNOWN, WRONG_STATE, Lab, Line, Noise, PythonLogger, frame, load_in_parallel
 
-SECONDS, SAMPLES, BLOCK = 4, 800, 8  # of a run at 200 Hz, in whose frames are 8 samples
+SECONDS, SAMPLES, BLOCK = 4, 800, 8  # a run at 200 Hz with 8 samples per frame
 
 load_tests = load_in_parallel
 
 
 class Damage:
-    """Every sixth frame is damaged, but for the first ones and the last ones: harm(random numbers, the frame's bytes)."""
+    """Damages every sixth frame except the first and the last ones: harm(random numbers, the frame's bytes)."""
 
     def __init__(self, harm):
         self.harm, self.hits = harm, 0
@@ -34,7 +34,7 @@ def flipped(chance, data):
 
 
 def changed(chance, data):
-    """Several bytes, but never an end of the frame."""
+    """Changes several bytes, but never to the end marker of a frame."""
     data = bytearray(data)
     for at in chance.sample(range(len(data) - 1), 4):
         data[at] = chance.randrange(1, 256)
@@ -43,7 +43,7 @@ def changed(chance, data):
 
 class DamagedFrames(Lab):
     def check_sound(self, logger, out, samples=SAMPLES):
-        """Each row is a sample at its time, and what is missing is told; gives how many."""
+        """Checks that each row is a sample at its time and that losses are reported; returns the number of lost samples."""
         _, named, rows = self.read()
         sent = dict(self.expected(logger, logger.taken))
         self.assertEqual([row for row in rows if sent.get(row[0]) != row[1]], [])
@@ -55,7 +55,7 @@ class DamagedFrames(Lab):
         return lost
 
     def check_harm(self, harm, most=2):
-        """most: frames that are lost by one that is damaged."""
+        """most: number of frames that one damaged frame may cost."""
         damage = Damage(harm)
         with PythonLogger(speed=2, damage=damage) as logger:
             out, _ = self.record(logger, "--seconds", SECONDS, code=1)
@@ -121,7 +121,7 @@ class DamagedFrames(Lab):
         self.assertIn(f"; {BLOCK} lost", out)
 
     def test_frames_that_cannot_be_are_left_out(self):
-        """Their CRC is right, and nothing else."""
+        """Frames with a correct CRC but impossible content are ignored."""
         events = {10: lambda logger: logger.send(logger.data_payload(logger.tick + 123, [1] * 8)),
                   12: lambda logger: logger.send(logger.data_payload(logger.tick, [500, 1024])),
                   14: lambda logger: logger.send(logger.data_payload(logger.tick, [])),
@@ -159,7 +159,7 @@ class Ends(Lab):
     def test_what_is_lost_after_the_time_asked_for_is_not_missing(self):
         with PythonLogger(speed=2, damage=lambda number, data: b"" if number > 50 else data) as logger:
             stop = logger.stop
-            logger.stop = lambda content: time.sleep(0.1) or stop(content)  # so that there are more
+            logger.stop = lambda content: time.sleep(0.1) or stop(content)  # so that more frames arrive
             out, _ = self.record(logger, "--seconds", 2)
         self.assertGreater(len(logger.taken), 51 * BLOCK)
         self.check_rows(logger, logger.taken[:400])
@@ -175,7 +175,7 @@ class Ends(Lab):
         self.assertIn("did not say how many samples it had sent", out)
 
     def lose(self, event, why, *arguments):
-        """In mid-run, with all that was sent before in the file."""
+        """The connection is lost in mid-run; all data sent before is in the file."""
         with PythonLogger(speed=2, events={50: event}) as logger:
             out, _ = self.record(logger, *arguments, code=1)
         self.assertIn("ended too early", out)
@@ -256,7 +256,7 @@ class BadPorts(Lab):
 
 
 class LostAnswer(PythonLogger):
-    """The first answer to the start is lost on the line."""
+    """The first answer to the start command is lost on the line."""
 
     def start(self, content):
         status = super().start(content)
@@ -264,7 +264,7 @@ class LostAnswer(PythonLogger):
 
 
 class LostCommands(PythonLogger):
-    """Of each command the first is lost on the line."""
+    """The first copy of each command is lost on the line."""
 
     def obey(self, command, content):
         if self.commands.count(command + content) > 1:
@@ -284,12 +284,12 @@ class BadLoggers(Lab):
             self.check_refused(line, 4, "speaks version 2 of the protocol", "--info")
 
     def test_another_clock_than_the_host_counts_with(self):
-        """Its times would be wrong by a factor."""
+        """Its times would be wrong by a constant factor."""
         with PythonLogger(ticks=1_000_000) as logger:
             self.check_refused(logger, 4, "1000000", "--out", "run.csv", "--seconds", 1)
 
     def test_another_converter_than_the_host_knows(self):
-        """It would be taken for saturated, or its range for another."""
+        """Its readings would be taken for saturated, or get a wrong range."""
         with PythonLogger(bits=12) as logger:
             self.check_refused(logger, 4, "12", "--out", "run.csv", "--seconds", 1)
 
@@ -311,12 +311,12 @@ class BadLoggers(Lab):
         with PythonLogger(answers={b"S": None}) as logger:
             err = self.check_refused(logger, 4, logger.port, "--out", "run.csv")
             self.assertGreater(logger.commands.count(b"S"), 1)
-        self.assertNotIn("is no pendulum_logger's", err)  # it has told what it is
+        self.assertNotIn("is no pendulum_logger's", err)  # it has identified itself
 
     def test_a_start_whose_answer_is_lost(self):
         with LostAnswer() as logger:
             self.record(logger, "--seconds", 2)
-        self.check_rows(logger, logger.taken[:400])  # the first samples say that it has started
+        self.check_rows(logger, logger.taken[:400])  # the first samples show that it has started
 
     def test_commands_that_are_lost_are_repeated(self):
         with LostCommands(speed=2) as logger:
@@ -324,7 +324,7 @@ class BadLoggers(Lab):
         self.check_rows(logger, logger.taken[:400])
 
     def test_a_start_that_is_given_up_is_taken_back(self):
-        """It may have been the answers alone that were lost."""
+        """The start may have succeeded with only the answers lost, so the host must stop the logger."""
         with PythonLogger(answers={b"S": None}) as logger:
             self.check_refused(logger, 4, "", "--out", "run.csv")
         self.assertEqual(logger.commands[-1], b"X")
@@ -341,7 +341,7 @@ class BadLoggers(Lab):
         self.check_rows(logger, logger.taken[:200])
 
     def test_a_logger_that_is_slow_to_answer(self):
-        """It answers each try, and the answers to the later ones come among what follows."""
+        """It answers each attempt; answers to later attempts arrive among the following frames."""
         with PythonLogger(speed=2) as logger:
             obey = logger.obey
             late = []

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""record_pendulum as a process, and a logger that Python plays: record_pendulum_cli_test.py PATH_OF_record_pendulum.
+"""record_pendulum as a process with a logger simulated in Python: record_pendulum_cli_test.py PATH_OF_record_pendulum.
 
-fit_pendulum is that beside it. What goes wrong on the line is in record_damage_cli_test.py.
+fit_pendulum is taken from the same folder. record_damage_cli_test.py tests errors on the line.
 """
 
 import json
@@ -24,7 +24,7 @@ load_tests = load_in_parallel
 
 
 def single(values):
-    """As IEEE single precision has them."""
+    """Values rounded to IEEE single precision."""
     return struct.unpack(f"<{len(values)}f", struct.pack(f"<{len(values)}f", *values))
 
 
@@ -100,7 +100,7 @@ class GoodRuns(Lab):
         self.check_rows(logger, logger.taken[:len(rows)])
         end = rows[-1][0]
         self.assertTrue(all(abs(counts - 512) <= 2 for time_s, counts in rows if time_s > end - 4.5))
-        self.assertGreater(max(abs(counts - 512) for _, counts in rows[-2400:]), 2)  # 12 s: not much too late
+        self.assertGreater(max(abs(counts - 512) for _, counts in rows[-2400:]), 2)  # in the last 12 s: not stopped too late
         self.assertGreater(end, 17)
 
     def test_what_never_rests_ends_after_its_time(self):
@@ -110,7 +110,7 @@ class GoodRuns(Lab):
         self.check_rows(logger, logger.taken[:400])
 
     def test_a_run_of_less_than_a_sample_is_no_empty_recording(self):
-        """Refused, or one row."""
+        """It is refused or has one row."""
         with PythonLogger() as logger:
             process = self.start(logger, "--out", "run.csv", "--seconds", 0.001)
             out, _ = process.communicate(timeout=TIMEOUT_S)
@@ -141,7 +141,7 @@ class GoodRuns(Lab):
         self.assertIn("natural_frequency", out.split("after the time asked for")[1])
         self.check_fit("--model", "linear", "--json", "fit.json")
         fit = json.loads((self.folder / "fit.json").read_text())["fits"][0]
-        # A swing of 1 s whose amplitude falls to 1 / e in 20 s.
+        # A swing with a period of 1 s whose amplitude falls to 1 / e in 20 s.
         self.assertAlmostEqual(fit["derived"]["natural_frequency"]["estimate"], 2 * math.pi, delta=0.003)
         self.assertAlmostEqual(fit["derived"]["damping_ratio"]["estimate"], 1 / (20 * 2 * math.pi), delta=0.0002)
 
@@ -167,7 +167,7 @@ class GoodRuns(Lab):
 
 
 class Forgetful(PythonLogger):
-    """Its EEPROM is worn out."""
+    """Its EEPROM does not keep data."""
 
     def store(self, content):
         return DONE
@@ -264,7 +264,7 @@ class Files(Lab):
         self.assertEqual(logger.commands, [])
 
     def fill_the_disk(self):
-        """What is said when nothing beyond 5000 bytes can be written; that is more than 300 rows."""
+        """The message when no file can grow beyond 5000 bytes, which is more than 300 rows."""
         with PythonLogger(speed=2) as logger:
             process = self.start(logger, "--out", "run.csv", "--seconds", 6)
             resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (5000, 5000))
@@ -286,7 +286,7 @@ class Files(Lab):
 
 class Signals(Lab):
     def interrupt(self, signal_number, code, *arguments):
-        """All that was sent is in the file, what was still in the logger included."""
+        """Checks that the file has all sent samples, including those that were still in the logger."""
         with PythonLogger() as logger:
             process = self.start(logger, "--out", "run.csv", *arguments)
             self.wait_for_samples(logger, 250)
@@ -352,8 +352,8 @@ class Signals(Lab):
             process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(os.listdir(self.folder), ["run.csv.part"])
         _, named, rows = self.read("run.csv.part")
-        self.assertNotIn("lost_samples", named)  # nobody has counted them
-        self.assertGreaterEqual(len(rows), 600)  # 5 s, of which the last one or two may still have been in memory
+        self.assertNotIn("lost_samples", named)  # the loss was not counted
+        self.assertGreaterEqual(len(rows), 600)  # 5 s; the last one or two may still have been in memory
         self.check_rows(logger, logger.taken[:len(rows)], "run.csv.part")
         self.assertEqual((named["sample_rate_hz"], named["range"]), ("200", "0,1023"))
         GoodRuns.check_fit(self, "--closed_form_only", data="run.csv.part")

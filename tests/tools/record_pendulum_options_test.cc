@@ -24,7 +24,7 @@ Flags Recording() {
   return flags;
 }
 
-/// The options of flags that are right.
+/// The options for valid flags.
 RecordPendulumOptions Made(const Flags& flags) {
   const auto options = MakeRecordPendulumOptions(flags);
   EXPECT_TRUE(options) << options.error().message;
@@ -112,7 +112,7 @@ TEST(MakeRecordPendulumOptions, FitsTheRecording) {
   EXPECT_EQ(options.fit->rig, "rig.json");
 }
 
-// A comma separates recordings for fit_pendulum; here there is one file, whatever its name.
+// fit_pendulum separates recordings by commas; here the name is always one file.
 TEST(MakeRecordPendulumOptions, FitsAFileWithCommasInItsName) {
   for (const char* name : {"5 deg, short.csv", "a,,b.csv", "last,", "-,-"}) {
     Flags flags = Recording();
@@ -142,7 +142,7 @@ TEST(MakeRecordPendulumOptions, StoresACalibration) {
   EXPECT_EQ(options.Inputs()[0].path, "cal.json");
 }
 
-// The user has said --store_calibration, so a message must not speak of --calibration.
+// The user has given --store_calibration, so a message must not mention --calibration.
 TEST(MakeRecordPendulumOptions, NamesTheFlagThatNamesTheStoredCalibration) {
   Flags flags;
   flags.store_calibration = "cal.json";
@@ -158,7 +158,7 @@ TEST(MakeRecordPendulumOptions, ShowsAndLists) {
   flags.info = false;
   flags.counts = true;
   EXPECT_EQ(Made(flags).task, RecordTask::kCounts);
-  EXPECT_EQ(Made(flags).seconds, 1);  // that the mean is of
+  EXPECT_EQ(Made(flags).seconds, 1);  // duration of the averaged readings
   flags.counts = false;
   flags.list = true;
   EXPECT_EQ(Made(flags).task, RecordTask::kList);
@@ -246,8 +246,8 @@ TEST(MakeRecordPendulumOptions, RefusesFlagsOfARecordingWhereNoneIsMade) {
 
 // ---- LineCapacityHz ----------------------------------------------------------------------------------------------
 
-// 10 bits a byte. 16 samples are a payload of 44 bytes, and 48 with CRC, COBS and 0: 11 520 / 48 * 16 = 3840 Hz. 8 (of
-// 200 Hz, 25 frames a second) are 32 bytes: 2880. One alone has 18: 640.
+// 10 bits per byte. 16 samples are a payload of 44 bytes, and 48 with CRC, COBS and 0: 11 520 / 48 * 16 = 3840 Hz. 8
+// samples (200 Hz, 25 frames per second) are 32 bytes: 2880 Hz. A single sample has 18 bytes: 640 Hz.
 TEST(LineCapacityHz, IsThatOfWholeFrames) {
   EXPECT_DOUBLE_EQ(LineCapacityHz({500, 1}, 115200), 3840);
   EXPECT_DOUBLE_EQ(LineCapacityHz({500, 1}, 1000000), 1000000.0 / 480 * 16);

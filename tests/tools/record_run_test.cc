@@ -42,7 +42,7 @@ SerialPort PortTo(const ScriptedLogger& board) {
   return *std::move(port);
 }
 
-/// A scripted logger of 200 Hz, and a recording of it into run.csv of a folder of its own.
+/// A scripted logger at 200 Hz, and a recording of it in run.csv of a separate folder.
 struct Laboratory {
   explicit Laboratory(LoggerScript script = {}) : board(std::move(script)), logger(PortTo(board), stop) {
     options.out = folder.Path("run.csv");
@@ -65,7 +65,7 @@ struct Laboratory {
   std::optional<Calibration> calibration;
 };
 
-/// 100 more with each sample, modulo 1000: a sample that is missing or twice there is noticed.
+/// Each sample is 100 counts above the previous one, modulo 1000, so missing or repeated samples are detected.
 int Sawtooth(double time) { return 20 + static_cast<int>(std::lround(200 * time) * 100 % 1000); }
 
 LoggerScript WithSawtooth() {
@@ -74,14 +74,14 @@ LoggerScript WithSawtooth() {
   return script;
 }
 
-/// What a reader makes of the file.
+/// The recording parsed from the file's text.
 Recording ReadBack(const std::string& text) {
   const auto recording = ParseRecording(text, "run.csv");
   EXPECT_TRUE(recording) << recording.error().message;
   return recording.value_or(Recording());
 }
 
-/// The first `count` samples of the sawtooth, and nothing else.
+/// Checks that the recording is exactly the first `count` samples of the sawtooth.
 void ExpectSawtooth(const Recording& recording, int count) {
   ASSERT_EQ(recording.size(), count);
   for (int i = 0; i < count; ++i) {
@@ -96,7 +96,7 @@ std::vector<std::string> CodesOf(const RecordedRun& recorded) {
   return codes;
 }
 
-// ---- Ends as they should be --------------------------------------------------------------------------------------
+// ---- Normal ends -------------------------------------------------------------------------------------------------
 
 TEST(RecordRun, RecordsForSoManySeconds) {
   Laboratory laboratory(WithSawtooth());
@@ -110,7 +110,7 @@ TEST(RecordRun, RecordsForSoManySeconds) {
   EXPECT_THAT(laboratory.board.Heard(), StartsWith("SX"));
 }
 
-// Frames have 8 samples; 0.104 s at 200 Hz are the 21 at 0, 0.005, ..., 0.1 s.
+// Frames have 8 samples; 0.104 s at 200 Hz contain the 21 samples at 0, 0.005, ..., 0.1 s.
 TEST(RecordRun, RecordsNoMoreThanWasAskedFor) {
   Laboratory laboratory(WithSawtooth());
   laboratory.options.seconds = 0.104;
@@ -126,7 +126,7 @@ TEST(RecordRun, DescribesTheRun) {
   EXPECT_EQ(recorded.description.run, 42);  // the logger had been started 41 times
   EXPECT_THAT(recorded.description.begun, MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
   EXPECT_TRUE(recorded.description.losses->is_end_known);
-  EXPECT_FALSE(recorded.description.clock.is_measured);  // much too short
+  EXPECT_FALSE(recorded.description.clock.is_measured);  // much too short to measure the clock
   EXPECT_FALSE(recorded.description.calibration);
 }
 
@@ -156,13 +156,13 @@ TEST(RecordRun, StopsWhenItIsStopped) {
   const RecordedRun recorded = laboratory.Recorded();
   user.join();
   EXPECT_EQ(recorded.end, RunEnd::kStopped);
-  EXPECT_TRUE(IsComplete(recorded));  // with its end
+  EXPECT_TRUE(IsComplete(recorded));  // including its End frame
   EXPECT_GT(recorded.run.size(), 40);
   ExpectSawtooth(ReadBack(recorded.Csv()), static_cast<int>(recorded.run.size()));
 }
 
-// 300 counts that fall by 1/e in 3 s are half a count after 19 s; 5 s later it is known to be at rest. A minute of this
-// takes 1.5 s here, so the clocks cannot agree.
+// 300 counts that fall by 1/e in 3 s are half a count after 19 s; rest is certain 5 s later. The test plays a minute in
+// 1.5 s, so the logger's clock cannot agree with the host's.
 TEST(RecordRun, StopsAtRest) {
   LoggerScript script;
   script.frame_seconds = 0.001;
@@ -180,7 +180,7 @@ TEST(RecordRun, StopsAtRest) {
   EXPECT_THAT(CodesOf(recorded), ElementsAre("clock_implausible"));
 }
 
-// ---- Ends as they should not be ----------------------------------------------------------------------------------
+// ---- Abnormal ends -----------------------------------------------------------------------------------------------
 
 RecordedRun RecordedUntil(Then then, Laboratory& laboratory) {
   const RecordedRun recorded = laboratory.Recorded();
@@ -192,7 +192,7 @@ RecordedRun RecordedUntil(Then then, Laboratory& laboratory) {
   return recorded;
 }
 
-/// A logger that after ten frames, 80 samples, does this.
+/// A logger that does this after ten frames, 80 samples.
 LoggerScript TenFramesAnd(Then then) {
   LoggerScript script = WithSawtooth();
   script.frames = 10;
@@ -251,7 +251,7 @@ TEST(RecordRun, WaitsNotForeverForTheEnd) {
   EXPECT_THAT(recorded.Csv(), HasSubstr("end of the run did not arrive"));
 }
 
-// ---- Nothing -----------------------------------------------------------------------------------------------------
+// ---- No data -----------------------------------------------------------------------------------------------------
 
 TEST(RecordRun, TellsThatNothingCame) {
   LoggerScript script;
@@ -279,7 +279,7 @@ TEST(RecordRun, IsStoppedBeforeAnythingCame) {
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
 }
 
-// The part may be that of an earlier recording, which nothing has replaced yet.
+// The part file may belong to an earlier recording that no new data has replaced.
 TEST(RecordRun, TouchesNothingWhereTheLoggerDoesNotStart) {
   LoggerScript script;
   script.refused = {{'S', pendulum_logger::kUnknown}};
@@ -308,7 +308,7 @@ TEST(RecordRun, HasACopyOnTheDiskMeanwhile) {
   });
   const RecordedRun recorded = laboratory.Recorded();
   user.join();
-  EXPECT_THAT(meanwhile, EndsWith("\n"));  // whole rows
+  EXPECT_THAT(meanwhile, EndsWith("\n"));  // complete rows
   const Recording recording = ReadBack(meanwhile);
   EXPECT_GT(recording.size(), 200);
   ExpectSawtooth(recording, static_cast<int>(recording.size()));
@@ -325,7 +325,7 @@ TEST(RecordRun, GoesOnWhereTheCopyCannotBe) {
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
 }
 
-// Lost behind the end that was asked for: it is none of the recording's.
+// Samples lost after the requested end do not belong to the recording.
 TEST(RecordRun, CountsNoLossBehindItsEnd) {
   LoggerScript script = WithSawtooth();
   script.lost_frames = {13, 14, 15, 16};  // 0.5 s are frames 0 to 12

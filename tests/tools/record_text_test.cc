@@ -32,7 +32,7 @@ wire::Info Uno() {
   return info;
 }
 
-/// A whole recording of these readings at 200 Hz.
+/// A complete recording of these readings at 200 Hz.
 RecordedRun Recorded(const std::vector<int>& counts = {500, 540, 460, 500}) {
   RecordedRun recorded(SamplingRate{10000, 1});
   for (const int reading : counts) {
@@ -63,7 +63,7 @@ std::vector<std::string> CodesOf(const RecordedRun& recorded) {
   return codes;
 }
 
-/// A text with one blank for each run of blanks and line ends, so that it does not matter where lines break.
+/// A text with every run of blanks and line ends replaced by one blank, so that line breaks do not matter.
 std::string Flat(const std::string& text) {
   std::istringstream words(text);
   std::string flat;
@@ -73,7 +73,7 @@ std::string Flat(const std::string& text) {
 
 std::string FlatText(const RecordedRun& recorded) { return Flat(RecordText(recorded, "run.csv")); }
 
-/// Columns of the widest line; of ± and the like several bytes are one.
+/// Columns of the widest line; a multi-byte character such as ± counts once.
 std::size_t Width(const std::string& text) {
   std::istringstream lines(text);
   std::size_t width = 0;
@@ -119,7 +119,7 @@ TEST(RecordText, TellsOversampling) {
                                         HasSubstr("500.25 to 500.25 of")));
 }
 
-// A second of the logger that is 1.0005 true ones: its clock is slow, by 500 ppm.
+// A second of the logger is 1.0005 true seconds: its clock is slow by 500 ppm.
 TEST(RecordText, TellsTheClockAsItGoes) {
   RecordedRun recorded = Recorded();
   EXPECT_THAT(FlatText(recorded), HasSubstr("± 0.3 %"));
@@ -192,7 +192,7 @@ TEST(RecordWarnings, TellALoggerThatIsGone) {
   recorded.why_lost = "/dev/ttyACM0 is gone";
   recorded.description.losses->is_end_known = false;
   const auto warnings = RecordWarnings(recorded);
-  ASSERT_THAT(warnings, SizeIs(1));  // the end did not come either, of course
+  ASSERT_THAT(warnings, SizeIs(1));  // the End frame is missing, too
   EXPECT_EQ(warnings[0].code, "cut_short");
   EXPECT_THAT(warnings[0].message, HasSubstr("/dev/ttyACM0 is gone"));
   EXPECT_FALSE(IsComplete(recorded));

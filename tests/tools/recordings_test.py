@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other people's recordings, each fitted as a user would who knows nothing of it: with --model alone.
+"""Recordings from other sources, each fitted with --model alone, as by a user without further knowledge.
 
-PENDULUM_RECORDINGS names their folder; without it the test is skipped. Expected are an independent program's fits of windows
-that a person chose (Runge-Kutta, tanh for the sign of the rate, SciPy least squares), and what the recordings' makers
-published. The residuals are compared where both windows overlap. Prints the table with -v.
+PENDULUM_RECORDINGS names their folder; without it the test is skipped. The expected values are fits by an independent
+program in windows chosen by a person (Runge-Kutta, tanh for the sign of the rate, SciPy least squares), and published
+values. The residuals are compared where both windows overlap. Prints the table with -v.
 """
 
 import csv
@@ -56,16 +56,16 @@ REFERENCES = {
     "yfysiks_data32": Reference(11.5, END, (37.166, 0.0162), (37.222, 0.00592)),
 }
 
-# Two recordings each of one rig.
+# Two recordings of the same rig each.
 PAIRS = [("stienen_Ea45", "stienen_Ef_R01"), ("cubli_PRINT_00", "cubli_PRINT_01"), ("jensen_01", "jensen_03")]
 
-# The potentiometer's line as its owners give it: angle = (V - 0.6945) 1.5769 / (0.9513 - 0.4708) rad.
+# The potentiometer's line as published by its owners: angle = (V - 0.6945) 1.5769 / (0.9513 - 0.4708) rad.
 SLOPE = 1.5769 / (0.9513 - 0.4708)
 CALIBRATION = {"schema_version": 1, "input": "volts", "angle_unit": "rad", "coefficients": [-0.6945 * SLOPE, SLOPE]}
 
 
 class Fit(NamedTuple):
-    """What a run gave: the first fit of its result, its window, and rms over the reference's window."""
+    """The outcome of a run: the first fit of its result, its window, and its rms over the reference's window."""
 
     exit_code: int
     result: dict
@@ -77,13 +77,13 @@ class Fit(NamedTuple):
 
 
 def inertia_of(result: dict) -> tuple[float, float]:
-    """Estimate, and standard and systematic error together."""
+    """Estimate, and the combined standard and systematic error."""
     inertia = result["fits"][0]["parameters"]["inertia"]
     return inertia["estimate"], math.hypot(inertia["std_error"], inertia["systematic_std_error"] or 0)
 
 
 def scatter_of_windows(result: dict) -> float:
-    """rms difference between windows of the recording and the whole, over the errors of both; 0 without windows."""
+    """rms difference between windows of the recording and the whole, over the combined errors; 0 without windows."""
     estimate, error = inertia_of(result)
     windows = ((result["fits"][0]["constancy"] or {}).get("amplitude") or {}).get("windows", [])
     squares = [(w["inertia"] - estimate) ** 2 / (error**2 + w["inertia_std_error"] ** 2) for w in windows]
@@ -101,7 +101,7 @@ def rms_between(path: pathlib.Path, start: float, end: float) -> float:
 
 @functools.cache
 def fit(name: str, model: str) -> Fit:
-    """Fits a recording, once however often it is asked for."""
+    """Fits a recording; repeated calls return the stored result."""
     recording = pathlib.Path(os.environ["PENDULUM_RECORDINGS"]) / (name + ".csv")
     with tempfile.TemporaryDirectory() as folder:
         return fit_in(pathlib.Path(folder), recording, model, REFERENCES[name])
@@ -123,7 +123,7 @@ def fit_in(folder: pathlib.Path, recording: pathlib.Path, model: str, reference:
 @unittest.skipUnless("PENDULUM_RECORDINGS" in os.environ, "PENDULUM_RECORDINGS is not set")
 class Recordings(unittest.TestCase):
     def check(self, name: str, model: str) -> str:
-        """Checks one fit; gives its line of the table."""
+        """Checks one fit; returns its row of the table."""
         reference = REFERENCES[name]
         expected, rms = getattr(reference, model)
         found = fit(name, model)
@@ -135,7 +135,7 @@ class Recordings(unittest.TestCase):
         self.assertLess(scatter_of_windows(found.result), 2, name)
         if reference.published:
             self.assertAlmostEqual(found.gravity_over_inertia / reference.published, 1, delta=0.01, msg=name)
-        # Most of what the person took is in the window.
+        # The window contains most of the window chosen by a person.
         overlap = min(end, reference.end) - max(start, reference.start)
         self.assertGreater(overlap, 0.8 * (min(reference.end, end) - reference.start), name)
         percent = 100 * (found.gravity_over_inertia / expected - 1)
@@ -153,7 +153,7 @@ class Recordings(unittest.TestCase):
         print("\n" + "\n".join(lines))
 
     def test_coulomb_finds_window_period_and_residuals_of_the_reference(self):
-        # Recordings without quadratic drag have the same reference twice; there, the test of drag is enough.
+        # Recordings without quadratic drag have equal references for both models; for these the test of drag is enough.
         self.check_all("coulomb", [name for name, reference in REFERENCES.items() if reference.coulomb != reference.drag])
 
     def test_drag_finds_window_period_and_residuals_of_the_reference(self):

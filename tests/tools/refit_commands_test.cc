@@ -30,7 +30,7 @@ using testing::internal::CaptureStdout;
 using testing::internal::GetCapturedStderr;
 using testing::internal::GetCapturedStdout;
 
-/// A batch of one recording that is there and one that is not.
+/// A batch of one existing and one missing recording.
 class RefitCommandsTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -50,7 +50,7 @@ class RefitCommandsTest : public testing::Test {
     return options;
   }
 
-  /// The exit code, or that of the error; what was said stays in said_ and printed_.
+  /// The exit code, or that of the error; the output is in said_ and printed_.
   int Run(const RefitPendulumsOptions& options) {
     CaptureStderr();
     CaptureStdout();
@@ -115,7 +115,7 @@ TEST_F(RefitCommandsTest, TellsByItsExitCodeWhetherSomethingMoved) {
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions other = Options(RefitCommand::kRefit);
   other.stores = {folder_ / "b.sqlite"};
-  other.refit.run.fit.fixed["coulomb"] = 0;  // its torque is now the viscous friction's
+  other.refit.run.fit.fixed["coulomb"] = 0;  // viscous friction takes over the torque of coulomb
   ASSERT_EQ(Run(other), 0);
   RefitPendulumsOptions compare = Options(RefitCommand::kCompare);
   compare.stores = {folder_ / "a.sqlite", folder_ / "a.sqlite"};
@@ -164,7 +164,7 @@ TEST_F(RefitCommandsTest, MergesWhatIsComplete) {
 TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
   RefitPendulumsOptions options = Options(RefitCommand::kReport);
   options.out = folder_ / "summary.json";
-  EXPECT_EQ(Run(options), 3);  // there is no store
+  EXPECT_EQ(Run(options), 3);  // the store does not exist
   EXPECT_THAT(said_, HasSubstr("a.sqlite: there is no such store"));
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   EXPECT_EQ(Run(options), 0) << said_;
@@ -184,7 +184,7 @@ TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
   EXPECT_EQ(Run(options), 2);
   EXPECT_THAT(said_, HasSubstr("--group_by: the manifest has no column 'room'"));
   options.out = options.stores[0];
-  EXPECT_EQ(Run(options), 2);  // the store itself
+  EXPECT_EQ(Run(options), 2);  // the output is the store itself
 }
 
 TEST_F(RefitCommandsTest, RefitsWhatItPacked) {
@@ -217,7 +217,7 @@ TEST_F(RefitCommandsTest, RefitsNothingIntoAStoreThatIsInUse) {
   EXPECT_THAT(said_, HasSubstr("another process writes to this file"));
 }
 
-/// Refits twice, the second time after a signal, which only that process gets.
+/// Refits twice; the second time after a signal, which only the child process gets.
 int RefitAfter(int signal, const RefitPendulumsOptions& options) {
   if (!RunRefitCommand(options)) return -1;
   std::raise(signal);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Batches for the tests of refit_pendulums: simulated recordings, the tool, and what is in its stores."""
+"""Batches for the tests of refit_pendulums: simulated recordings, the tool, and the content of its stores."""
 
 import csv
 import os
@@ -18,13 +18,13 @@ DATASETS = pathlib.Path(__file__).resolve().parents[2] / "datasets"
 RIG = DATASETS / "textbook_rig.json"
 TIMEOUT_S = 300
 
-# A swing of 6 s at 50 Hz: three periods of the textbook's rig (MODEL.md), some milliseconds to fit.
+# A swing of 6 s at 50 Hz: three periods of the textbook's rig (MODEL.md); a fit takes some milliseconds.
 SIMULATED = ["--model", "coulomb", "--rig", str(RIG), "--duration", "6", "--rate", "50", "--noise", "0.3", "--resolution", "0.1985",
              "--set", "inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,release_time=0.5"]
 
 
 def rows(store, tables=("runs", "fits", "quantities")):
-    """All rows of a store, runs named by their ids: what must be equal however the store came about."""
+    """All rows of a store, with runs named by their ids: equal for every way to make the store."""
     found = {}
     with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as database:
         database.row_factory = sqlite3.Row
@@ -39,21 +39,21 @@ def rows(store, tables=("runs", "fits", "quantities")):
 
 
 def sound(store):
-    """Whether SQLite finds nothing wrong in a store, its foreign keys included."""
+    """Whether SQLite finds no error in a store, including its foreign keys."""
     with sqlite3.connect(store) as database:
         return (database.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
                 and database.execute("PRAGMA foreign_key_check").fetchall() == [])
 
 
 class Lab(unittest.TestCase):
-    """A folder of its own for each test."""
+    """A separate folder for each test."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="refit_"))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def simulate(self, count, folder="runs", seed=1):
-        """Paths of so many recordings, relative to the test's folder."""
+        """Simulates `count` recordings; returns their paths relative to the test's folder."""
         (self.folder / folder).mkdir(exist_ok=True)
         subprocess.run([TOOLS / "simulate_pendulum", *SIMULATED, "--count", str(count), "--seed", str(seed),
                         "--out", self.folder / folder / "run.csv"], check=True, timeout=TIMEOUT_S)
@@ -74,14 +74,14 @@ class Lab(unittest.TestCase):
                                 text=True, **options)
 
     def wait_for(self, name):
-        """Until a file is there."""
+        """Waits until a file exists."""
         end = time.monotonic() + TIMEOUT_S
         while not (self.folder / name).exists():
             self.assertLess(time.monotonic(), end, f"{name} never came")
             time.sleep(0.005)
 
     def run_tool(self, *arguments, code=0, **options):
-        """Runs the tool; gives what it wrote to standard output and to standard error."""
+        """Runs the tool; returns its standard output and standard error."""
         done = subprocess.run([TOOL, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
                               timeout=TIMEOUT_S, **options)
         self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}{done.stderr}")
@@ -97,7 +97,7 @@ class Lab(unittest.TestCase):
 
 
 def as_nobody():
-    """For preexec_fn: gives up root, whom no permission stops."""
+    """For preexec_fn: gives up root, which ignores permissions."""
     if os.geteuid() == 0:
         os.setgroups([])
         os.setgid(65534)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests refit_pendulums as its users meet it: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
+"""Tests refit_pendulums like a user: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
 
 import csv
 import json
@@ -18,17 +18,17 @@ import unittest
 from refit_lab import DATASETS, Lab, RIG, TIMEOUT_S, TOOL, TOOLS, as_nobody, sound
 from sanitizers import is_sanitized, memory_limit
 
-# Runs of which some are under way for seconds, and how often a tool is killed.
+# Number of runs, enough that some are in progress for seconds; and how often a tool is killed.
 MANY, KILLS = (24, 5) if is_sanitized(TOOL) else (120, 20)
 
 
 def exact(text):
-    """JSON with its numbers as they are written, so that equal means bit for bit."""
+    """JSON with its numbers as text, so that equal means bit for bit."""
     return json.loads(text, parse_float=str, parse_int=str)
 
 
 class SameAsFitPendulum(Lab):
-    """The store holds what fit_pendulum says of each file, bit for bit, whoever computes it in whatever order."""
+    """The store has the same results as fit_pendulum for each file, bit for bit, for any processes and any order."""
 
     def fitted(self, path, *more):
         done = subprocess.run([TOOLS / "fit_pendulum", "--data", self.folder / path, "--model", "viscous,coulomb", "--json", "-",
@@ -99,7 +99,7 @@ class SameAsFitPendulum(Lab):
 
 
 class Survival(Lab):
-    """Nothing is lost, nothing doubled."""
+    """No run is lost, and none is stored twice."""
 
     def test_killed_at_random_moments_it_goes_on_to_the_same_store(self):
         manifest = self.manifest(self.simulate(MANY))
@@ -108,7 +108,7 @@ class Survival(Lab):
         needed = time.monotonic() - begin
         finished = 0
         for kill in range(KILLS):
-            # Moments spread over the whole run, commits included; multiples of the golden ratio stand for chance.
+            # Moments over the whole run, including commits; multiples of the golden ratio act as random numbers.
             process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "killed.sqlite")
             try:
                 process.wait(timeout=0.02 + needed * ((0.618 * (kill + 1)) % 1) / 4)
@@ -160,7 +160,7 @@ class Survival(Lab):
         small = self.folder / "small"
         small.mkdir()
         kilobytes = (self.folder / "whole.sqlite").stat().st_size // 2048
-        # A file system of half the store's size; its own name space of mounts ends with the process.
+        # A file system of half the store's size; its mount namespace ends with the process.
         script = (f'mount -t tmpfs -o size={kilobytes}k none "{small}" && "{TOOL}" --manifest {manifest} --models viscous,coulomb '
                   f'--store small/a.sqlite; code=$?; cp small/a.sqlite full.sqlite; exit $code')
         command = ["unshare", "--mount"] + ([] if os.geteuid() == 0 else ["--user", "--map-root-user"])
@@ -207,7 +207,7 @@ class Survival(Lab):
 
 
 class HostileManifests(Lab):
-    """A manifest that is wrong is refused with its line before anything is fitted; files that are wrong cost their rows."""
+    """A wrong manifest is refused with its line before any fit; wrong files cost only their own rows."""
 
     def test_files_that_cannot_be_fitted_are_rows_with_reasons(self):
         good = self.simulate(1)[0]
@@ -272,11 +272,11 @@ class HostileManifests(Lab):
         self.assertIn("there is no such file", self.refit("nowhere.csv", "a.sqlite", code=3)[1])
 
     def test_a_million_lines_are_read_in_bounded_memory(self):
-        lines = 10**5 if is_sanitized(TOOL) else 10**6  # a sanitized tool takes half a minute for a million, and its memory is not limited
+        lines = 10**5 if is_sanitized(TOOL) else 10**6  # half a minute with a sanitizer, without a limit of memory
         with open(self.folder / "million.csv", "w", encoding="utf-8") as file:
             file.write("path,id,operator\n")
             file.writelines(f'nowhere/run_{i}.csv,run {i},"O""Neil, A"\n' for i in range(lines))
-        # What is asked of memory hangs on the program and the store's page cache, not on a million entries.
+        # Memory depends on the program and the store's page cache, not on a million entries.
         self.refit("million.csv", "a.sqlite", "--shard", "5/10000",
                    preexec_fn=memory_limit(TOOL, 300 << 20))
         stored = self.rows("a.sqlite")
@@ -303,7 +303,7 @@ class HostileManifests(Lab):
 
 
 class Reading(Lab):
-    """What is told of a store."""
+    """Commands that report on a store."""
 
     def test_export_report_and_comparison(self):
         paths = self.simulate(6)

@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Flags of a refit that nothing is wrong with.
+/// Valid flags of a refit.
 RefitFlags GoodFlags() {
   RefitFlags flags;
   flags.manifest = "runs.csv";
@@ -23,7 +23,7 @@ RefitFlags GoodFlags() {
   return flags;
 }
 
-/// A command with these flags given.
+/// The flags of a command.
 RefitFlags CommandFlags(const std::vector<std::string>& positional, const std::vector<std::string>& given) {
   RefitFlags flags;
   flags.positional = positional;

@@ -28,7 +28,7 @@ TEST(DurationText, IsInTheUnitsThatPeopleUse) {
   EXPECT_EQ(DurationText(7800), "2 h 10 min");
 }
 
-// 500 of 2000 in 10 s: 50 a second, and 1500 more take 30 s.
+// 500 of 2000 in 10 s: 50 per second, and the other 1500 take 30 s.
 TEST(ProgressText, TellsRateAndTimeLeft) {
   RefitCounts counts;
   counts.runs = 2000;
@@ -47,14 +47,14 @@ TEST(ProgressText, KnowsNoRateBeforeTheFirstRun) {
   EXPECT_EQ(ProgressText(counts, 1), "0 of 0 runs (100 %)");
 }
 
-/// What can be read from a descriptor at once.
+/// The text available from a descriptor.
 std::string ReadFrom(int descriptor) {
   std::array<char, 4096> text{};
   const ssize_t got = ::read(descriptor, text.data(), text.size());
   return {text.data(), static_cast<std::size_t>(got > 0 ? got : 0)};
 }
 
-/// So long from now.
+/// The time point after a delay from now.
 RefitProgress::Clock::time_point After(RefitProgress::Clock::duration wait) {
   return RefitProgress::Clock::now() + wait;
 }
@@ -83,7 +83,7 @@ TEST(RefitProgress, WritesPlainLinesNowAndThenElsewhere) {
   for (counts.refitted = 1; counts.refitted <= 2; ++counts.refitted) {
     const auto begin = std::chrono::seconds(counts.refitted);
     progress.Show(counts, After(begin));
-    progress.Show(counts, After(begin + std::chrono::milliseconds(90)));  // too soon
+    progress.Show(counts, After(begin + std::chrono::milliseconds(90)));  // too early for the next update
   }
   progress.Finish();
   ::close(ends[1]);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other people's recordings, many of them by one command: refit_recordings_test.py PATH_OF_THE_TOOL.
+"""Recordings from other sources, fitted by one command: refit_recordings_test.py PATH_OF_THE_TOOL.
 
 PENDULUM_RECORDINGS names their folder; without it the test is skipped.
 """
@@ -16,12 +16,12 @@ MANY = 16
 
 @unittest.skipUnless(os.environ.get("PENDULUM_RECORDINGS"), "PENDULUM_RECORDINGS names no folder of recordings")
 class RealRecordings(Lab):
-    """One command over a folder of other people's recordings, some of which cannot be fitted as they are."""
+    """One command for a folder of recordings from other sources, some of which cannot be fitted unchanged."""
 
     def test_a_folder_gives_a_table(self):
         recordings = self.folder / "recordings"
         recordings.mkdir()
-        # The smallest ones; recordings_test fits larger ones too, one by one.
+        # The smallest ones; recordings_test also fits larger ones individually.
         smallest = sorted(pathlib.Path(os.environ["PENDULUM_RECORDINGS"]).glob("*.csv"), key=lambda path: path.stat().st_size)
         for path in smallest[:MANY]:
             shutil.copy(path, recordings)
@@ -33,7 +33,7 @@ class RealRecordings(Lab):
         self.assertGreater(sum(row["exit_code"] == 0 for row in runs.values()), len(runs) / 2)
         for name, row in runs.items():
             self.assertTrue(row["result"] or row["reason"], name)
-        # Volts without a calibration, and counts that were never calibrated, are not for these models.
+        # These models cannot use volts without a calibration, nor uncalibrated counts.
         self.assertIn("calibrate first", runs["cubli_PRINT_00"]["reason"])
         self.assertIn("coulomb", self.run_tool("status", "--store", "a.sqlite")[0])
 

@@ -53,7 +53,7 @@ TEST(ComparisonText, ShowsNothingThatSteersATerminal) {
   EXPECT_THAT(ComparisonText(comparison, "a", "b"), Not(HasSubstr("\x1b")));
 }
 
-/// A store of three runs, of which the first could not be fitted and the last is pending.
+/// A store of three runs: the first could not be fitted, and the last is pending.
 Store StoreOfThree(const std::string& path) {
   auto store = Store::Open(path, Store::Mode::kWrite);
   const Source source = {"three",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the published schema against the example that json_test.cc proves, and against results of fit_pendulum.
+"""Tests the published schema with the example that json_test.cc checks, and with results of fit_pendulum.
 
   result_schema_test.py PATH/TO/fit_pendulum       needs python3-jsonschema
 """
@@ -27,7 +27,7 @@ TOOL = ""  # path of the binary, from the command line
 
 class Schema(unittest.TestCase):
     def assert_refused(self, change):
-        """The example is no longer valid once `change` has been at it."""
+        """Checks that the example is invalid after `change`."""
         result = copy.deepcopy(EXAMPLE)
         change(result)
         self.assertNotEqual(result, EXAMPLE)
@@ -56,7 +56,7 @@ class Schema(unittest.TestCase):
             for step in path:
                 part = part[step]
             for key in part:
-                if path[-1:] == ["linear"] and key == "corrected_inertia":  # there is none with linear gravity
+                if path[-1:] == ["linear"] and key == "corrected_inertia":  # it does not exist with linear gravity
                     continue
                 with self.subTest(path=path, missing=key):
                     self.assert_refused(lambda result, key=key: self.at(result, path).pop(key))
@@ -140,12 +140,12 @@ class Schema(unittest.TestCase):
 
     @staticmethod
     def with_sigma(part, name):
-        """The number is told as of readings with different units."""
+        """The part with a number in the form for readings with different units."""
         part[name + "_sigma"] = part.pop(name + "_rad")
 
 
 def result_of(recordings, *flags, rig=None):
-    """What the tool writes of the texts of recordings."""
+    """The tool's output for these texts of recordings."""
     names = [f"run_{k + 1}.csv" for k in range(len(recordings))]
     with tempfile.TemporaryDirectory() as folder:
         for name, text in zip(names, recordings, strict=True):
@@ -191,7 +191,7 @@ LOW = dict(swing.TRUTH, release_angle=0.25, release_time=1.4, zero_angle=-0.02)
 
 
 class JointSchema(unittest.TestCase):
-    """Of two recordings, with two models; the second recording is too short a swing for constancy to be looked into."""
+    """Results of two recordings with two models; the second recording is too short for a test of constancy."""
 
     @classmethod
     def setUpClass(cls):
@@ -200,7 +200,7 @@ class JointSchema(unittest.TestCase):
                                rig={**swing.RIG, "bob_mass": {"value": 0.38, "std_dev": 0.001}})
 
     def assert_refused(self, change):
-        """The result is no longer valid once `change` has been at it."""
+        """Checks that the result is invalid after `change`."""
         result = copy.deepcopy(self.result)
         change(result)
         self.assertNotEqual(result, self.result)
@@ -225,7 +225,7 @@ class JointSchema(unittest.TestCase):
                      ["fits", 1, "runs", 1, "statistics"], ["comparison", "rows", 0], ["closed_forms", 1]):
             for key in Schema.at(self.result, path):
                 with self.subTest(path=path, missing=key):
-                    if key == "rms_residual_rad" and path == ["fits", 1, "statistics"]:  # of one unit only
+                    if key == "rms_residual_rad" and path == ["fits", 1, "statistics"]:  # only for readings of one unit
                         continue
                     self.assert_refused(lambda result, key=key: Schema.at(result, path).pop(key))
             with self.subTest(path=path, unknown=True):
@@ -303,7 +303,7 @@ class JointResults(unittest.TestCase):
     def test_two_pendulums(self):
         other = swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.05))
         result = self.assert_valid([self.first, other], "--model", "viscous,coulomb", status="not_converged")
-        self.assertEqual([row["judged"] for row in result["comparison"]["rows"]], [True, True])  # the fits alone
+        self.assertEqual([row["judged"] for row in result["comparison"]["rows"]], [True, True])  # the separate fits
 
     def test_angle_and_rate(self):
         result = self.assert_valid([self.first, swing.rate_csv()], "--model", "viscous,coulomb")
@@ -339,7 +339,7 @@ class JointResults(unittest.TestCase):
         recordings = [swing.angle_csv(sigma=0.002, truth=dict(truth, coulomb=0.0), seed=seed)
                       for seed, truth in ((40, swing.TRUTH), (41, LOW))]
         (fit,) = self.assert_valid(recordings, "--model", "stribeck", status="not_identifiable")["fits"]
-        self.assertTrue(fit["reason"])  # which of the equally good points it is about hangs on the last digits
+        self.assertTrue(fit["reason"])  # the last digits decide which of the equally good points it reports
 
     def test_starts_that_are_held_where_one_is_not(self):
         (fit,) = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")["fits"]

@@ -13,7 +13,7 @@ namespace {
 
 using Work = std::function<Result<int>(const std::vector<std::string>&)>;
 
-/// The exit code of a tool that does `work`, and what it says on standard error.
+/// The exit code of a tool that does `work`, and its standard error.
 std::pair<int, std::string> RunOf(const Work& work, std::vector<std::string> arguments = {}) {
   std::string program = "/somewhere/swing";
   std::vector<char*> argv = {program.data()};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a sanitizer changes for a test of a tool: the tool is ten times as slow, and its memory has no bound."""
+"""The effect of a sanitizer on a tool's test: the tool is ten times as slow, and its memory cannot be limited."""
 
 import functools
 import pathlib
@@ -13,5 +13,5 @@ def is_sanitized(tool):
 
 
 def memory_limit(tool, limit):
-    """For preexec_fn: so many bytes of data; None where the sanitizer, which reserves more, would not even begin."""
+    """For preexec_fn: limits the data to so many bytes; None with a sanitizer, which reserves more and could not start."""
     return None if is_sanitized(tool) else lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))

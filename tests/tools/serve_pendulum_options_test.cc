@@ -66,7 +66,8 @@ TEST(MakeServePendulumOptions, TakeEachFlagToItsPlace) {
   EXPECT_EQ(options->server.max_queue, 5U);
   EXPECT_EQ(options->server.max_connections, 8U);
   EXPECT_EQ(options->server.max_body, 200U * 1024 * 1024);
-  EXPECT_GE(options->server.max_buffered, options->server.max_body);  // else no request of that size would be taken
+  EXPECT_GE(options->server.max_buffered, options->server.max_body);  // otherwise no request of the maximal size would
+                                                                      // be accepted
   EXPECT_EQ(options->server.request_time, std::chrono::seconds(9));
   EXPECT_EQ(options->server.stop_time, std::chrono::seconds(5)) << "to tell those whose fits are stopped";
   EXPECT_EQ(options->service.threads, 3);
@@ -160,7 +161,7 @@ TEST_F(ReadTokenTest, HasSixteenVisibleCharacters) {
     EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
     EXPECT_THAT(refused.error().message,
                 StartsWith(folder_.Path("token") + ": the token must have at least 16 visible ASCII characters"));
-    EXPECT_EQ(refused.error().message.find(text), std::string::npos);  // it may be right but for a slip
+    EXPECT_EQ(refused.error().message.find(text), std::string::npos);  // the text may be the token with a typing error
     EXPECT_THAT(ReadToken("", text.c_str()).error().message, StartsWith("PENDULUM_TOKEN: the token must have"));
   }
 }
@@ -172,7 +173,7 @@ TEST_F(ReadTokenTest, RefusesAFileWithoutOne) {
     EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
   }
   const auto missing = ReadToken(folder_.Path("none"), kToken);
-  ASSERT_FALSE(missing);  // the environment is no substitute for what was asked for
+  ASSERT_FALSE(missing);  // the environment does not replace a missing token file
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
   EXPECT_FALSE(Read(std::string(5000, 'x')));
 }

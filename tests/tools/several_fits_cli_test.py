@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on several recordings, each by itself (--shared none), and on one with several releases: each fit is
-that of its own run.
+"""Runs fit_pendulum on several recordings, each separately (--shared none), and on one with several releases: each fit
+equals the single fit of its run.
 
   several_fits_cli_test.py PATH/TO/fit_pendulum
 """
@@ -26,7 +26,7 @@ NO_HOLD = ("no held part at the start: the first fall dates the release before t
 
 
 def without_hold(text):
-    """The recording from 0.1 s after its first release on, while it falls."""
+    """The recording from 0.1 s after its first release on, while the pendulum falls."""
     header, *rows = text.splitlines(keepends=True)
     return header + "".join(row for row in rows if float(row.split(",")[0]) >= swing.TRUTH["release_time"] + 0.1)
 
@@ -59,7 +59,7 @@ class SeveralFits(unittest.TestCase):
         return run
 
     def assert_refused(self, code, sentence, *flags):
-        """The tool stops with the code and that sentence, and no file is new."""
+        """Checks that the tool exits with the code and that sentence, and writes no file."""
         before = self.names()
         run = self.run_tool(*flags)
         self.assertEqual(run.returncode, code, run.stderr)
@@ -68,7 +68,7 @@ class SeveralFits(unittest.TestCase):
         self.assertEqual(self.names(), before)
 
     def assert_numbered_as_single(self, *flags):
-        """Runs with flags that name a.csv and b.csv; the numbered outputs are those of the single runs."""
+        """Runs with flags for a.csv and b.csv; the numbered outputs must equal those of the single runs."""
         for name in "ab":
             self.fit("--data", f"{name}.csv", "--json", f"{name}.json", "--residuals", f"{name}_residuals.csv")
         before = self.names()
@@ -101,7 +101,7 @@ class SeveralFits(unittest.TestCase):
             parameters = json.loads(self.read("one.json"))["fits"][0]["parameters"]
             starts.append(parameters["release_time"]["estimate"])
         self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
-        self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s held, and a sample each
+        self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s of hold, one sample each
         self.assertNotIn("fit_003.json", self.names())
 
     def test_a_release_that_there_is_not(self):
@@ -122,7 +122,7 @@ class SeveralFits(unittest.TestCase):
                             "-")
 
     def assert_first_and_last_written(self, code, sentence, *flags):
-        """Runs with flags that name a.csv, one that cannot be fitted, and b.csv."""
+        """Runs with flags for a.csv, a recording that cannot be fitted, and b.csv."""
         run = self.run_tool(*flags, *EACH, "--json", "fit.json", "--residuals", "r.csv")
         self.assertEqual(run.returncode, code, run.stderr)
         self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
@@ -176,7 +176,7 @@ class SeveralFits(unittest.TestCase):
         self.assertNotIn("fit_001.json", self.names())
 
     def assert_kept(self, name, flag, *flags):
-        """The recording of that name is not overwritten, but refused as an output."""
+        """Checks that the recording of that name is refused as an output and not overwritten."""
         before = self.read(name)
         self.assert_refused(2, f"--json {name} would overwrite the input of {flag}", *flags)
         self.assertEqual(self.read(name), before)

@@ -93,7 +93,7 @@ class SimulatePendulumTest(unittest.TestCase):
         truths = self.truths()
         for name, mean, std_dev in (("inertia", 0.04, 0.001), ("release_angle", 0.4, 0.02)):
             values = [truth[name] for truth in truths]
-            # Four standard errors of the mean and of the standard deviation of so many normal values.
+            # Four standard errors of the mean and of the standard deviation of `count` normal values.
             self.assertLess(abs(statistics.mean(values) - mean), 4 * std_dev / math.sqrt(count))
             self.assertLess(abs(statistics.stdev(values) - std_dev), 4 * std_dev / math.sqrt(2 * count))
         self.assertEqual({truth["viscous"] for truth in truths}, {0.001})

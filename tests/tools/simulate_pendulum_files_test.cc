@@ -108,7 +108,7 @@ TEST_F(WriteRecordingsTest, ReplacesWhatIsThere) {
 TEST_F(WriteRecordingsTest, NamesTheFirstSeedThatFailsAndWritesNoManifest) {
   flags_.count = 30;
   flags_.manifest = folder_.Path("runs.csv");
-  flags_.set += ",coulomb=0.2";  // sin 0.25 = 0.247: what is above that holds the pendulum
+  flags_.set += ",coulomb=0.2";  // sin 0.25 = 0.247: with more dry friction the pendulum does not move
   flags_.spread = "coulomb=0.05";
   flags_.threads = 1;
   const std::string alone = Refused(StatusCode::kFailedPrecondition);

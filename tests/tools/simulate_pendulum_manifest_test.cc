@@ -86,7 +86,7 @@ TEST_F(ManifestTest, GivesEachRecordingItsOwnTruth) {
   EXPECT_NE(manifest.Row(0)->substr(0, 40), manifest.Row(1)->substr(0, 40));
   const auto second = SimulationOfRecording(options, 1);
   ASSERT_TRUE(second);
-  // The field reads back as the very number.
+  // Parsing the field gives exactly the same number.
   const std::string row = *manifest.Row(1);
   EXPECT_EQ(std::stod(row.substr(row.find(",8,") + 3)), second->truth.front().second);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A lab with a pendulum drawn at random: its free swings come from simulate_pendulum, a hand's moves from here."""
+"""A lab with a random pendulum: simulate_pendulum makes its free swings, this module the motions by hand."""
 
 import csv
 import dataclasses
@@ -15,15 +15,15 @@ Start = dict[str, float]  # release_angle and release_time, or initial_angle and
 
 @dataclasses.dataclass
 class Recording:
-    """A file as a user has it, and what is true of it."""
+    """A file of a user, and its true values."""
 
     rows: list[Row]
-    truth: dict[str, float]  # the law and zero_angle or rate_bias; empty where the motion is no free swing
+    truth: dict[str, float]  # the law and zero_angle or rate_bias; empty if the motion is not a free swing
     releases: list[Row] = dataclasses.field(default_factory=list)  # time [s] and angle [rad] of each
     metadata: list[str] = dataclasses.field(default_factory=list)
     header: str = "time_s,angle_deg"
-    zero_span: float = 0  # rad: any zero within +- this of the truth was the true one at some time
-    clock_turn: float = 0  # s: the clock shows times modulo this; 0 if they are plain
+    zero_span: float = 0  # rad: every zero within +- this of the true value was correct at some time
+    clock_turn: float = 0  # s: the clock shows times modulo this; 0 for a normal clock
 
     def text(self) -> str:
         """The CSV file."""
@@ -31,25 +31,25 @@ class Recording:
         return "\n".join(lines + [f"{time:.12g},{value:.10g}" for time, value in self.rows]) + "\n"
 
     def readings(self, change) -> "Recording":
-        """With change(time, reading) in place of each reading."""
+        """The recording with change(time, reading) in place of each reading."""
         self.rows = [(time, change(time, value)) for time, value in self.rows]
         return self
 
     def stamps(self, change) -> "Recording":
-        """With change(time) in place of each stamp."""
+        """The recording with change(time) in place of each time stamp."""
         self.rows = [(change(time), value) for time, value in self.rows]
         return self
 
 
 def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A number whose order of magnitude is uniform."""
+    """A random number whose logarithm is uniform."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 class Lab:
-    """One pendulum, its sensor and the hand. Hazards change the fields before they ask for a swing.
+    """One pendulum, its sensor and the hand. Hazards change the fields before they request a swing.
 
-    White noise is at least one step of the sensor, because only then are error bars of least squares true.
+    White noise is at least one step of the sensor; otherwise the error bars of least squares would be wrong.
     """
 
     def __init__(self, simulator: pathlib.Path, folder: pathlib.Path, rng: random.Random, model: str):
@@ -60,7 +60,7 @@ class Lab:
             self.law["coulomb"] = rng.uniform(0, 0.01)
         if model == "drag":
             self.law["drag"] = rng.uniform(0.02, 0.1) * inertia
-        self.zero = math.radians(rng.uniform(-3, 3))  # or the bias of a rate
+        self.zero = math.radians(rng.uniform(-3, 3))  # or the bias of a rate sensor
         self.noise = rng.uniform(0.1, 0.5)
         self.resolution = self.noise * rng.uniform(0.3, 1)
         self.rate = rng.choice([50, 60, 75, 100, 125, 150, 200])
@@ -95,7 +95,7 @@ class Lab:
         return self.quantize(math.degrees(angle + self.zero) + self.rng.gauss(0, self.noise))
 
     def trace(self, start: Start, begin: int = 0, seconds: float | None = None, clean_unit: str = "") -> list[Row]:
-        """A simulated swing from sample `begin` on; with a clean unit it is free of noise, steps and offset."""
+        """A simulated swing from sample `begin` on; with a clean unit it has no noise, steps or offset."""
         unit = clean_unit or self.unit
         offset = "zero_angle" if unit in ("deg", "rad") else "rate_bias"
         values = {**self.law, **start, offset: 0 if clean_unit else self.zero}
@@ -112,7 +112,7 @@ class Lab:
         return [(float(time), float(value)) for time, value in lines[1:]]
 
     def recording(self, rows: list[Row], releases: list[Row]) -> Recording:
-        """Rows of which the last simulated truth holds."""
+        """A recording of these rows, with the last simulated true values."""
         known = json.loads((self.folder / "simulated_truth.json").read_text(encoding="utf-8"))
         names = [*self.law, "zero_angle" if self.unit == "deg" else "rate_bias"]
         return Recording(rows, {name: known[name] for name in names}, releases, header=f"time_s,angle_{self.unit}")
@@ -129,13 +129,13 @@ class Lab:
         return angles[sample][1], rates[sample][1]
 
     def peak_rate(self, sample: int) -> float:
-        """The rate [rad/s] with which it would pass its zero next, by its energy at a sample."""
+        """The rate [rad/s] at its next passage through zero, from its energy at a sample."""
         angle, rate = self.state(sample)
         return math.sqrt(rate**2 + 2 * self.frequency**2 * (1 - math.cos(angle)))
 
     def by_hand(self, begin: int, angle: float, moves: list[Row]) -> list[Row]:
-        """Readings from sample `begin` on while a hand leads the pendulum from the angle [rad] on: each move is
-        (seconds, angle at its end)."""
+        """Readings from sample `begin` on while a hand leads the pendulum, starting at the angle [rad]. Each move is (seconds,
+        angle at its end)."""
         rows: list[Row] = []
         for seconds, target in moves:
             count = max(1, round(seconds * self.rate))
@@ -146,7 +146,7 @@ class Lab:
         return rows
 
     def wander(self, seconds: float, end: float | None = None) -> list[Row]:
-        """Moves of a hand without a plan, and to `end` at last."""
+        """Random moves of a hand, which finish at `end`."""
         moves: list[Row] = []
         while seconds > 0:
             step = min(seconds, self.rng.uniform(0.3, 1.2))

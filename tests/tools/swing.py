@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings for the tests of the tools: the equation of motion integrated here once more, in few lines."""
+"""Recordings for the tests of the tools, from an independent short integration of the equation of motion."""
 
 import math
 import random
@@ -25,7 +25,7 @@ def _step(angle, rate, h, truth):
 
 
 def swing(duration=12.0, rate_hz=100, truth=TRUTH):
-    """Samples (time [s], angle [rad], rate [rad/s]) of a held and released pendulum, the zero angle apart."""
+    """Samples (time [s], angle [rad], rate [rad/s]) of a held and released pendulum, without the zero angle."""
     angle, rate, steps = truth["release_angle"], 0.0, 20
     samples = []
     for k in range(int(duration * rate_hz) + 1):
@@ -38,7 +38,7 @@ def swing(duration=12.0, rate_hz=100, truth=TRUTH):
 
 
 def angle_csv(duration=12.0, sigma=0.003, truth=TRUTH, seed=20):
-    """The text of a recording in degrees with white noise of so many radians, the same at every call."""
+    """The text of a recording in degrees with white noise of `sigma` radians, equal for every call."""
     noise = random.Random(seed)
     lines = ["time_s,angle_deg"]
     for time, angle, _ in swing(duration, truth=truth):
@@ -56,7 +56,7 @@ def rate_csv(duration=12.0, sigma=0.01, truth=TRUTH):
 
 
 def two_releases():
-    """The text of a recording: held and released, taken back by hand within 2 s, held and released once more."""
+    """The text of a recording: held and released, taken back by hand within 2 s, held and released again."""
     noise = random.Random(22)
     released = [angle for _, angle, _ in swing(10.0)]
     end = released[-1]

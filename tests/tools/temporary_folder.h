@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// A folder for one test, removed with all in it.
+/// A folder for one test, removed with its content.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -34,7 +34,7 @@ class TemporaryFolder {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  /// What is in the folder, in no order.
+  /// Names of the files in the folder, in no particular order.
   std::vector<std::string> Names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) names.push_back(entry.path().filename());

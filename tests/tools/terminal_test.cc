@@ -12,7 +12,7 @@
 namespace pendulum::terminal_test {
 namespace {
 
-/// An environment variable as it is while this lives, then as it was; nullptr: not set.
+/// Sets an environment variable during its lifetime, then restores it; nullptr: not set.
 class WithVariable {
  public:
   WithVariable(const char* name, const char* value) : name_(name) {
@@ -36,7 +36,7 @@ class WithVariable {
   std::optional<std::string> old_;
 };
 
-/// A descriptor, closed in the end.
+/// Closes a descriptor at the end.
 class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
@@ -49,7 +49,7 @@ class Descriptor {
   int value_;
 };
 
-/// The terminal's end of a pair of pseudo-terminals; its other end is open as long as `controller` is.
+/// The terminal's end of a pair of pseudo-terminals; the other end stays open during the lifetime of `controller`.
 int OpenTerminal(const Descriptor& controller) {
   EXPECT_EQ(::grantpt(controller.value()), 0);
   EXPECT_EQ(::unlockpt(controller.value()), 0);
@@ -70,7 +70,7 @@ TEST_F(OfATerminal, IsWanted) {
 }
 
 TEST_F(OfATerminal, IsNotWantedWithNoColorUnlessThatIsEmpty) {
-  const WithVariable zero("NO_COLOR", "0");  // whatever it says
+  const WithVariable zero("NO_COLOR", "0");  // any value disables colours
   EXPECT_FALSE(WantsColour(end_.value()));
   const WithVariable empty("NO_COLOR", "");
   EXPECT_TRUE(WantsColour(end_.value()));

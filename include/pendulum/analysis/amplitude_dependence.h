@@ -8,13 +8,13 @@
 
 namespace pendulum {
 
-/// The amplitude of a fitted motion, rad: its root mean square from the release on; NaN where there is none.
+/// Root mean square of the fitted angle after the release, rad; NaN if the motion cannot be computed.
 double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptions& options);
 
-/// Whether a slope with amplitude² explains what differs: estimates of whole recordings, at the amplitude that weighs
-/// there, and slopes within recordings (Constancy) are told together by one line (MODEL.md eq. (59)). amplitudes: K,
-/// rad, used where a recording has no windows. Nothing where fewer than three numbers tell of it, or all amplitudes are
-/// one.
+/// Tests whether a linear dependence on amplitude² explains the differences of a parameter. One line is fitted to the
+/// estimates of whole recordings and to the slopes within recordings (Constancy; MODEL.md eq. (59)). A whole recording
+/// is placed at the weighted mean of amplitude² of its windows. amplitudes: K, rad, used for recordings without
+/// windows. Returns std::nullopt with fewer than three numbers for the line, or if all amplitudes are equal.
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes);

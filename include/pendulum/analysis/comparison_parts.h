@@ -10,35 +10,35 @@
 
 namespace pendulum {
 
-/// What a row has without the other models: parameters, residuals, and why it is not judged.
+/// The part of a row that needs no other model: parameters, residuals, and the reason if it is not judged.
 ComparisonRow DescribeFit(const FitReport& fit);
 
-/// The judged fit of the smallest AICc; whether others have memory does not matter, for wrong laws leave some.
-/// nullptr: none converged.
+/// The judged fit with the smallest AICc. Autocorrelated residuals do not exclude the other fits: a wrong law leaves
+/// such residuals. nullptr: no fit converged.
 const FitReport* BestFit(const std::vector<FitReport>& fits);
 
-/// The residuals of a fit about its estimates; nothing when its motion cannot be traced. Parameters at a bound may move
-/// away from it if `with_bounded`, and stay there else.
+/// Residuals of a fit, linearized about its estimates. Parameters at a bound may move away from it if `with_bounded`;
+/// otherwise they stay there. std::nullopt: the trajectory cannot be computed.
 std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit, const FitOptions& options,
                                                bool with_bounded);
 
-/// log L of probabilities instead of densities, as the fits have it.
+/// The term that converts log L from densities to probabilities of levels; the fits use the same term.
 double PerCount(const Recording& used);
 
-/// The memory that all models are given: that of the best one, of a low order. What a law does not explain
-/// looks like a process of very high order, of which the first few whiten nearly as well in a fraction of the time.
+/// The autocorrelation that all models share: that of the best model, of low order. Misfit looks like a process of very
+/// high order; a low order whitens it nearly as well in a fraction of the time.
 Autocorrelation SharedMemory(const FitReport& best);
 
-/// What the criteria rest on, in words.
+/// Describes the likelihood behind the criteria, in words.
 std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best);
 
-/// By the noise of the best fit; the resolution is that of its readings, in their unit.
+/// Chooses by the noise of the best fit. `resolution` is that of its readings, in their unit.
 Likelihood ChooseLikelihood(const FitReport& best, double resolution);
 
-/// AIC and AICc of so many samples, BIC of so many effective ones, where there is a log-likelihood.
+/// Sets AIC and AICc with `samples`, and BIC with `effective_samples`, for a row that has a log-likelihood.
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row);
 
-/// Differences to the best model, and Akaike's weights.
+/// Sets the differences to the best model, and Akaike's weights.
 void SetDifferences(std::vector<ComparisonRow>& rows);
 
 }  // namespace pendulum

@@ -10,8 +10,8 @@
 
 namespace pendulum {
 
-/// One physical parameter in the two halves of a recording, in the unit of the fit's parameter; as the half's readings
-/// alone would have it, so that friction near its bound may be negative.
+/// One physical parameter in the two halves of a recording, in the unit of the fit's parameter. Estimates ignore the
+/// parameter's bounds, so friction near 0 may be negative.
 struct HalvesRow {
   std::string name, unit;
   double first = 0, second = 0;
@@ -19,46 +19,47 @@ struct HalvesRow {
   double z = 0;  ///< (second - first) / its standard deviation
 };
 
-/// A window of the recording, where inertia and the friction parameter that is known best were fitted once more, with a
-/// start of its own. Standard errors count those of what is held at the whole fit's estimates too.
+/// A window of the recording. Inertia and the friction parameter with the smallest relative error are fitted again,
+/// with a separate start. Standard errors include those of the parameters held at the whole fit's estimates.
 struct AmplitudeRow {
   double from = 0, to = 0;                      ///< s, on the file's clock
   double amplitude = 0;                         ///< rad, mean over the window
-  double inertia = 0, inertia_std_error = 0;    ///< In the fit's unit.
-  double friction = 0, friction_std_error = 0;  ///< In the fit's unit; NaN where no friction has an error.
+  double inertia = 0, inertia_std_error = 0;    ///< Values in the fit's unit.
+  double friction = 0, friction_std_error = 0;  ///< Values in the fit's unit; NaN if no friction has an error.
 };
 
-/// A parameter's change with amplitude: value = a + slope · (amplitude² - its mean).
+/// Change of a parameter with amplitude: value = a + slope · (amplitude² - mean of amplitude²).
 struct AmplitudeTrend {
-  std::string name, unit;  ///< Of the parameter.
+  std::string name, unit;  ///< Name and unit of the parameter.
   double slope = 0;        ///< unit per rad²
   double slope_std_error = 0;
-  double span = 0;  ///< slope · (largest - smallest amplitude²) over the estimate: the relative change over the run.
-  double p = 1;     ///< Probability of as much by chance, two-sided.
+  double span = 0;  ///< slope · (largest - smallest amplitude²) / estimate: the relative change over the run.
+  double p = 1;     ///< Two-sided probability of a slope at least this large by chance.
 };
 
-/// Whether a fit's parameters are constants of the recording.
+/// Whether the parameters of a fit stay constant during its recording.
 struct Constancy {
-  std::vector<HalvesRow> halves;  ///< Inertia and friction, but for what is fixed.
-  double halves_statistic = 0;  ///< χ² of the joint difference of all rows, with their covariances (MODEL.md eq. (55))
+  std::vector<HalvesRow> halves;  ///< Inertia and friction, without fixed parameters.
+  double halves_statistic = 0;  ///< χ² of the joint difference of all rows, with their covariances (MODEL.md eq. (55)).
   int halves_dof = 0;
-  std::optional<double> halves_p;  ///< Absent when there is no such test; `reason` says why.
+  std::optional<double> halves_p;  ///< Absent if there is no such test; `reason` gives the cause.
   std::vector<AmplitudeRow> windows;
-  std::vector<AmplitudeTrend> trends;  ///< Of inertia and one friction parameter; empty when there are too few windows.
-  std::string reason;                  ///< Why a test is missing; empty when none is.
-  std::string verdict;                 ///< A sentence on what is not constant, or that all is.
+  std::vector<AmplitudeTrend> trends;  ///< Trends of inertia and one friction parameter; empty with too few windows.
+  std::string reason;                  ///< Why a test is missing; empty if none is.
+  std::string verdict;                 ///< A sentence that names what is not constant, or says that everything is.
 
   bool constant() const;  ///< No test has p < kNotConstant.
 };
 
 inline constexpr double kNotConstant = 1e-3;
 
-/// Fits two parts of the recording that tell about equally much (the earlier is the shorter), each of three periods or
-/// more after the release, and compares (G. C. Chow, Econometrica 28:591, 1960); and three to eight such windows, whose
-/// trend with amplitude is weighed by the covariance that their estimates have when the whole fit is right. Priors and
-/// values of the start are those of the whole, not of its parts. What follows the last turning point is left out.
-/// `reason` says so when `fit` did not converge on `used` with `options`, the recording is undersampled or too short,
-/// or a part does not converge. Cost: up to ten fits of parts, some milliseconds for 2000 samples.
+/// Fits two parts of the recording with about equal information (the earlier one is shorter) and compares them (G. C.
+/// Chow, Econometrica 28:591, 1960). Each part has at least three periods after the release. Also fits three to eight
+/// such windows; their trend with amplitude is weighted by the covariance that their estimates have if the whole fit is
+/// right. Priors and values of the start belong to the whole recording and are not used for its parts. Samples after
+/// the last turning point are left out. `reason` is set if `fit` did not converge on `used` with `options`, the
+/// recording is undersampled or too short, or a part does not converge. Cost: up to ten fits of parts, some
+/// milliseconds for 2000 samples.
 Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOptions& options);
 
 }  // namespace pendulum

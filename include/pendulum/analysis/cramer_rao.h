@@ -11,28 +11,33 @@
 
 namespace pendulum {
 
-/// The parameters of a fit to a simulated recording, as TrueParameters has them.
+/// The parameters of a fit to a simulated recording, in the order of TrueParameters.
 std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run);
 
 /// The Cramér-Rao bound of each parameter of a simulated recording: no unbiased estimate has a smaller standard
-/// deviation. Of the noise actually simulated, its size unknown; J (N x P): the readings' sensitivities at the truth.
+/// deviation. The bound is for the simulated noise, with its size unknown; J (N x P): the readings' sensitivities at
+/// the true values.
 ///   white Gaussian noise     JᵀJ / σ², or with levels Σ of ReadingInformation, cut off by the range
 ///   AR(1) noise              Jᵀ R^-1 J; levels of spacing q count as additional white noise of variance q²/12
 ///   Student's t noise        (ν + 1) / (ν + 3) JᵀJ / s², s its scale
 ///
-/// time N, s, increasing: the instants of the samples, from SimulateRecording.
-/// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of G). Absent, all of them,
-/// for no noise, a range with other than white Gaussian noise on levels, Student's t noise that is correlated or on
-/// levels, and a motion that cannot be traced; absent, each, where the readings do not tell the parameter.
+/// time N, s, increasing: the time stamps of the samples, from SimulateRecording.
+/// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of G). All bounds are
+/// absent
+/// - without noise,
+/// - for a range, unless the noise is white Gaussian noise on levels,
+/// - for Student's t noise that is correlated or on levels,
+/// - if the trajectory cannot be computed.
+/// A single bound is absent if the readings do not determine that parameter.
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time);
 
-/// One of several recordings of one rig: its truth, and the instants of its samples (N, s).
+/// One of several recordings of one rig: its true values, and the time stamps of its samples (N, s).
 struct SimulatedRun {
   SyntheticOptions truth;
   Eigen::VectorXd time;
 };
 
-/// The bounds of inertia and friction, which all the recordings share, each with a start, zero and noise of its own.
+/// The bounds of inertia and friction shared by all recordings; each recording has a separate start, zero and noise.
 std::vector<std::optional<double>> SharedCramerRaoBounds(const std::vector<SimulatedRun>& runs);
 
 }  // namespace pendulum

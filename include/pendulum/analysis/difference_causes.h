@@ -13,46 +13,50 @@
 
 namespace pendulum {
 
-/// K formulas applied to a recording: their values, in their own units. Nothing where one cannot be.
+/// Applies K formulas to a recording and returns K values, in their own units. std::nullopt: a formula cannot be
+/// applied.
 using FormulaValues = std::function<std::optional<Eigen::VectorXd>(const Recording&, Gravity gravity)>;
 
-/// K values: what K formulas make of a fitted motion as one thing after the other comes between (MODEL.md eq. (38)).
+/// Results (K values each) of K formulas on a fitted motion; each stage adds one property of the recording (MODEL.md
+/// eq. (38)).
 struct FormulaStages {
-  Eigen::VectorXd small_angles;  ///< Linear gravity, no drift of the zero, 200 samples a period, no noise.
-  Eigen::VectorXd drifting;      ///< The same with the fitted drift.
-  Eigen::VectorXd own_gravity;   ///< The same with the model's gravity.
-  Eigen::VectorXd own_instants;  ///< At the recording's instants.
-  Eigen::VectorXd own_levels;    ///< On the sensor's levels, within its range.
+  Eigen::VectorXd small_angles;  ///< Linear gravity, no drift of the zero, 200 samples per period, no noise.
+  Eigen::VectorXd drifting;      ///< Adds the fitted drift.
+  Eigen::VectorXd own_gravity;   ///< Uses the model's gravity.
+  Eigen::VectorXd own_instants;  ///< Takes samples at the recording's time stamps.
+  Eigen::VectorXd own_levels;    ///< Rounds to the sensor's levels, within its range.
 };
 
-/// Nothing where the motion cannot be traced, or the formulas cannot be applied to it.
+/// Returns std::nullopt if the trajectory cannot be computed or the formulas cannot be applied to it.
 std::optional<FormulaStages> ApplyInStages(const FittedMotion& motion, const Recording& used, Gravity gravity,
                                            const FormulaValues& formulas);
 
-/// A difference between a formula and the fit, part by part.
+/// Difference between a formula and the fit, split by cause.
 struct DifferenceCauses {
-  double formula = 0;     ///< Even at small angles: the formula's friction is not the model's.
+  double formula = 0;     ///< Remains at small angles: the formula's friction is not the model's.
   double drift = 0;       ///< The zero drifts.
   double amplitude = 0;   ///< The angles are not small.
-  double sampling = 0;    ///< Samples are missing about the turning points.
-  double resolution = 0;  ///< Levels stand in for values.
-  double recording = 0;   ///< The readings are not the model's: noise, or another law.
+  double sampling = 0;    ///< Samples are missing near the turning points.
+  double resolution = 0;  ///< Readings are rounded to levels.
+  double recording = 0;   ///< The readings differ from the model: noise, or another law.
 
   double total() const { return formula + drift + amplitude + sampling + resolution + recording; }
 };
 
-/// Formula `k`: what it gave for the recording, and the fit's value, all times `scale`.
+/// Splits the difference of formula `k`. closed_form: its value for the recording; fit: the fit's value; all are
+/// multiplied by `scale`.
 DifferenceCauses SplitDifference(const FormulaStages& stages, Eigen::Index k, double scale, double closed_form,
                                  double fit);
 
-/// What the causes are called where they depend on formula and recording.
+/// Names of the causes that depend on the formula and the recording.
 struct CauseNames {
   std::string formula;
   std::string amplitude;
-  std::string misfit;  ///< Where the recording's part exceeds 3 standard deviations of noise.
+  std::string misfit;  ///< Used if the recording's part exceeds 3 standard deviations of noise.
 };
 
-/// The parts that make a fifth of the difference or more, the largest first. std_dev: of it by noise alone, in `unit`.
+/// Lists the parts that are at least a fifth of the difference, the largest first. std_dev: of the difference by noise
+/// alone, in `unit`.
 std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const std::string& unit,
                            const CauseNames& names);
 

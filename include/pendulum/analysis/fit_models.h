@@ -11,14 +11,14 @@
 
 namespace pendulum {
 
-/// One free swing and what each model makes of it.
+/// One free swing and the fit of each model to it.
 struct FittedModels {
-  Recording used;               ///< The samples that all were fitted to, without warnings.
+  Recording used;               ///< The samples that all models were fitted to, without warnings.
   FreeSwing swing;              ///< As in SwingFit.
-  std::vector<FitReport> fits;  ///< In the order asked for; at least one.
+  std::vector<FitReport> fits;  ///< In the order of the requested models; at least one.
 };
 
-/// `options` for one of several models: what they say of parameters that only others have is left out, and named.
+/// `options` for one of several models. Options for parameters that only other models have are left out and listed.
 struct OptionsForModel {
   FitOptions options;
   std::vector<std::string> ignored;
@@ -27,12 +27,12 @@ struct OptionsForModel {
 /// The options for `model`, one of `models`.
 OptionsForModel ForModel(const FitOptions& options, const std::string& model, const std::vector<std::string>& models);
 
-/// Names of inertia and friction of any of the models.
+/// Names of inertia and of all friction parameters of the models.
 std::vector<std::string> PhysicalNames(const std::vector<std::string>& models);
 
-/// Fits each model to one free swing: the window is that of the richest law among them (FitSwing), and all begin as it
-/// does and have the noise family that the model of the smallest residuals asks for. One model is FitSwing. Errors as
-/// FitSwing; what only one of several models cannot do is a report that is kFailed.
+/// Fits each model to one free swing. The window is that of the richest law among them (FitSwing). All fits start like
+/// that one and use the noise family chosen for the model with the smallest residuals. With one model it equals
+/// FitSwing. Errors as FitSwing; a failure of only one of several models is a report that is kFailed.
 Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models);
 

@@ -18,38 +18,39 @@ namespace pendulum {
 
 struct TrajectoryData;
 
-/// The motion that a fit found, to be followed at any instants, with another gravity or other parameters.
+/// The motion that a fit found. It can be evaluated at any instants, with another gravity or other parameters.
 class FittedMotion {
  public:
-  /// `used` is what was fitted. Once a stop is requested, there are no readings any more.
+  /// `used` holds the fitted samples. After a stop request, Readings returns std::nullopt.
   FittedMotion(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, std::stop_token stop = {});
 
-  /// The recording's instants, true s from its first sample.
+  /// The recording's time stamps, true s from its first sample.
   const Eigen::VectorXd& instants() const { return instants_; }
 
   double small_angle_period() const;  ///< true s
 
-  /// The same start, zero and parameters with that gravity.
+  /// The same start, zero and parameters with another gravity.
   FittedMotion WithGravity(Gravity gravity) const;
 
   bool drifts() const { return zero_motion_ == ZeroMotion::kDrifts; }
 
-  /// The same with a zero that stays where it is at first.
+  /// The same motion with the zero fixed at its initial value.
   FittedMotion WithoutDrift() const;
 
-  /// The same start and zero with viscous friction alone: inertia [s^2] and viscous [s], as its report, in units of G.
+  /// The same start and zero with only viscous friction: inertia [s^2] and viscous [s], in units of G.
   FittedMotion WithViscous(double inertia, double viscous) const;
 
-  /// The readings at instants (N, s from the first sample, increasing), rad or rad/s; and unless null their N x P
-  /// derivatives, in the units of the fit's report; edges lag as they were crossed at the recording's own instants, as
-  /// the motion goes at others. Nothing when the motion cannot be traced.
+  /// The readings at instants (N, s from the first sample, increasing), rad or rad/s, and optionally their N x P
+  /// derivatives, in the units of the fit's report. At the recording's own instants edges lag in the direction in which
+  /// they were crossed; at other instants, in the direction of the motion. std::nullopt: the trajectory cannot be
+  /// computed.
   std::optional<Eigen::VectorXd> Readings(const Eigen::VectorXd& instants, Eigen::MatrixXd* jacobian = nullptr) const;
 
-  /// The motion over the recording; nothing when it cannot be traced.
+  /// The trajectory over the recording; std::nullopt if it cannot be computed.
   std::optional<Trajectory> Trace() const;
 
  private:
-  /// Which way edges are behind; false where the motion cannot be traced.
+  /// Sets the direction in which edges lag; false if the trajectory cannot be computed.
   bool SetLags(TrajectoryData& data) const;
 
   MotionModel model_;
@@ -58,9 +59,9 @@ class FittedMotion {
   SensorModel sensor_;
   ZeroMotion zero_motion_ = ZeroMotion::kNone;
   std::vector<double> parameters_;  // P, units of G, times from the first sample
-  std::vector<double> reported_;    // P: report's unit per unit of parameters_
+  std::vector<double> reported_;    // P: the report's unit per unit of parameters_.
   Eigen::VectorXd instants_;
-  std::vector<double> against_;  // N, of edges that lag: what their lag multiplies at the recording's instants
+  std::vector<double> against_;  // N, of edges that lag: the factor of their lag at the recording's instants.
   std::stop_token stop_;
 };
 

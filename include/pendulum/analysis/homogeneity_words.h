@@ -8,7 +8,7 @@
 
 namespace pendulum {
 
-/// Sentences on whether recordings agree, which one does not, and what explains it.
+/// Sentences that say whether the recordings agree, which one does not, and the explanation.
 std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs);
 
 }  // namespace pendulum

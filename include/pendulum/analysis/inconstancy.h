@@ -6,12 +6,12 @@
 
 namespace pendulum {
 
-/// Counts what is not constant: the standard error of a parameter that is no constant of its recording says how well
-/// one value for all of it is known, and not by how much the next window or run will differ. Where its windows (its
-/// halves, where windows have no estimates of it) scatter by more than their errors, or follow the amplitude, at
-/// kNotConstant, their standard deviation about its estimate beyond their errors (MODEL.md section 9) is added in
-/// squares to its systematic error in `fit`, with the warning not_constant. Several recordings fitted together have the
-/// scatter between them instead (RandomEffects).
+/// Adds the error of parameters that are not constant. The standard error describes one value for the whole recording;
+/// it does not include the difference to the next window or run. The error is added if the windows scatter by more than
+/// their errors, or follow the amplitude, at kNotConstant. The halves are used if windows have no estimates. The added
+/// error is the standard deviation of the windows about the estimate, beyond their errors (MODEL.md section 9). It is
+/// added in squares to the systematic error in `fit`, with the warning not_constant. Joint fits use the scatter between
+/// recordings instead (RandomEffects).
 void CountInconstancy(const Constancy& constancy, FitReport& fit);
 
 }  // namespace pendulum

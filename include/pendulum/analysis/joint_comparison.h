@@ -6,11 +6,12 @@
 
 namespace pendulum {
 
-/// As CompareModels, over several recordings. Compared are the joint fits; where the recordings disagree by the law
-/// that describes each of them best, the fits to each alone, for a joint fit then lacks more than a law. Likelihoods
-/// are sums over the recordings; where residuals remember, each recording has a memory of its own and what is shared is
-/// the likeliest for all. Predictions are those of each recording from parts of itself. Residuals of different units
-/// have no common rms: those of a recording are then divided by the least σ of any model there.
+/// CompareModels for several recordings. It compares the joint fits. If the recordings disagree under the law that
+/// describes each of them best, it compares the fits to each recording alone: the joint fit then lacks more than a law.
+/// Likelihoods are sums over the recordings. Autocorrelated residuals have a separate autocorrelation for each
+/// recording, and the shared parameters are the most likely ones for all recordings. Each recording is predicted from
+/// parts of itself. If units differ there is no common rms; the residuals of a recording are then divided by the least
+/// σ of any model there.
 Comparison CompareJointModels(const JointModels& joint, const FitOptions& options, const CompareOptions& how = {});
 
 }  // namespace pendulum

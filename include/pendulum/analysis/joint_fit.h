@@ -13,28 +13,28 @@ namespace pendulum {
 
 /// Several recordings of one rig.
 struct RunModels {
-  std::string label;                 ///< For sentences: "recording 2 (b.csv)".
-  FittedModels alone;                ///< What each model makes of the recording alone.
-  std::vector<Constancy> constancy;  ///< Of these fits, in their order.
+  std::string label;                 ///< Name in sentences: "recording 2 (b.csv)".
+  FittedModels alone;                ///< The fits of each model to the recording alone.
+  std::vector<Constancy> constancy;  ///< Constancy of these fits, in their order.
 };
 
-/// K recordings and M models: each fitted to all recordings at once.
+/// K recordings and M models; each model is fitted to all recordings at once.
 struct JointModels {
   std::vector<std::string> models;       ///< M
   std::vector<RunModels> runs;           ///< K
-  std::vector<JointFit> joint;           ///< M; one that cannot be made has failed, and says why.
+  std::vector<JointFit> joint;           ///< M; an impossible fit is kFailed and gives the reason.
   std::vector<Homogeneity> homogeneity;  ///< M
 
-  /// Model m's joint fit as recording k sees it.
+  /// The part of model m's joint fit for recording k.
   const FitReport& FitOf(std::size_t k, std::size_t m) const { return joint[m].runs[k]; }
 
-  /// Whether the readings of all recordings are of one unit.
+  /// Whether the readings of all recordings have the same unit.
   bool HaveOneUnit() const;
 };
 
-/// Fits every model to all recordings together, from where the fits alone ended (FitJointly), and asks whether they
-/// agree (TestHomogeneity). `options` are those of the fits alone, `shared` the names of what is shared, of which each
-/// model takes those it has. What does not converge because recordings disagree says so.
+/// Fits every model to all recordings together, starting from the separate fits (FitJointly), and tests whether the
+/// recordings agree (TestHomogeneity). `options` are those of the separate fits. `shared` lists the shared parameters;
+/// each model uses those it has. A fit that does not converge because the recordings disagree says so.
 JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, const std::vector<std::string>& models,
                         const std::vector<std::string>& shared);
 

@@ -6,18 +6,19 @@
 
 namespace pendulum {
 
-/// Weights w_0, w_1, ... of a mixture of χ² distributions with 0, 1, ... degrees of freedom (S. G. Self and K.-Y.
-/// Liang, JASA 82:605, 1987): what -2 log of a likelihood ratio follows when the simpler law is true.
+/// Weights w_0, w_1, ... of a mixture of χ² distributions with 0, 1, ... degrees of freedom. It is the distribution of
+/// -2 log of a likelihood ratio if the simpler law is true (S. G. Self and K.-Y. Liang, JASA 82:605, 1987).
 using ChiBarWeights = std::vector<double>;
 
-/// Of `bounded` (0, 1 or 2) parameters at their bound under the simpler law beside `free` ones within theirs;
-/// `correlation` of the two bounded ones' estimates. One: w_0 = w_1 = 1/2; two: w_1 = 1/2, w_2 = 1/4 + asin ρ / 2π.
+/// Weights for `bounded` (0, 1 or 2) parameters at their bound under the simpler law and `free` ones inside theirs.
+/// `correlation`: between the estimates of the two bounded ones. One: w_0 = w_1 = 1/2; two: w_1 = 1/2, w_2 = 1/4 + asin
+/// ρ / 2π.
 ChiBarWeights WeightsAtBound(int bounded, int free, double correlation = 0);
 
-/// Probability of a statistic at least as large under the mixture; 1 for a statistic <= 0.
+/// Probability under the mixture that the statistic is at least this large; 1 for a statistic <= 0.
 double ChiBarTail(const ChiBarWeights& weights, double statistic);
 
-/// "half χ²(0), half χ²(1)", "χ²(1)": the mixture in words.
+/// The mixture in words: "half χ²(0), half χ²(1)", "χ²(1)".
 std::string DescribeMixture(const ChiBarWeights& weights);
 
 }  // namespace pendulum

@@ -11,46 +11,49 @@
 
 namespace pendulum {
 
-/// What the criteria rest on.
+/// The likelihood behind the criteria.
 enum class Likelihood {
-  kIndependent,  ///< That of the fits: residuals without memory.
-  kCorrelated,   ///< Gaussian with the memory of the best model's residuals, and q²/12 for rounding (eq. (49)).
-  kNone,         ///< No criterion: a memory of noise below half a count, or of a robust loss; nothing converged.
+  kIndependent,  ///< The likelihood of the fits: residuals without autocorrelation.
+  kCorrelated,   ///< Gaussian with the autocorrelation of the best model's residuals, and q²/12 for rounding (eq.
+                 ///< (49)).
+  kNone,         ///< No criterion: noise below half a count or a robust loss, with autocorrelation; or no fit
+                 ///< converged.
 };
 
 /// One model among those compared.
 struct ComparisonRow {
   std::string model;
-  bool judged = false;  ///< Converged, so that it has criteria (where there are any) and may be recommended.
-  int parameters = 0;   ///< Free ones that are not at a bound 0, those of the noise among them.
+  bool judged = false;  ///< Converged: it has criteria (if there are any) and may be recommended.
+  int parameters = 0;   ///< Free parameters that are not at a bound 0, including those of the noise.
   double rms = 0;       ///< rad or rad/s, of the residuals.
-  std::optional<double> log_likelihood, aic, aicc, bic;  ///< Of densities in 1/rad, 1/(rad/s); probabilities of levels
+  std::optional<double> log_likelihood, aic, aicc, bic;  ///< From densities in 1/rad or 1/(rad/s), or from
+                                                         ///< probabilities of levels
   std::optional<double> delta_bic;                       ///< To the smallest.
   std::optional<double> akaike_weight;  ///< exp(-ΔAICc / 2) over their sum (Burnham & Anderson 2002, section 2.9)
   Prediction cross_validation, forward;
-  double lag1_correlation = 0;  ///< Of the quantile residuals.
+  double lag1_correlation = 0;  ///< Lag-1 correlation of the quantile residuals.
   double ljung_box_p = 1;
-  bool lack_of_fit = false;  ///< The fit says that more than noise is left.
-  std::string reason;        ///< Why it is not judged; empty when it is.
+  bool lack_of_fit = false;  ///< The fit reports that more than noise is left in its residuals.
+  std::string reason;        ///< Why it is not judged; empty if it is.
 };
 
-/// Whether a law needs what it adds to a simpler one.
+/// Test whether a law needs the parameters that it adds to a simpler one.
 struct NestedTest {
   std::string simpler, richer;
   std::vector<std::string> added;  ///< Parameters
   double statistic = 0;            ///< 2 (log L of richer - log L of simpler), at least 0
-  std::string null;                ///< What it follows when the simpler law is true, in words.
+  std::string null;                ///< Distribution of the statistic if the simpler law is true, in words.
   std::optional<double> p;
-  std::string reason;  ///< Why there is no p; empty when there is.
+  std::string reason;  ///< Why there is no p; empty if there is one.
 };
 
 struct Comparison {
-  std::string recommended;  ///< The name of a model; empty when none is.
-  std::string reason;       ///< Of the recommendation, or why there is none: sentences.
+  std::string recommended;  ///< The name of a model; empty if there is none.
+  std::string reason;       ///< Sentences: the reason for the recommendation, or why there is none.
   Likelihood likelihood = Likelihood::kIndependent;
-  std::string criterion;            ///< In words what the rows' criteria are, or why there are none.
+  std::string criterion;            ///< The rows' criteria in words, or why there are none.
   double effective_samples = 0;     ///< n of BIC = k ln n - 2 log L
-  std::vector<ComparisonRow> rows;  ///< In the order of the fits.
+  std::vector<ComparisonRow> rows;  ///< Rows in the order of the fits.
   std::vector<NestedTest> tests;
 };
 
@@ -58,8 +61,8 @@ struct CompareOptions {
   bool predict = true;  ///< Cross-validation and forward prediction.
 };
 
-/// Judges fits of several models to the same samples: the simplest that converged and is within kWithinBic of the
-/// smallest BIC is recommended (MODEL.md eq. (50)). `options` are those of FitModels.
+/// Compares fits of several models to the same samples. Recommends the simplest model that converged and is within
+/// kWithinBic of the smallest BIC (MODEL.md eq. (50)). `options` are those of FitModels.
 Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, const CompareOptions& how = {});
 
 inline constexpr double kWithinBic = 2;

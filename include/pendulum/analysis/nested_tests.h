@@ -14,16 +14,16 @@ struct ComparedRun {
   std::vector<const FitReport*> fits;
 };
 
-/// The recordings that models are compared on: one, or several of joint fits.
+/// The recordings on which models are compared: one, or several with joint fits.
 struct ComparedRuns {
   std::vector<ComparedRun> runs;
   std::vector<std::string> shared;  ///< Parameters that the recordings have in common.
 };
 
-/// Likelihood-ratio tests of every two models of which one is nested in the other and both have a log-likelihood in
-/// `rows` (one for each fit; MODEL.md eq. (51)). Where the richer law has a rate of no meaning in the simpler, the
-/// richest within it, by SupremumTail, for independent residuals. `likelihood` is that of the rows. No p where options
-/// restrict what is added.
+/// Likelihood-ratio tests of all pairs of models where one is nested in the other and both have a log-likelihood in
+/// `rows` (one per fit; MODEL.md eq. (51)). A rate of the richer law may have no meaning in the simpler one. Then
+/// SupremumTail tests only against the richest law within it, for independent residuals. `likelihood` is that of the
+/// rows. There is no p if options restrict an added parameter.
 std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vector<ComparisonRow>& rows,
                                    const FitOptions& options, Likelihood likelihood);
 

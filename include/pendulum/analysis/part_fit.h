@@ -17,46 +17,49 @@
 
 namespace pendulum {
 
-/// Whether a parameter is a zero's drift, zero_drift or bias_drift.
+/// Whether a parameter is a drift of the zero: zero_drift or bias_drift.
 bool IsDrift(std::string_view name);
 
-/// The probability of a standard normal variable farther from 0, to either side.
+/// Probability that a standard normal variable has a larger magnitude than z.
 double TwoSidedP(double z);
 
-/// The next instant that is none of a part ending at `time`.
+/// The smallest double above `time`; a part that ends at `time` does not contain it.
 double After(double time);
 
-/// What each of N readings says of its modelled value m [rad or rad/s] under a noise, l being its log-likelihood.
+/// Derivatives of each of N readings' log-likelihood l by its modelled value m [rad or rad/s].
 struct ReadingTerms {
   Eigen::VectorXd score;        ///< N, ∂l/∂m, 1 / unit of m
-  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; of a robust family their mean
+  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; for a robust family the mean
 };
 
-/// Of N values as measured and N as modelled, rad or rad/s.
+/// Terms of N measured values and N modelled readings, rad or rad/s.
 ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings);
 
-/// The covariance of W'score for residuals of that noise and memory (MODEL.md eq. (29)). time N, weights N x K.
+/// The covariance of W'score for residuals with this noise and autocorrelation (MODEL.md eq. (29)). time N, weights N x
+/// K.
 Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
                                 const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 
-/// The memory of N residuals; time in true s, jacobian N x K by all that was fitted to them. As
+/// The autocorrelation of N residuals. time: true s; jacobian: N x K, by all parameters fitted to them. As
 /// EstimateAutocorrelation.
 Autocorrelation MemoryOf(const Eigen::VectorXd& time, const Eigen::VectorXd& value, const NoiseModel& noise,
                          const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian,
                          const std::stop_token& stop = {});
 
-/// What a variance by N residuals is short of, `lost` of N variances having gone into the free parameters.
+/// Correction factor for a variance from N residuals; the free parameters took `lost` of N variances.
 double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index free, double lost);
 
 /// A fit as a linear function of the readings' scores about its solution, over F parameters.
 struct LinearFit {
-  std::vector<Eigen::Index> free;  ///< F, neither held nor, `with_bounds`, at a bound.
+  std::vector<Eigen::Index> free;  ///< F, neither fixed nor, if `with_bounds`, at a bound.
   Eigen::MatrixXd jacobian;        ///< N x P, readings by the report's parameters.
-  Eigen::MatrixXd inverse;         ///< F x F, of the information: products of the report's units.
-  Eigen::MatrixXd influence;       ///< N x F: estimates [report's units] move by its transpose times the scores.
+  Eigen::MatrixXd inverse;         ///< F x F, inverse of the information: products of the report's units.
+  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the change of the estimates [report's
+                                   ///< units].
 };
 
-/// Nothing where the motion cannot be traced or the readings do not tell the F parameters, or once a stop is requested.
+/// std::nullopt: the trajectory cannot be computed, the readings do not determine the F parameters, or a stop was
+/// requested.
 std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
                                    const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds,
                                    const std::stop_token& stop = {});
@@ -64,42 +67,42 @@ std::optional<LinearFit> Linearize(const Recording& recording, const FitReport& 
 /// The noise of a fit, with the sensor's range.
 NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options);
 
-/// Inertia and friction as the readings alone would have them, whatever bounds they have: K that are free, in the
-/// report's units.
+/// Inertia and friction estimated from the readings without bounds: K free parameters, in the report's units.
 struct UnboundedEstimate {
   std::vector<std::string_view> names;  ///< K
   Eigen::VectorXd value;                ///< K
   Eigen::MatrixXd covariance;           ///< K x K
 };
 
-/// A step from the fit to where the likelihood would be greatest without bounds. Nothing as Linearize.
+/// One step from the fit to the maximum of the likelihood without bounds. std::nullopt as Linearize.
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                                    const std::optional<Rig>& rig, const std::stop_token& stop = {});
 
-/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive definite.
 double SquaredLength(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
 
-/// A part of the recording, fitted once more.
+/// A second fit to a part of the recording.
 struct PartFit {
   Recording part;
-  Eigen::Index first = 0;  ///< Its first sample, of those used.
+  Eigen::Index first = 0;  ///< Index of its first sample among those used.
   FitReport fit;
-  std::string reason;  ///< Why the fit is none; empty when it converged.
+  std::string reason;  ///< Why there is no fit; empty if it converged.
 
   bool converged() const { return reason.empty(); }
 };
 
-/// Parts of a fitted recording, each fitted with a start of its own from where the whole fit sees it. Keeps references.
+/// Parts of a fitted recording. Each part is fitted with a separate start, which begins at the whole fit's motion.
+/// Keeps references.
 class Parts {
  public:
   Parts(const Recording& used, const FitReport& fit, const FitOptions& options);
 
-  /// Samples from <= time <= to [s, file's clock], with these parameters held at the whole fit's estimates.
+  /// Fits samples from <= time <= to [s, file's clock], with the parameters `held` fixed at the whole fit's estimates.
   PartFit Fit(double from, double to, const std::vector<std::string_view>& held) const;
 
   NoiseModel NoiseOf(const FitReport& fit) const;
 
-  /// rad: of the swing that passes through the whole fit's motion at a time [s, file's clock]; 0 without a motion.
+  /// Amplitude [rad] of the whole fit's swing at a time [s, file's clock]; 0 if the trajectory cannot be computed.
   double Amplitude(double time) const;
 
  private:
@@ -115,9 +118,10 @@ class Parts {
 
 inline constexpr std::size_t kFewestHalfSwings = 6;
 
-/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (54)), whose inertia and friction have about
-/// equal errors, for their variances go as 1 / (amplitude² duration³): indices into `ends` [s, file's clock], which has
-/// at least parts · kFewestHalfSwings + 1. No part has fewer than kFewestHalfSwings, three periods.
+/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (54)). Inertia and friction then have about
+/// equal errors in all parts, because their variances are proportional to 1 / (amplitude² duration³). Returns indices
+/// into `ends` [s, file's clock], which has at least parts · kFewestHalfSwings + 1 elements. Every part has at least
+/// kFewestHalfSwings half swings, three periods.
 std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits);
 
 /// "7 half swings are too few for ...".

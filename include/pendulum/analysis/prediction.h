@@ -8,27 +8,27 @@
 
 namespace pendulum {
 
-/// How well a model foresees readings that it was not fitted to; those at an end of the sensor's range are left out.
+/// How well a model predicts readings that were not fitted. Readings at an end of the sensor's range are left out.
 struct Prediction {
-  double rms = 0;            ///< rad or rad/s, of measured - predicted; 0 where a part could not be predicted.
-  double standardized = 0;   ///< rms of that over its predicted standard deviation, MODEL.md eq. (53).
-  Eigen::Index samples = 0;  ///< That were predicted; 0 when nothing was, or without a standard deviation.
-  std::string reason;        ///< Why there are no samples; empty when there are.
+  double rms = 0;            ///< rad or rad/s, of measured - predicted; 0 if a part could not be predicted.
+  double standardized = 0;   ///< rms of (measured - predicted) / predicted standard deviation, MODEL.md eq. (53).
+  Eigen::Index samples = 0;  ///< Predicted samples; 0 if there is no prediction or no standard deviation.
+  std::string reason;        ///< Why there are no samples; empty if there are some.
 };
 
-/// Leaves out each of kBlocks stretches of equal duration in turn, fits the rest and predicts the stretch (blocked
-/// cross-validation: P. Burman, E. Chow and D. Nolan, Biometrika 81:351, 1994). They tile what follows the first period
-/// after the release or the first sample, which every fit sees. `used` are the samples of `fit`, which converged;
-/// `options` those it was made with. Nothing is predicted of fewer than kFewestPeriods, of a recording that
-/// IsUndersampled, or where a fit fails. Cost: kBlocks fits.
+/// Blocked cross-validation (P. Burman, E. Chow and D. Nolan, Biometrika 81:351, 1994). The recording is cut into
+/// kBlocks blocks of equal duration. Each block in turn is left out and predicted by a fit to the rest. The blocks
+/// begin one period after the release (or the first sample); every fit includes that period. `used` holds the samples
+/// of `fit`, which converged; `options` are those of `fit`. There is no prediction for fewer than kFewestPeriods, for a
+/// recording that IsUndersampled, or if a fit fails. Cost: kBlocks fits.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options);
 
-/// Fits the hold and the first kFirstPart of what follows the release (or the first sample), and predicts the rest.
-/// Likewise, one fit.
+/// Fits the hold and the first kFirstPart of the time after the release (or the first sample), and predicts the rest.
+/// Otherwise as CrossValidate, with one fit.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options);
 
 inline constexpr int kBlocks = 5;
 inline constexpr double kFirstPart = 0.6;
-inline constexpr double kFewestPeriods = 3;  ///< Of small swings, after the release.
+inline constexpr double kFewestPeriods = 3;  ///< Periods of small swings after the release.
 
 }  // namespace pendulum

@@ -9,10 +9,10 @@
 
 namespace pendulum {
 
-/// Fisher information of (x, log σ) in one reading of a sensor with levels, those of SensorReading, of a value x with
-/// Gaussian noise: [1 / unit of x^2, 1 / unit of x; 1 / unit of x, 1]. The outermost levels of a range collect what is
-/// beyond them. Without levels (resolution 0) [1 / σ^2, 0; 0, 2], and the range must be absent.
-/// sigma > 0, resolution >= 0. Cost: an erfc for each level within 9 σ.
+/// Fisher information of (x, log σ) in one reading of a value x with Gaussian noise, on the levels of SensorReading.
+/// Units: [1 / unit of x^2, 1 / unit of x; 1 / unit of x, 1]. The outermost levels of a range include everything beyond
+/// them. Without levels (resolution 0) it is [1 / σ^2, 0; 0, 2], and the range must be absent. sigma > 0, resolution >=
+/// 0. Cost: one erfc per level within 9 σ.
 Eigen::Matrix2d ReadingInformation(double x, double sigma, double resolution, const std::optional<SensorRange>& range);
 
 }  // namespace pendulum

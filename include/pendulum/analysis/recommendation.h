@@ -7,9 +7,10 @@
 
 namespace pendulum {
 
-/// Sets `recommended` and its reason from the rows: of the models within kWithinBic of the smallest BIC the one of the
-/// fewest physical parameters, then of the smallest BIC; none where there is no criterion. A model whose residuals are
-/// more than noise is passed over when it does not predict better than simpler ones (MODEL.md section 9).
+/// Sets `recommended` and its reason from the rows. Among the models within kWithinBic of the smallest BIC it chooses
+/// the one with the fewest physical parameters, then the smallest BIC. There is no recommendation without a criterion.
+/// A model with more than noise in its residuals is skipped if it does not predict better than simpler ones (MODEL.md
+/// section 9).
 void Recommend(const std::vector<FitReport>& fits, Comparison& comparison);
 
 }  // namespace pendulum

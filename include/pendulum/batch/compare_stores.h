@@ -10,44 +10,45 @@
 
 namespace pendulum {
 
-/// A parameter whose estimate is not what it was.
+/// A parameter whose estimate has changed.
 struct MovedParameter {
   std::string id, model, name, unit;
-  double before = 0, after = 0;  ///< In `unit`.
-  double errors = 0;             ///< Of estimate or error, over the smaller standard error.
+  double before = 0, after = 0;  ///< Estimates in `unit`.
+  double errors = 0;             ///< Change of the estimate or of its error, over the smaller standard error.
 };
 
-/// A fit that ended otherwise: "converged", "failed" ...
+/// A fit with another status: "converged", "failed" ...
 struct ChangedStatus {
   std::string id, model, before, after;
 };
 
-/// A fit that only the store before has.
+/// A fit that is only in the first store.
 struct GoneFit {
   std::string id, model;
 };
 
-/// What two stores say of the same runs. Both rest on the same recordings, so a difference is no matter of chance.
+/// The differences between two stores for the same runs. Both use the same recordings, so a difference is not due to
+/// chance.
 struct StoreComparison {
-  std::int64_t only_before = 0, only_after = 0;  ///< Fits of (run, model) that one of them has.
-  std::int64_t fits = 0;                         ///< That both have.
-  std::int64_t other_data = 0;                   ///< Runs whose recording is another one now.
-  std::int64_t identical = 0;                    ///< Parameters equal bit for bit, error and all,
-  std::int64_t rounding = 0;                     ///< within kRounding standard errors, as on another type of CPU,
-  std::int64_t within_errors = 0;                ///< within one standard error,
-  std::int64_t moved = 0;                        ///< beyond it,
-  std::int64_t without_error = 0;                ///< or other values without errors, or in another unit.
+  std::int64_t only_before = 0, only_after = 0;  ///< Fits (run, model) in only one of the stores.
+  std::int64_t fits = 0;                         ///< Fits in both stores.
+  std::int64_t other_data = 0;                   ///< Runs whose recording has changed.
+  std::int64_t identical = 0;                    ///< Parameters equal bit for bit, including the error.
+  std::int64_t rounding = 0;                     ///< Equal within kRounding standard errors, as on another type of CPU.
+  std::int64_t within_errors = 0;                ///< Equal within one standard error.
+  std::int64_t moved = 0;                        ///< Different by more than one standard error.
+  std::int64_t without_error = 0;                ///< Different values without errors, or in another unit.
   std::int64_t changed_status = 0;
-  std::vector<MovedParameter> most_moved;     ///< kMostListed of them at most, the largest first.
-  std::vector<ChangedStatus> status_changes;  ///< kMostListed of them at most.
-  std::vector<GoneFit> gone;                  ///< Likewise.
+  std::vector<MovedParameter> most_moved;     ///< At most kMostListed, the largest first.
+  std::vector<ChangedStatus> status_changes;  ///< At most kMostListed.
+  std::vector<GoneFit> gone;                  ///< At most kMostListed.
   std::vector<std::string> cpus_before, cpus_after;
 
   static constexpr double kRounding = 1e-9;
   static constexpr int kMostListed = 100;
 };
 
-/// Errors: as those of the stores.
+/// Errors: those of the stores.
 Result<StoreComparison> CompareStores(Store& before, Store& after);
 
 }  // namespace pendulum

@@ -8,13 +8,13 @@
 
 namespace pendulum {
 
-/// The recordings that a folder or a pattern stands for, in the order of their names: of a folder every *.csv,
-/// *.mat and *.zip file in it and below, in small letters or capitals; of a pattern ("runs/2026-*/*.csv",
-/// "**/pendulum?.csv") the files whose path has as many parts, each like its own (fnmatch(3); a part ** stands for any
-/// number of folders). Hidden files and folders are named by a dot only. Below the folder that is named, links to
-/// folders are not followed, so that no loop is; links to files are. A path that is neither folder nor pattern stands
-/// for itself. kNotFound: nothing is there. kDataLoss: a folder on the way cannot be looked into, and who knows what is
-/// in it.
+/// The recordings of a folder or a pattern, in the order of their names.
+/// Folder: all *.csv, *.mat and *.zip files in it and in its subfolders, in lower or upper case.
+/// Pattern ("runs/2026-*/*.csv", "**/pendulum?.csv"): the files whose path matches part by part (fnmatch(3)); a part **
+/// matches any number of folders. Hidden files and folders match only a pattern that begins with a dot. Links to
+/// folders below the named folder are not followed, to avoid loops; links to files are.
+/// Any other path stands for itself. kNotFound: no file found. kDataLoss: a folder cannot be read, so its content is
+/// unknown.
 Result<std::vector<std::string>> FindRecordings(const std::string& pattern);
 
 }  // namespace pendulum

@@ -16,20 +16,20 @@
 
 namespace pendulum {
 
-/// One run that a service is asked for.
+/// One run requested from a service.
 struct FitOrder {
-  std::string id;       ///< Unlike that of any other run.
+  std::string id;       ///< Unique among all runs.
   std::string created;  ///< RFC 3339, UTC.
-  std::string flags;    ///< What is asked, a JSON object of texts by the flags' names.
+  std::string flags;    ///< The options, a JSON object of texts by the names of flags.
   RunFiles files;
 };
 
-/// What a client may ask again without its being done again: its key, and the SHA-256 of what it sent.
+/// Identifies a repeated request, which is not processed again: its key, and the SHA-256 of its content.
 struct RequestKey {
   std::string key, request_sha256;
 };
 
-/// What a key stands for.
+/// The stored answer for a key.
 struct KnownAnswer {
   std::string request_sha256;
   std::string location;  ///< "/v1/fits/ID"
@@ -48,47 +48,47 @@ struct ListedModel {
   std::vector<ListedParameter> parameters;
 };
 
-/// One run as a list shows it.
+/// One run in a list.
 struct ListedFit {
-  std::int64_t run = 0;  ///< Its number; later ones have greater numbers.
+  std::int64_t run = 0;  ///< Its number; later runs have larger numbers.
   std::string id, name, created;
   std::optional<std::string> batch;  ///< The id of its batch.
-  std::optional<int> exit_code;      ///< None: it waits.
+  std::optional<int> exit_code;      ///< std::nullopt: it waits.
   std::string reason;                ///< Why it could not be fitted.
   std::optional<std::string> recommended;
   std::vector<ListedModel> models;
 };
 
-/// Which runs a list is of; empty: any.
+/// The runs of a list; empty fields match any run.
 struct FitFilter {
   int limit = 50;
-  std::optional<std::int64_t> before;  ///< Those with lesser numbers only.
+  std::optional<std::int64_t> before;  ///< Only smaller run numbers.
   std::string model, status, name, batch, since;
 };
 
-/// A run with all that it was made from.
+/// A run with all its inputs.
 struct KeptFit {
   ListedFit fit;  ///< Without models.
   FitOrder order;
-  nlohmann::ordered_json result;  ///< Null where there is none.
+  nlohmann::ordered_json result;  ///< Null if there is none.
 };
 
-/// A batch of runs, counted.
+/// A batch with counts of its runs.
 struct ListedBatch {
-  std::int64_t batch = 0;  ///< Its number; later ones have greater numbers.
+  std::int64_t batch = 0;  ///< Its number; later batches have larger numbers.
   std::string id, created;
   std::int64_t runs = 0, done = 0, failed = 0;
 };
 
-/// The store of a service: that of refit_pendulums, with what the runs were made from, for many threads at a time. What
-/// a function that changes it has returned from is on the disk; several of them share one wait for it. While it is
-/// open no other process may write, and readers of other processes hinder nobody (write-ahead log). Errors of all
-/// functions: as Store's; kNotFound where an id is unknown.
+/// The store of a service: that of refit_pendulums, with the inputs of the runs, for many threads at a time. When a
+/// function that changes it returns, the change is on the disk; several of them share one commit. While it is open no
+/// other process may write. Readers in other processes block nobody (write-ahead log). Errors of all functions: as
+/// Store's; kNotFound for an unknown id.
 class FitStore {
   struct State;
 
  public:
-  /// Makes one that is not there. kTryAgain: another process writes to it.
+  /// Creates the file if it does not exist. kTryAgain: another process writes to it.
   static Result<std::unique_ptr<FitStore>> Open(const std::filesystem::path& path);
 
   explicit FitStore(std::unique_ptr<State> state);
@@ -98,17 +98,17 @@ class FitStore {
   FitStore& operator=(const FitStore&) = delete;
   ~FitStore();
 
-  /// Keeps a run that is done.
+  /// Stores a finished run.
   Result<void> Add(const FitOrder& order, const RunOutcome& outcome, const std::optional<RequestKey>& key);
 
-  /// Keeps runs that are to be done.
+  /// Stores waiting runs.
   Result<void> AddBatch(const std::string& id, const std::string& created, const std::vector<FitOrder>& orders,
                         const std::optional<RequestKey>& key);
 
-  /// Keeps what came of a run that was to be done. kNotFound: it was deleted meanwhile.
+  /// Stores the outcome of a waiting run. kNotFound: it was deleted meanwhile.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);
 
-  /// A run and its files go; so does a batch with all of its runs.
+  /// Deletes a run with its files, or a batch with all of its runs.
   Result<void> DeleteFit(const std::string& id);
   Result<void> DeleteBatch(const std::string& id);
 
@@ -117,10 +117,10 @@ class FitStore {
   Result<ListedBatch> FindBatch(const std::string& id);
   Result<std::vector<ListedBatch>> ListBatches(int limit, const std::optional<std::int64_t>& before);
 
-  /// The runs of a batch in the order they were sent, without models.
+  /// The runs of a batch in the order in which they were sent, without models.
   Result<std::vector<ListedFit>> RunsOf(const std::string& batch);
 
-  /// The runs that are to be done, from the first on: their ids, and that of their batch.
+  /// The waiting runs in order: their ids, and the id of their batch.
   struct Waiting {
     std::string id, batch;
   };

@@ -8,9 +8,9 @@
 
 namespace pendulum {
 
-/// The part of a summary that counts (summary.schema.json): members "models", fits by model and status,
-/// "recommendations" and "failures", these grouped by their reasons without file names, and without numbers where
-/// these differ. Errors as the store.
+/// The counts of a summary (summary.schema.json): members "models" (fits by model and status), "recommendations" and
+/// "failures". Failures are grouped by reason without file names, and without numbers if these differ. Errors as the
+/// store.
 Result<nlohmann::ordered_json> Overview(Store& store);
 
 }  // namespace pendulum

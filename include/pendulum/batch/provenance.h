@@ -7,23 +7,24 @@
 
 namespace pendulum {
 
-/// All that the rows of a run follow from: while none of it changes, the run need not be fitted again. `cpu` is told,
-/// but does not count: another type of CPU changes the last bits only.
+/// Everything that determines the rows of a run. A run need not be fitted again while it is unchanged. `cpu` is
+/// reported but not compared: another type of CPU changes only the last bits.
 struct Provenance {
-  std::string data_sha256, rig_sha256, calibration_sha256;  ///< Of files' bytes; empty: none; "unreadable: why".
-  std::string options_sha256;                               ///< Of OptionsJson of its own options.
-  std::string version;                                      ///< Of the program.
+  std::string data_sha256, rig_sha256, calibration_sha256;  ///< Hashes of the files' bytes; empty: no file;
+                                                            ///< "unreadable: why".
+  std::string options_sha256;                               ///< Hash of OptionsJson of the run's options.
+  std::string version;                                      ///< Version of the program.
   std::string cpu;                                          ///< CpuType.
 
-  /// Whether all that counts is the same.
+  /// Whether everything except `cpu` is equal.
   bool Agrees(const Provenance& other) const;
 };
 
-/// The options as a JSON object, every one that the result depends on: the same options give the same text. Calibration
-/// and rig are not in it, for their bytes are hashed.
+/// All options that the result depends on, as a JSON object; equal options give equal text. Calibration and rig are not
+/// included, because their bytes are hashed.
 std::string OptionsJson(const IdentifyOptions& options);
 
-/// "Intel(R) Xeon(R) Processor (avx512)": the processor, and which form of the arithmetic is chosen for it.
+/// "Intel(R) Xeon(R) Processor (avx512)": the processor, and the variant of the arithmetic chosen for it.
 const std::string& CpuType();
 
 }  // namespace pendulum

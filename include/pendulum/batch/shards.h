@@ -12,17 +12,17 @@
 
 namespace pendulum {
 
-/// How one shard of a batch is refitted where another attempt at it may be alive: an attempt works in a file of its own
-/// and only ever renames whole stores to the names that others look at, `store` and its checkpoint `store`.part.
+/// Options for refitting one shard of a batch while other attempts at it may run. An attempt works in its own file. It
+/// publishes complete stores by renaming them to `store` or to its checkpoint `store`.part.
 struct ShardOptions {
   std::filesystem::path store;    ///< out/shard-3.sqlite
-  std::filesystem::path scratch;  ///< Folder of the attempt, such as a node's own disk; empty: beside the store.
-  std::string attempt;            ///< Unlike that of any other attempt, on any machine.
-  double checkpoint = 60;         ///< Between checkpoints, s.
+  std::filesystem::path scratch;  ///< Folder of the attempt, such as a node's local disk; empty: next to the store.
+  std::string attempt;            ///< Unique among all attempts on all machines.
+  double checkpoint = 60;         ///< Time between checkpoints, s.
 };
 
-/// Refits options.shard, beginning with what the store or its checkpoint has. Unless it was stopped the store is
-/// published at the end, if there is anything new, and the checkpoint goes; else the checkpoint is. Errors as Refit;
+/// Refits options.shard, starting from the store or its checkpoint. At the end the store is published, if it has
+/// changed, and the checkpoint is removed. After a stop the checkpoint is published instead. Errors as Refit;
 /// kInvalidArgument: the store is that of a whole batch.
 Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, const RefitOptions& options);
 
@@ -32,15 +32,15 @@ std::filesystem::path ShardPath(const std::filesystem::path& folder, std::int64_
 /// "3,17"
 std::string ShardList(const std::vector<std::int64_t>& shards);
 
-/// The shards of so many that are not complete in the folder, or damaged, increasing. kDataLoss: one is no store, or
+/// Increasing indices of the `count` shards that are incomplete or damaged. kDataLoss: a file is not a store, or
 /// belongs to another number of shards. kNotFound: no such folder.
 Result<std::vector<std::int64_t>> MissingShards(const std::filesystem::path& folder, std::int64_t count);
 
-/// Puts all shards into a store, replacing what that has of their runs; the store is replaced as a whole at the end, so
-/// that this may be done again at any time. Removes checkpoints and the files of attempts from the folder: an attempt
-/// that is still alive, which nobody needs any more, fails. Gives the number of runs that were merged. kNotFound:
-/// shards are missing; the message names them. kDataLoss: shards of different batches. kInvalidArgument: the store is
-/// a shard itself. kTryAgain: another process writes to the store.
+/// Merges all shards into a store and replaces its rows of the same runs. The store is replaced as a whole at the end,
+/// so a merge can be repeated at any time. Removes checkpoints and files of attempts from the folder; attempts still
+/// running fail, but are no longer needed. Returns the number of merged runs. kNotFound: shards are missing; the
+/// message names them. kDataLoss: shards of different batches. kInvalidArgument: the store is itself a shard.
+/// kTryAgain: another process writes to the store.
 Result<std::int64_t> MergeShards(const std::filesystem::path& folder, std::int64_t count,
                                  const std::filesystem::path& store);
 

@@ -23,8 +23,8 @@ class Database;
 
 namespace pendulum {
 
-/// Number k, from 0, of `count` (a thousand million at most) parts of a batch of R runs: those of positions [R k / N, R
-/// (k + 1) / N).
+/// Part `index`, from 0, of `count` (at most a thousand million) parts of a batch of R runs. With k = index and N =
+/// count it has the positions [R k / N, R (k + 1) / N).
 struct Shard {
   std::int64_t index = 0;
   std::int64_t count = 1;
@@ -36,49 +36,48 @@ struct Shard {
   std::int64_t Cut(std::int64_t runs, std::int64_t k) const;
 };
 
-/// What came of a run.
+/// The outcome of a run.
 struct RunOutcome {
   Provenance provenance;
-  int exit_code = 0;                ///< As of fit_pendulum.
-  std::string reason;               ///< Why it could not be fitted; empty where it could.
-  std::vector<std::string> models;  ///< That were asked for: where there is no result, each has a failed row.
-  nlohmann::ordered_json result;    ///< ToJson of its report; null where it could not be fitted.
+  int exit_code = 0;                ///< Exit code of fit_pendulum.
+  std::string reason;               ///< Why it could not be fitted; otherwise empty.
+  std::vector<std::string> models;  ///< The requested models; without a result each has a failed row.
+  nlohmann::ordered_json result;    ///< ToJson of its report; null if it could not be fitted.
 };
 
-/// A run of the batch, and what the store knows of it.
+/// A run of the batch with its state in the store.
 struct StoredRun {
   ManifestEntry entry;           ///< Without `place`.
-  std::optional<int> exit_code;  ///< None: not refitted yet.
-  Provenance provenance;         ///< Of its rows, if it has any.
+  std::optional<int> exit_code;  ///< std::nullopt: not refitted yet.
+  Provenance provenance;         ///< Provenance of its rows, if there are any.
 };
 
-/// What a store is about.
+/// Data about the whole store.
 struct StoreMeta {
   std::string version, manifest_sha256, options_sha256;
-  std::optional<Shard> shard;  ///< None: all of the manifest.
-  std::int64_t runs = 0;       ///< Of the manifest, all shards together.
+  std::optional<Shard> shard;  ///< std::nullopt: the whole manifest.
+  std::int64_t runs = 0;       ///< Runs of the manifest, over all shards.
   bool complete = false;
 };
 
-/// Runs of a store, counted.
+/// Numbers of a store's runs and fits.
 struct StoreCounts {
-  std::int64_t runs = 0, pending = 0, unfitted = 0;  ///< All; not refitted yet; those that could not be fitted.
-  std::int64_t earlier = 0;                          ///< Those that the last manifest did not name.
-  std::int64_t fits = 0, failed = 0;                 ///< Rows of (run, model); those of them with status failed.
+  std::int64_t runs = 0, pending = 0, unfitted = 0;  ///< All; not refitted yet; could not be fitted.
+  std::int64_t earlier = 0;                          ///< Not in the last manifest.
+  std::int64_t fits = 0, failed = 0;                 ///< Rows (run, model); of these with status failed.
 };
 
-/// The results of a batch in an SQLite file, whose tables explain themselves (store_schema.h). What is put in is
-/// durable from the next Commit on; a process that dies in between, or a machine without power, loses what came after
-/// the last one, and no more. Any number of processes may read meanwhile, one may write, for whose commits a reader has
-/// to end within ten minutes. Not for several threads at a time. Errors of all functions: kCannotWrite, no room or no
-/// permission; kTryAgain, another process has the file; kDataLoss, it is damaged.
+/// The results of a batch in an SQLite file with self-explaining tables (store_schema.h). Data is durable after the
+/// next Commit. A crash or a loss of power loses only what was written after the last Commit. Any number of processes
+/// may read while one writes; a commit waits up to ten minutes for readers to finish. For one thread at a time. Errors
+/// of all functions: kCannotWrite, no space or no permission; kTryAgain, another process uses the file; kDataLoss, it
+/// is damaged.
 class Store {
  public:
   enum class Mode { kRead, kWrite, kServe };
 
-  /// kRead: kNotFound, no such file. The others make one that is not there, and bring older ones up to date; kServe
-  /// keeps a log beside it while it is open, so that writing waits for no reader. kDataLoss: no store, or one of a
-  /// newer version.
+  /// kRead: kNotFound, no such file. The other modes create a missing file and update older versions. kServe keeps a
+  /// log next to it while it is open, so writers do not wait for readers. kDataLoss: not a store, or a newer version.
   static Result<Store> Open(const std::filesystem::path& path, Mode mode);
 
   Store(Store&& other) noexcept;
@@ -87,12 +86,12 @@ class Store {
   Store& operator=(const Store&) = delete;
   ~Store();
 
-  /// Takes the entries of a source, all or a shard of them, for the batch to come: new ones are added, those with an id
-  /// that is known replace what the manifest said of it, others stay as they are. All or nothing. `options_json`: what
-  /// is asked of all fits. kDataLoss: an id twice; kFailedPrecondition: there is no entry.
+  /// Starts a batch with the entries of a source, all or a shard of them. New entries are added, those with a known id
+  /// replace the manifest's data, others stay. All or nothing. `options_json`: the options of all fits. kDataLoss: a
+  /// repeated id; kFailedPrecondition: there is no entry.
   Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json);
 
-  /// At most `most` runs of the batch from `position` on, in that order.
+  /// Returns at most `most` runs of the batch from `position` on, in order.
   Result<std::vector<StoredRun>> Next(std::int64_t position, int most);
 
   /// Replaces all rows of a run.
@@ -100,23 +99,23 @@ class Store {
 
   Result<void> Commit();
 
-  /// Begins what the next Commit makes durable, unless that has begun.
+  /// Begins a transaction, which the next Commit makes durable, unless one is open.
   Result<void> BeginWrite();
 
-  /// Forgets what came since the last Commit.
+  /// Discards all changes since the last Commit.
   void Rollback();
 
-  /// Adds a run that belongs to no manifest; its position is its number, as
-  /// it comes, from 0. kInternal: the id is known.
+  /// Adds a run that belongs to no manifest; its position is its number, in the order of arrival, from 0. kInternal:
+  /// the id is known.
   Result<std::int64_t> Add(const ManifestEntry& entry);
 
-  /// Commits that every run of the batch has its rows.
+  /// Commits, and records that every run of the batch has its rows.
   Result<void> Complete();
 
-  /// Reads all pages and indices. kDataLoss: they do not fit together.
+  /// Reads all pages and indices. kDataLoss: they are inconsistent.
   Result<void> Check();
 
-  /// Once it is set, which must outlive the store, readers have two seconds instead of ten minutes.
+  /// When `stop` is true, commits wait two seconds for readers instead of ten minutes. `stop` must outlive the store.
   void HurryOn(const std::atomic<bool>* stop);
 
   Result<StoreMeta> Meta();
@@ -124,7 +123,7 @@ class Store {
 
   const std::string& name() const;
 
-  /// For queries of what is exported, compared, summed up.
+  /// The database, for the queries of exports, comparisons and summaries.
   SQLite::Database& database();
 
  private:

@@ -8,11 +8,11 @@
 
 namespace pendulum {
 
-/// Keeps other processes of this machine from refitting or merging into one store at the same time: a lock on
-/// STORE.lock, a file that goes with the lock. Whoever is killed holds nothing. Readers need none.
+/// Prevents other processes of this machine from refitting or merging into the same store. It locks the file
+/// STORE.lock, which is removed with the lock. A killed process releases it. Readers need no lock.
 class StoreLock {
  public:
-  /// kTryAgain: another process has it. kCannotWrite: the file beside the store cannot be made.
+  /// kTryAgain: another process holds it. kCannotWrite: the lock file cannot be created.
   static Result<StoreLock> Take(const std::filesystem::path& store);
 
   StoreLock(StoreLock&& other) noexcept;

@@ -10,17 +10,17 @@
 
 namespace pendulum {
 
-/// How the runs of a store are looked at.
+/// Options for the summary of a store.
 struct SummaryOptions {
-  std::string group_by;  ///< A column of the manifest: runs of one value are of one rig; empty: by `rig` where several
-                         ///< are named, else all are.
-  std::string trend_by;  ///< A column of the manifest, numbers or ISO 8601 dates; empty: the position in it.
+  std::string group_by;  ///< A manifest column: runs with equal values are of one rig. Empty: by `rig` if several are
+                         ///< named, otherwise all runs are of one rig.
+  std::string trend_by;  ///< A manifest column of numbers or ISO 8601 dates; empty: the position in the manifest.
 };
 
-/// What the refitted runs say together, as JSON (summary.schema.json): fits by model and status, recommendations and
-/// failures counted; of each parameter of the converged fits its distribution, its outliers, its repeatability
-/// against the quoted errors within groups, and its trend. Memory: one parameter of one model.
-/// kInvalidArgument: the manifest has no such column. kFailedPrecondition: no run was refitted. Else as the store.
+/// Statistics of all refitted runs as JSON (summary.schema.json). It counts fits by model and status, recommendations
+/// and failures. For each parameter of the converged fits it has the distribution, the outliers, the repeatability
+/// against the errors within groups, and the trend. Memory: one parameter of one model. kInvalidArgument: the manifest
+/// has no such column. kFailedPrecondition: no run was refitted. Other errors as the store.
 Result<nlohmann::ordered_json> Summarize(Store& store, const SummaryOptions& options);
 
 }  // namespace pendulum

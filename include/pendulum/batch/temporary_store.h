@@ -9,17 +9,17 @@
 
 namespace pendulum {
 
-/// A path with letters after it: "out/shard-3.sqlite.part".
+/// A path with a suffix: "out/shard-3.sqlite.part".
 std::filesystem::path WithSuffix(const std::filesystem::path& path, const std::string& suffix);
 
-/// kCannotWrite: the folder of the file is not there.
+/// kCannotWrite: the folder of the file does not exist.
 Result<void> CheckFolderOf(const std::filesystem::path& file);
 
-/// Copies a file that nobody writes to, whole or not at all. kNotFound: it is not there. kCannotWrite: as StagedFile.
+/// Copies a file that nobody writes to, completely or not at all. kNotFound: no such file. kCannotWrite: as StagedFile.
 Result<void> Publish(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// An SQLite file that goes when this does, unless it was renamed, and its journal: also before, for what a killed
-/// process left under the name would be played back into another file.
+/// An SQLite file that is removed at the end, with its journal, unless it was renamed. Both are also removed at the
+/// beginning: SQLite would apply a journal left by a killed process to the new file.
 class TemporaryStore {
  public:
   explicit TemporaryStore(std::filesystem::path path) : path_(std::move(path)) { Remove(); }

@@ -25,30 +25,32 @@
 namespace pendulum {
 
 struct DataSummary {
-  std::string path, sha256;  ///< As the user named it; of the file's bytes. Empty when it did not come from a file.
-  std::string unit = "rad";  ///< Of resolution, residuals and noise: rad, rad/s, counts or volts.
-  Eigen::Index samples = 0, used_samples = 0;  ///< In the file; in the fitted window, at least kMinimumSamples.
+  std::string path, sha256;  ///< Path as given by the user; hash of the file's bytes. Empty if the data is not from a
+                             ///< file.
+  std::string unit = "rad";  ///< Unit of resolution, residuals and noise: rad, rad/s, counts or volts.
+  Eigen::Index samples = 0, used_samples = 0;  ///< Samples in the file; in the fitted window, at least kMinimumSamples.
   double from = 0, to = 0;        ///< Times of the first and the last used sample [s, on the file's clock].
-  double resolution = 0;          ///< Spacing of the values; 0 for none.
-  std::string resolution_source;  ///< "given", "file" or "found"; empty for none.
-  double clock_scale = 1;         ///< True seconds in a second of the file's clock; the fit is in true ones.
+  double resolution = 0;          ///< Spacing of the values; 0: none.
+  std::string resolution_source;  ///< "given", "file" or "found"; empty: none.
+  double clock_scale = 1;         ///< True seconds per second of the file's clock; the fit uses true seconds.
   double clock_scale_std_dev = 0;
-  std::string begins, ends;                     ///< Why the window is what it is; empty where nothing was chosen.
-  std::vector<std::array<double, 2>> releases;  ///< From and to of each free swing that was found [s].
-  int release = 0;                              ///< The one that was fitted, from 1; 0: a window as it was asked for.
+  std::string begins, ends;                     ///< Reasons for the ends of the window; empty if it was not chosen.
+  std::vector<std::array<double, 2>> releases;  ///< Begin and end of each free swing found [s].
+  int release = 0;                              ///< Index of the fitted one, from 1; 0: the window was given by the
+                                                ///< user.
 
   double duration() const { return to - from; }                                              ///< s
-  double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, the mean
+  double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, mean
 };
 
-/// Sets what the used samples of a swing say: all but samples, releases and release.
+/// Sets all members that follow from the used samples of a swing: all but samples, releases and release.
 void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& data);
 
-/// What a fit of several recordings has besides.
+/// Additional results of a joint fit.
 struct JointPart {
-  std::vector<std::string> shared;  ///< Names of the parameters that the recordings share.
+  std::vector<std::string> shared;  ///< Names of the shared parameters.
   Homogeneity homogeneity;
-  std::vector<std::string> alone;  ///< How the fit to each recording alone ended: its status, and why if not converged.
+  std::vector<std::string> alone;  ///< How each separate fit ended: its status, and the reason if it did not converge.
 };
 
 /// Everything that was identified from a free swing, or from several recordings together. Of a joint identification,
@@ -58,23 +60,23 @@ struct Identification {
   Recording used;  ///< The N samples that were fitted, without warnings.
   DataSummary data;
   std::optional<Rig> rig;
-  nlohmann::ordered_json calibration;  ///< What turned counts or volts into angles, as it was given; null for none.
-  std::vector<FitReport> fits;         ///< In the order asked for; empty: closed forms only.
-  std::optional<Sampling> sampling;    ///< Of the used samples.
-  std::optional<ClosedForms> closed_forms;  ///< Of the used samples, with the friction of the first model.
-  std::string closed_forms_model;           ///< The name of that model; empty when no closed forms were asked for.
-  std::string no_closed_forms;              ///< Why there are none.
-  std::vector<ClosedFormCheck> checks;      ///< One for each fit, in their order, or none at all.
-  std::optional<Comparison> comparison;     ///< Of the fits, where several were asked for.
-  std::vector<Constancy> constancy;         ///< One for each fit, in their order, or none at all.
-  std::vector<JointPart> joint;             ///< One for each fit of several recordings together, else empty.
-  std::vector<Identification> runs;         ///< Of a joint fit: each recording, with `fits` as they see it.
-  std::vector<Warning> warnings;            ///< Of the recording; a fit's own stand in its FitReport.
+  nlohmann::ordered_json calibration;       ///< Converts counts or volts to angles, as given by the user; null: none.
+  std::vector<FitReport> fits;              ///< In the order of the requested models; empty: closed forms only.
+  std::optional<Sampling> sampling;         ///< Sampling of the used samples.
+  std::optional<ClosedForms> closed_forms;  ///< Closed forms of the used samples, with the friction of the first model.
+  std::string closed_forms_model;           ///< The name of that model; empty if closed forms were not requested.
+  std::string no_closed_forms;              ///< Why there are no closed forms.
+  std::vector<ClosedFormCheck> checks;      ///< One per fit, in order; or empty.
+  std::optional<Comparison> comparison;     ///< Comparison of the fits, if several were requested.
+  std::vector<Constancy> constancy;         ///< One per fit, in order; or empty.
+  std::vector<JointPart> joint;             ///< One per joint fit; otherwise empty.
+  std::vector<Identification> runs;         ///< Recordings of a joint fit, each with its part of `fits`.
+  std::vector<Warning> warnings;            ///< Warnings of the recording; those of a fit are in its FitReport.
 
-  /// The check of the fit of that index, or nullptr.
+  /// The check of fit `fit`, or nullptr.
   const ClosedFormCheck* CheckOf(std::size_t fit) const { return fit < checks.size() ? &checks[fit] : nullptr; }
 
-  /// The constancy of the fit of that index, or nullptr.
+  /// The constancy of fit `fit`, or nullptr.
   const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
 
   bool is_joint() const { return !runs.empty(); }
@@ -82,24 +84,24 @@ struct Identification {
   /// The identifications of single recordings: `runs` of a joint one, else this one alone.
   std::vector<const Identification*> Parts() const;
 
-  /// The fit that stands for the run: the recommended one, else the first that converged, else the first.
+  /// The main fit: the recommended one, otherwise the first that converged, otherwise the first.
   std::size_t MainFit() const;
 
-  /// Whether text for people gives all of the fit of that index: of a comparison only the main fit.
+  /// Whether text output shows all details of fit `fit`; in a comparison only those of the main fit.
   bool IsShownInFull(std::size_t fit) const { return !comparison || fit == MainFit(); }
 };
 
 /// The exit code of a run: that of its main fit; 0 for closed forms alone.
 int ExitCode(const Identification& one);
 
-/// The warnings of the recording, then those of the fits, each said once; of several fits, with the model it is about;
-/// of several recordings, with the one it is about, or that it is about each.
+/// The warnings of the recording, then those of the fits, without repetitions. With several fits a warning names its
+/// model; with several recordings it names its recording, or says that it applies to each.
 std::vector<Warning> AllWarnings(const Identification& report);
 
 /// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
 bool IsOneOfSeveral(const Identification& report, std::size_t run);
 
-/// "recording 2 (b.csv)": recording `run` (0-based) of a joint fit.
+/// The label of recording `run` (0-based) of a joint fit: "recording 2 (b.csv)".
 std::string RecordingLabel(const Identification& report, std::size_t run);
 
 }  // namespace pendulum

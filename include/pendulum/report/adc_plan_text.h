@@ -8,8 +8,8 @@
 
 namespace pendulum {
 
-/// What each sensor would resolve and between which angles, a line each, then in words where those saturate that do,
-/// and the divider that would prevent it. Angles in deg from the middle of the travel.
+/// Resolution and angle range of each sensor, one per line, then sentences about sensors that saturate and the divider
+/// that prevents it. Angles in deg from the middle of the travel.
 std::string AdcPlanText(std::span<const AdcSensor> sensors);
 
 }  // namespace pendulum

@@ -7,9 +7,9 @@
 
 namespace pendulum {
 
-/// A script that makes gnuplot write the calibration as SVG to its standard output: points and curve above, residuals
-/// below, with ± half a count as dashed lines. It holds the data, opens no file and contains nothing but numbers and
-/// our own words. `fit` is that of `table`.
+/// A gnuplot script that writes the calibration as SVG to standard output: points and curve above, residuals below,
+/// with ± half a count as dashed lines. It contains the data, opens no file, and has only numbers and fixed texts.
+/// `fit` is that of `table`.
 std::string CalibrationPlot(const CalibrationTable& table, const CalibrationFit& fit);
 
 }  // namespace pendulum

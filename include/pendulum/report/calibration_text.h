@@ -7,11 +7,12 @@
 
 namespace pendulum {
 
-/// A calibration for people: curve, coefficients ± standard errors (PdgRounding) and their correlations, the points
-/// with residuals (at most the kShownPoints largest), and what they say. UTF-8, about 100 columns. `fit` is of `table`.
+/// A calibration as text: curve, coefficients ± standard errors (PdgRounding) and their correlations, the points with
+/// residuals (at most the kShownPoints largest), and their interpretation. UTF-8, about 100 columns. `fit` is that of
+/// `table`.
 std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit);
 
-/// Points that CalibrationText lists at most.
+/// The maximal number of points in CalibrationText.
 inline constexpr int kShownPoints = 50;
 
 }  // namespace pendulum

@@ -11,13 +11,14 @@
 
 namespace pendulum {
 
-/// "sampling" of the data; null without it.
+/// "sampling" of the data; null if it is unknown.
 nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling);
 
-/// "closed_form" of a fit: a row for each quantity, none where `check` is null.
+/// "closed_form" of a fit: one row per quantity; empty if `check` is null.
 nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
 
-/// "closed_forms" of the result but for the turning points (SeriesJson); null if none. SI with a rig, else units of G.
+/// "closed_forms" of the result without the turning points (SeriesJson); null if there are none. SI with a rig,
+/// otherwise units of G.
 nlohmann::ordered_json ClosedFormsJson(const Identification& report);
 
 }  // namespace pendulum

@@ -12,23 +12,24 @@
 
 namespace pendulum {
 
-/// A quantity in closed form as the report shows it.
+/// A quantity in closed form for the report.
 struct ReportedEstimate {
-  std::string name;    ///< As in JSON.
-  std::string symbol;  ///< As in MODEL.md.
-  Estimate estimate;   ///< In `unit`; as for a fit, the error of the rig is not in it.
-  std::string unit;    ///< Of inertia and torques: SI with a rig, units of G without.
+  std::string name;    ///< Name in JSON.
+  std::string symbol;  ///< Symbol in MODEL.md.
+  Estimate estimate;   ///< Estimate in `unit`; as for a fit, without the rig's error.
+  std::string unit;    ///< Unit; inertia and torques are in SI with a rig, in units of G without.
 };
 
-/// What the linear pendulum's formulas give, in the order of LogDecrement; with linear gravity nothing is corrected.
+/// Quantities from the linear pendulum's formulas, in the order of LogDecrement; without corrected ones for linear
+/// gravity.
 std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravity gravity,
                                               const std::optional<Rig>& rig);
 
-/// Zero, inertia and friction of a decrement, by the names of the fit's parameters; `unit` is that of the readings.
+/// Zero, inertia and friction of a decrement, with the names of the fit's parameters; `unit` is that of the readings.
 std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,
                                                  const std::optional<Rig>& rig);
 
-/// The largest angle at which dry friction holds the pendulum, asin(τ_c / G) [rad]; nothing unless 0 < τ_c < G.
+/// The largest angle at which dry friction holds the pendulum, asin(τ_c / G) [rad]; std::nullopt unless 0 < τ_c < G.
 std::optional<ReportedEstimate> StickingAngle(const Decrement& decrement);
 
 }  // namespace pendulum

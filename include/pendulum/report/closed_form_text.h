@@ -6,11 +6,11 @@
 
 namespace pendulum {
 
-/// How the recording was sampled; none when the report does not say.
+/// Describes the sampling of the recording; empty if it is unknown.
 Sections SamplingSections(const Identification& report);
 
-/// The closed forms, the check of each fit that is shown in full against them, and the table of turning points: all
-/// turning points of closed forms only (60 at most), beside a fit the first ten and the last two. None without these.
+/// The closed forms, the check of each fully shown fit against them, and the table of turning points. Without a fit it
+/// has up to 60 turning points, next to a fit the first ten and the last two. Empty without closed forms.
 Sections ClosedFormSections(const Identification& report);
 
 }  // namespace pendulum

@@ -13,10 +13,10 @@ namespace pendulum {
 /// "comparison" of the result; null without one.
 nlohmann::ordered_json ComparisonJson(const Identification& report);
 
-/// "constancy" of a fit: its two tests; null where neither could be made.
+/// "constancy" of a fit: its two tests; null if neither could be made.
 nlohmann::ordered_json ConstancyJson(const Constancy* constancy);
 
-/// Why ConstancyJson of a fit is null; empty when it is not.
+/// Why ConstancyJson of a fit is null; otherwise empty.
 std::string NoConstancyReason(const FitReport& fit, const Constancy* constancy);
 
 }  // namespace pendulum

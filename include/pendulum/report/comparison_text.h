@@ -8,12 +8,12 @@
 
 namespace pendulum {
 
-/// Which model is recommended and why, the criteria of each, what each foresees of samples it was not fitted to, and
-/// the likelihood-ratio tests. None without a comparison.
+/// The recommended model and the reason, the criteria of each model, the prediction of samples that were not fitted,
+/// and the likelihood-ratio tests. Empty without a comparison.
 Sections ComparisonSections(const Identification& report);
 
-/// Whether the parameters of the fit of that index are constants: a sentence, and tables of what is not. None where
-/// that was not looked into.
+/// Whether the parameters of fit `fit` are constant: a sentence, and tables of those that are not. Empty if it was not
+/// tested.
 Sections ConstancySections(const Identification& report, std::size_t fit);
 
 }  // namespace pendulum

@@ -9,14 +9,14 @@
 
 namespace pendulum {
 
-/// The studies as tables in plain text: a line for each parameter of each scenario, then one for each scenario. Columns
-/// as CoverageRow, "-" for what is absent; the verdict is "pass", or what misses its rule: "coverage", "error".
+/// The studies as plain-text tables: a line per parameter of each scenario, then a line per scenario. Columns as
+/// CoverageRow, "-" for missing values. The verdict is "pass", or the part that violates the rule: "coverage", "error".
 std::string CoverageText(std::span<const CoverageStudy> studies);
 
-/// The same as a page of Markdown, with what the columns are and the command that made it.
+/// The same as a Markdown page, with a description of the columns and the command that made it.
 std::string CoverageMarkdown(std::span<const CoverageStudy> studies, std::string_view command);
 
-/// Name and description of each scenario, a line each.
+/// Name and description of each scenario, one per line.
 std::string CoverageScenarioList(std::span<const CoverageScenario> scenarios);
 
 }  // namespace pendulum

@@ -10,13 +10,13 @@
 
 namespace pendulum {
 
-/// The equation of motion in the symbols of MODEL.md, as the model's friction law writes itself:
-/// "I_O th'' + b th' + τ_c sgn(th') + G sin th = 0". th is the angle from hanging straight down.
+/// The equation of motion in the symbols of MODEL.md, with the model's friction law: "I_O th'' + b th' + τ_c sgn(th') +
+/// G sin th = 0". th is the angle from hanging straight down.
 std::string SymbolicEquation(const MotionModel& model);
 
-/// The same with the fitted numbers: "0.0790 th'' + 0.0030 th' + 0.0010 sgn(th') + 1.80 sin th = 0" in N m with a rig,
-/// in units of G without one. Each number is rounded as its standard error says (PdgRounding), to four significant
-/// digits if it has none; G has as many digits as the inertia, for their ratio is what the swing tells.
+/// The equation with the fitted numbers: "0.0790 th'' + 0.0030 th' + 0.0010 sgn(th') + 1.80 sin th = 0" in N m with a
+/// rig, in units of G without one. Each number is rounded by its standard error (PdgRounding), to four significant
+/// digits if it has none. G has as many digits as the inertia, because a swing determines only their ratio.
 std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig);
 
 }  // namespace pendulum

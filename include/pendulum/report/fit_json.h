@@ -10,13 +10,13 @@
 
 namespace pendulum {
 
-/// Parts of the result's JSON that a fit of one recording and one of several have alike; numbers that do not exist are
-/// null, and `reason` beside them says why.
+/// Parts of the result's JSON common to fits of one and of several recordings. Missing numbers are null, and `reason`
+/// in the same object says why.
 
-/// [lower, upper], null where there is neither.
+/// [lower, upper]; null if both are missing.
 nlohmann::ordered_json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper);
 
-/// Spacing of the sensor's levels, null where there are none.
+/// Spacing of the sensor's levels; null if there are none.
 nlohmann::ordered_json ResolutionJson(const DataSummary& data);
 
 /// Estimates by name, each with its errors, unit and flags.
@@ -24,7 +24,7 @@ nlohmann::ordered_json ParametersJson(const FitReport& fit);
 
 nlohmann::ordered_json DerivedJson(const FitReport& fit);
 
-/// Of the free parameters: names and matrix, in products of their units.
+/// Names and matrix of the free parameters, in products of their units.
 nlohmann::ordered_json CovarianceJson(const FitReport& fit);
 nlohmann::ordered_json CorrelationJson(const FitReport& fit);
 nlohmann::ordered_json SystematicJson(const FitReport& fit);

@@ -9,8 +9,8 @@
 
 namespace pendulum {
 
-/// Fit `index` of a joint report: what is shared in `parameters`, each recording's own numbers in `runs`, whether the
-/// recordings agree in `homogeneity` ($defs/joint_fit of the schema).
+/// Fit `index` of a joint report: shared parameters in `parameters`, each recording's own numbers in `runs`, the
+/// agreement of the recordings in `homogeneity` ($defs/joint_fit of the schema).
 nlohmann::ordered_json JointFitJson(const Identification& report, std::size_t index);
 
 }  // namespace pendulum

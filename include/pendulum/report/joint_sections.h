@@ -6,12 +6,12 @@
 
 namespace pendulum {
 
-/// What a joint fit says instead of what one recording's report does: the recordings, the comparison, and of the main
-/// fit what is shared, whether the recordings agree, and what each has of its own.
+/// The sections specific to a joint fit: the recordings and the comparison; for the main fit the shared parameters, the
+/// agreement of the recordings, and the separate parameters of each.
 Sections JointSections(const Identification& report);
 
-/// Whether the recordings agree on what is shared: a verdict, and for each parameter the recordings' own estimates, the
-/// joint one and the random-effects mean.
+/// The agreement of the recordings on the shared parameters: a verdict, and for each parameter the separate estimates,
+/// the joint estimate and the random-effects mean.
 Section AgreementSection(const Identification& report, std::size_t fit);
 
 }  // namespace pendulum

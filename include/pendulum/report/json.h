@@ -9,13 +9,13 @@
 
 namespace pendulum {
 
-/// The result as a JSON object: result.schema.json, beside this header, describes it key by key. Values are SI with
-/// their unit beside them; a rate's residuals, noise and resolution carry the suffix _rad_s where an angle's carry
-/// _rad. Strict JSON: a number that does not exist is null, and `reason` in the same object says why. It holds no
-/// samples, clock times, durations of computing or command: the same recording and flags give the same bytes.
+/// The result as a JSON object. result.schema.json, in the same folder, describes every key. Values are SI and have
+/// their unit next to them; residuals, noise and resolution have the suffix _rad_s for a rate and _rad for an angle.
+/// Strict JSON: a missing number is null, and `reason` in the same object says why. It has no samples, clock times,
+/// computing times or command, so the same recording and flags give the same bytes.
 nlohmann::ordered_json ToJson(const Identification& report);
 
-/// ToJson as UTF-8 text, indented by two blanks, with a line break at its end. Bytes that are not UTF-8 become U+FFFD.
+/// ToJson as UTF-8 text, indented by two blanks, with a line break at its end. Invalid UTF-8 becomes U+FFFD.
 std::string ToJsonText(const Identification& report);
 
 }  // namespace pendulum

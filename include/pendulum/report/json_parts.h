@@ -8,21 +8,21 @@
 
 namespace pendulum {
 
-/// A JSON object whose missing numbers explain themselves: each is null, and `reason` says why.
+/// A JSON object that explains its missing numbers: each is null, and `reason` says why.
 class NumberObject {
  public:
   NumberObject& Set(const std::string& key, nlohmann::ordered_json value);
 
-  /// null with a reason where the number is not finite.
+  /// null with a reason if the number is not finite.
   NumberObject& Set(const std::string& key, double value);
 
-  /// A number that may be missing for the reason given.
+  /// A number that may be missing, with the reason.
   NumberObject& Set(const std::string& key, const std::optional<double>& value, const std::string& reason);
 
-  /// A reason beside those said so far; each is said once.
+  /// Adds a reason; a repeated reason is added once.
   void Because(const std::string& reason);
 
-  /// The object; empties this one.
+  /// Returns the object and empties this one.
   nlohmann::ordered_json Done();
 
  private:
@@ -30,7 +30,7 @@ class NumberObject {
   std::string reason_;
 };
 
-/// null for a number that is absent or not finite.
+/// null if the number is missing or not finite.
 nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
 
 nlohmann::ordered_json TextOrNull(const std::string& text);

@@ -10,14 +10,14 @@
 namespace pendulum {
 
 /// The report for a laboratory notebook, as GitHub-flavoured Markdown: the verdict and the parameters first, then the
-/// sections of ToText in their order. Values and errors share a cell, "0.0790 ± 0.0003".
+/// sections of ToText in order. A value and its error share a cell, "0.0790 ± 0.0003".
 std::string ToMarkdown(const Identification& report);
 
-/// Sections as Markdown: a heading of level 2 each, tables with pipes.
+/// Sections as Markdown: a heading of level 2 for each, tables with pipes.
 std::string ToMarkdown(const Sections& sections);
 
-/// A text that Markdown shows as it is, in a sentence or in a cell of a table: what would begin emphasis, code, a link,
-/// HTML, mathematics or a cell is escaped, control characters are "?".
+/// Escapes a text for a sentence or a table cell, so that Markdown shows it unchanged. Characters that start emphasis,
+/// code, a link, HTML, mathematics or a cell are escaped; control characters become "?".
 std::string MarkdownText(std::string_view text);
 
 }  // namespace pendulum

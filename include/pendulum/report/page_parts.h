@@ -9,17 +9,17 @@
 
 namespace pendulum {
 
-/// A place in a page and the JSON that belongs there.
+/// A token in a page and its JSON replacement.
 struct PagePart {
   std::string_view token;  ///< "@RESULT@"
   nlohmann::ordered_json content;
 };
 
-/// JSON that ends no script element, whatever strings are in it.
+/// JSON escaped so that no string in it can end a script element.
 std::string ScriptText(const nlohmann::ordered_json& json);
 
-/// A page with its parts put in. The tokens stand in the page in the order of the parts, each once; what is put in is
-/// not searched for them.
+/// Replaces the tokens of a page by their content. Each token occurs once, in the order of the parts. Inserted text is
+/// not searched for tokens.
 std::string FillPage(std::string_view page, std::initializer_list<PagePart> parts);
 
 }  // namespace pendulum

@@ -5,39 +5,40 @@
 
 namespace pendulum {
 
-/// How the numbers of one quantity are shown: x / 10^exponent with so many decimals.
+/// The number format of one quantity: x / 10^exponent with `decimals` decimals.
 struct Rounding {
   int decimals = 0;  ///< 0 or more.
-  int exponent = 0;  ///< 0 unless powers of ten save many zeros.
+  int exponent = 0;  ///< Not 0 only if a power of ten avoids many zeros.
 };
 
-/// A value and its standard error, to be printed with " ± " between them.
+/// A value and its standard error, printed with " ± " between them.
 struct ValueAndError {
-  std::string value;  ///< "0.83", or "(3.00" when a power of ten follows the error.
+  std::string value;  ///< "0.83", or "(3.00" if a power of ten follows the error.
   std::string error;  ///< "0.12", or "0.12)e-06".
 };
 
 /// The rounding of the Particle Data Group (M. Tanabashi et al., Review of Particle Physics, Phys. Rev. D 98, 030001,
-/// 2018, Introduction, section 5.3): an error with leading digits 100 to 354 has two significant digits, 355 to 949
-/// one, 950 to 999 is rounded up to 1000 and has two; the value has the same decimal. Any unit; error > 0, both finite.
+/// 2018, Introduction, section 5.3). An error with leading digits 100 to 354 gets two significant digits, 355 to 949
+/// one; 950 to 999 is rounded up to 1000 and gets two. The value has the same last decimal. Any unit; error > 0, both
+/// finite.
 Rounding PdgRounding(double value, double error);
 
 inline constexpr int kDigitsWithoutError = 4;
 
-/// The rounding that shows x != 0 to so many significant digits, trailing zeros included.
+/// The rounding that shows x != 0 with `digits` significant digits, including trailing zeros.
 Rounding SignificantRounding(double x, int digits);
 
-/// Significant digits that x != 0 has under a rounding, at least 1.
+/// Significant digits of x != 0 under a rounding, at least 1.
 int SignificantDigits(double x, const Rounding& rounding);
 
-/// Value ± error by PdgRounding. An error that is not positive, or too small for a double to show the value to its
-/// decimal, leaves the value at 12 significant digits.
+/// Value ± error by PdgRounding. If the error is not positive, or too small for the digits of a double, the value has
+/// 12 significant digits.
 ValueAndError PdgText(double value, double error);
 
-/// x as the rounding says: "0.830", "3.00e-06"; never "-0.000".
+/// x in the format `rounding`: "0.830", "3.00e-06"; never "-0.000".
 std::string RoundedText(double x, const Rounding& rounding);
 
-/// x with so many decimals, as printf's %f.
+/// x with `decimals` decimals, as with printf's %f.
 std::string FixedText(double x, int decimals);
 
 }  // namespace pendulum

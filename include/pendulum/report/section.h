@@ -11,29 +11,29 @@
 
 namespace pendulum {
 
-/// How much a reader is to be stopped: by "differs", by "did not converge".
+/// Strength of a highlight: kCaution for "differs", kAlarm for "did not converge".
 enum class Emphasis { kNone, kCaution, kAlarm };
 
-/// Sentences. A no-break space (U+00A0) is shown as a blank at which no line is broken.
+/// Sentences. A no-break space (U+00A0) is shown as a blank without a line break.
 struct Words {
   std::string text;
   Emphasis emphasis = Emphasis::kNone;
 };
 
-/// A name and what is said of it, in a few words or a sentence.
+/// A name and its description, in a few words or a sentence.
 struct Fact {
   std::string name, text;
   Emphasis emphasis = Emphasis::kNone;
 };
 using Facts = std::vector<Fact>;
 
-/// Rows below headers; each has one cell per column. Columns without any text are not shown.
+/// Rows below headers; each has one cell per column. Columns without text are not shown.
 struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows = {};
-  std::string caution = {};     ///< The text of cells that are to stop a reader; empty: none.
-  std::size_t rows_before = 0;  ///< `left_out` stands behind so many rows.
-  std::string left_out = {};    ///< "... 12 more": what the table does not list; empty: nothing.
+  std::string caution = {};     ///< The text of cells to be highlighted; empty: none.
+  std::size_t rows_before = 0;  ///< `left_out` is shown after this many rows.
+  std::string left_out = {};    ///< "... 12 more": describes omitted rows; empty: none are omitted.
 };
 
 struct Formula {
@@ -47,17 +47,17 @@ struct Items {
 
 using Block = std::variant<Words, Facts, Table, Formula, Items>;
 
-/// A part of the report for people, whatever form it is given.
+/// A part of the report as text, independent of its format.
 struct Section {
   std::string title;
-  std::string remark = {};  ///< On the whole section, in a few words; often empty.
+  std::string remark = {};  ///< A short remark on the whole section; often empty.
   std::vector<Block> blocks = {};
 
   Section& Add(Block block) {
     blocks.push_back(std::move(block));
     return *this;
   }
-  /// Sentences; nothing when the text is empty.
+  /// Adds sentences; an empty text adds nothing.
   Section& Say(std::string text, Emphasis emphasis = Emphasis::kNone) {
     if (!text.empty()) blocks.emplace_back(Words{std::move(text), emphasis});
     return *this;

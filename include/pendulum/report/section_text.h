@@ -8,12 +8,12 @@
 namespace pendulum {
 
 struct TextStyle {
-  bool colour = false;  ///< With ANSI sequences: headings bold, cautions yellow, alarms red. For terminals only.
+  bool colour = false;  ///< Uses ANSI sequences: headings bold, cautions yellow, alarms red. For terminals only.
 };
 
-/// Sections as UTF-8 text in at most kTextWidth columns: "[[title]] (remark)", below it everything by kTextIndent. A
-/// table that is wider goes on below itself, each part with the first column. Only a word, a number or a file name
-/// that is longer than a line makes a longer one.
+/// Sections as UTF-8 text in at most kTextWidth columns: "[[title]] (remark)", with the content indented by
+/// kTextIndent. A wider table continues below, with the first column repeated. Only a word, number or file name longer
+/// than a line makes a longer line.
 std::string ToText(const Sections& sections, TextStyle style = {});
 
 }  // namespace pendulum

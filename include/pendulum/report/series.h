@@ -14,26 +14,28 @@
 
 namespace pendulum {
 
-/// The samples beside the fit as CSV, one line a sample in SI with every digit a double has:
+/// The samples and the fit as CSV, one line per sample in SI with all digits of a double:
 /// time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad (or ..._rad_s for a
-/// rate), residual = measured - fitted. used: the N samples that were fitted. Where fit or overlay have not N numbers,
-/// or one that is not finite, its fields are empty.
+/// rate), residual = measured - fitted.
+/// used: the N fitted samples. If fit or overlay do not have N numbers, or have one that is not finite, the fields are
+/// empty.
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
 /// The same for fit number `fit` of an identification of one recording, with its overlay if there is one.
 std::string ToResidualCsv(const Identification& one, std::size_t fit);
 
-/// All of the series, or what the page needs: seven digits, no residuals (it takes differences), and the closed forms'
-/// trajectories of the main fit alone.
+/// kAll: the complete series. kPage: the part for the page, with seven digits, without residuals (the page computes
+/// them), and with the closed forms' trajectories of the main fit only.
 enum class SeriesDetail { kAll, kPage };
 
-/// The samples and what was made of them, beside the result: {"time_s", "measured", "unit" (of all readings),
-/// "extrema": [[time_s, measured], ...] as FindExtrema sees them, "peaks": [{"number", "time_s", "time_std_error",
-/// "angle_rad" (or rate_rad_s, angle_counts ...), "std_error", "zeta_pair", "zeta_pair_std_error", "zeta",
-/// "zeta_std_error", "periods"}], "profiles": {model: {parameter: {"value", "statistic", "threshold"}}} as
-/// ProfileCurve, "models": {name: {"fitted", "residual", "linear_closed_form", "nonlinear_closed_form"}}}. Missing
-/// values are null: an array, a number in one, the profiles, the damping ratio (zeta) of a turning point that none on
-/// its side follows. Of a joint identification: an array with such an object for each recording, in their order.
+/// The samples and the curves computed from them, in addition to the result:
+/// {"time_s", "measured", "unit" (of all readings), "extrema": [[time_s, measured], ...] from FindExtrema, "peaks":
+/// [{"number", "time_s", "time_std_error", "angle_rad" (or rate_rad_s, angle_counts ...), "std_error", "zeta_pair",
+/// "zeta_pair_std_error", "zeta", "zeta_std_error", "periods"}], "profiles": {model: {parameter: {"value", "statistic",
+/// "threshold"}}} as ProfileCurve, "models": {name: {"fitted", "residual", "linear_closed_form",
+/// "nonlinear_closed_form"}}}.
+/// Missing values are null: an array, a number in an array, the profiles, or the damping ratio (zeta) of the last
+/// turning point on its side. For a joint identification: an array with such an object per recording, in order.
 nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail = SeriesDetail::kAll);
 
 /// SeriesJson as one line of UTF-8 text.

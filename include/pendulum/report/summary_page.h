@@ -7,8 +7,8 @@
 
 namespace pendulum {
 
-/// The summary of a batch of refitted runs as one HTML file that needs no network: the page built from src/report/page
-/// with the JSON embedded, which is as summary.schema.json says.
+/// The summary of a batch of refitted runs as one HTML file without external resources: the page of src/report/page
+/// with the JSON (summary.schema.json) embedded.
 std::string SummaryHtml(const nlohmann::ordered_json& summary);
 
 }  // namespace pendulum

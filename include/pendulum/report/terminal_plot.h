@@ -8,14 +8,14 @@
 
 namespace pendulum {
 
-/// A script that makes gnuplot draw a fit in ASCII, 79 columns and 23 lines, to its standard output: measured readings
-/// (dots) against fitted ones (stars) above, residuals below; angles and rates in degrees. Of each column's samples the
-/// smallest and the largest reading are drawn and what lies between them, so that no swing is lost however many there
-/// are. The script holds the data, opens no file and contains nothing but numbers and our own words.
-/// `used` are the samples of `fit`; of a fit that has no fitted readings the measured ones are drawn alone.
+/// A gnuplot script that plots a fit in ASCII, 79 columns and 23 lines, to standard output: measured readings (dots)
+/// and fitted ones (stars) above, residuals below; angles and rates in degrees. For each column all values between its
+/// smallest and its largest reading are plotted, so that no swing is lost in long recordings. The script contains the
+/// data, opens no file, and has only numbers and fixed texts. `used` are the samples of `fit`; without fitted readings
+/// only the measured ones are plotted.
 std::string TerminalPlot(const Recording& used, const FitReport& fit);
 
-/// What gnuplot drew, as text for a terminal: without its form feeds, blanks at ends of lines and empty lines.
+/// The output of gnuplot without form feeds, trailing blanks and empty lines.
 std::string PictureText(const std::string& drawn);
 
 }  // namespace pendulum

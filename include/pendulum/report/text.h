@@ -9,12 +9,12 @@
 
 namespace pendulum {
 
-/// The result for people, section by section: data and sampling, the comparison of several models, each fit and whether
-/// its parameters are constants, closed forms and the check of the fit against them, turning points, warnings. In a
-/// comparison one fit is given in full (Identification::IsShownInFull), the parameters of the others.
+/// The result as sections: data and sampling, the comparison of several models, each fit and the constancy of its
+/// parameters, closed forms and their check, turning points, warnings. In a comparison one fit is shown in full
+/// (Identification::IsShownInFull), and only the parameters of the others.
 Sections ReportSections(const Identification& report);
 
-/// ReportSections as UTF-8 text for a terminal of 80 columns, in the layout lmfit's fit_report made customary.
+/// ReportSections as UTF-8 text for a terminal of 80 columns, in the usual layout of lmfit's fit_report.
 std::string ToText(const Identification& report, TextStyle style = {});
 
 }  // namespace pendulum

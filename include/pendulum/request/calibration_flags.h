@@ -11,29 +11,29 @@
 
 namespace pendulum {
 
-/// The flags that say how a table of readings is to be calibrated, as they were given.
+/// The flags for the calibration of a table of readings, as given.
 struct CalibrationFlags {
   int order = 1;            ///< Highest power of the reading.
-  std::string input_range;  ///< "low,high" in the unit of the readings, or empty.
-  int bits = 0;             ///< Of the converter; 0: not given.
+  std::string input_range;  ///< "low,high" in the unit of the readings; empty: none.
+  int bits = 0;             ///< Bits of the converter; 0: not given.
 };
 
-/// How a table is to be calibrated.
+/// The options for the calibration of a table.
 struct CalibrationOptions {
   int order = 1;
-  std::optional<SensorRange> input_range;  ///< In the unit of the readings.
-  bool has_bits = false;                   ///< The range is that of a converter, whose readings are counts.
+  std::optional<SensorRange> input_range;  ///< Range in the unit of the readings.
+  bool has_bits = false;                   ///< The range is that of a converter, so the readings are counts.
 };
 
-/// kInvalidArgument: the bits that --bits gives are none of a converter.
+/// kInvalidArgument: no converter has this many bits.
 Result<void> CheckBits(int bits);
 
-/// Checks the flags and turns them into what is to be done.
+/// Checks the flags and converts them to options.
 ///
 /// kInvalidArgument: an order or a range outside its domain, two ranges; the message names the flag.
 Result<CalibrationOptions> MakeCalibrationOptions(const CalibrationFlags& flags);
 
-/// CalibrateSensor as the options ask. kInvalidArgument: the table has volts, and the range is one of counts.
+/// CalibrateSensor with these options. kInvalidArgument: the table is in volts, but the range is in counts.
 Result<CalibrationFit> CalibrateTable(const CalibrationTable& table, const CalibrationOptions& options);
 
 }  // namespace pendulum

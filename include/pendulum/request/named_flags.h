@@ -15,25 +15,26 @@
 
 namespace pendulum {
 
-/// Flags as they were given, by their names: {"model", "drag"}.
+/// Given flags, by their names: {"model", "drag"}.
 using FlagTexts = std::map<std::string, std::string, std::less<>>;
 
-/// The names that each of the functions below knows.
+/// The names accepted by the corresponding functions below.
 std::vector<std::string_view> RunFlagNames();
 std::vector<std::string_view> SimulationFlagNames();
 std::vector<std::string_view> CalibrationFlagNames();
 
-/// The flags of a fit; `models` is another name of `model`. Files and threads are not for who asks from afar.
-/// kInvalidArgument: a name that is none (the nearest is suggested), an empty value, a switch neither true nor false.
+/// The flags of a fit; `models` is another name of `model`. Remote clients cannot set files and threads.
+/// kInvalidArgument: an unknown name (the message suggests the nearest one), an empty value, a switch that is neither
+/// true nor false.
 Result<RunFlags> RunFlagsOf(const FlagTexts& texts);
 
-/// The flags of a simulation, likewise. kInvalidArgument: as RunFlagsOf, or a number that is none.
+/// The flags of a simulation, with the same rules. kInvalidArgument: as RunFlagsOf, or an invalid number.
 Result<SimulationFlags> SimulationFlagsOf(const FlagTexts& texts);
 
-/// The flags of a calibration, likewise.
+/// The flags of a calibration, with the same rules.
 Result<CalibrationFlags> CalibrationFlagsOf(const FlagTexts& texts);
 
-/// kInvalidArgument: `name` is none of `names`; the nearest is suggested.
+/// kInvalidArgument: `name` is not in `names`; the message suggests the nearest one.
 Result<void> CheckFlagName(std::string_view name, std::span<const std::string_view> names);
 
 }  // namespace pendulum

@@ -9,8 +9,8 @@
 
 namespace pendulum {
 
-/// The flags that say how a recording is read and fitted, as they were given; empty, or the default, where they were
-/// not. The tools that fit recordings have them, and so has the service.
+/// The flags for reading and fitting a recording, as given; empty or the default if not given. Used by the tools that
+/// fit recordings and by the service.
 struct RunFlags {
   std::string rig;
   std::string calibration;
@@ -37,11 +37,11 @@ struct RunFlags {
   bool closed_form_only = false;
 };
 
-/// The refusal of a flag beside --closed_form_only.
+/// The error for a flag that cannot be combined with --closed_form_only.
 tl::unexpected<Status> NeedsAFit(std::string_view flag);
 
-/// Turns flags into options; rig and calibration are for the caller to read.
-/// kInvalidArgument: a flag is wrong or contradicts another; the message names it.
+/// Converts flags to options; the caller reads rig and calibration. kInvalidArgument: a flag is wrong or contradicts
+/// another; the message names it.
 Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags);
 
 }  // namespace pendulum

@@ -11,31 +11,31 @@
 
 namespace pendulum {
 
-/// Who may ask.
+/// The token and the host names with which clients may use the service.
 struct AccessRules {
-  std::string token;                       ///< That a client must know; empty: none.
-  std::vector<std::string> allowed_hosts;  ///< Beside those of loopback: "lab.example", or with its port.
+  std::string token;                       ///< Clients must send it; empty: no token is needed.
+  std::vector<std::string> allowed_hosts;  ///< Host names in addition to loopback names: "lab.example", or with a port.
 };
 
-/// What is behind a path: anybody may see the page's own files and whether the service lives.
+/// Who may request a path. The page's own files and the health check are open to anybody.
 enum class Audience { kAnybody, kTokenHolders };
 
-/// Why the head of a request refuses it, if it does: no Host or several (400); a Host that is not allowed, or a
-/// browser's cross-site request (403); no token or a wrong one (401).
+/// Checks the head of a request; std::nullopt: the request is allowed. Problems: no Host or several (400); a Host that
+/// is not allowed, or a browser's cross-site request (403); no token or a wrong one (401).
 std::optional<Problem> RefuseAccess(const HttpRequest& request, const AccessRules& rules, Audience audience);
 
-/// Whether two secrets are the same, in a time that tells neither where they differ nor how long they are.
+/// Whether two secrets are equal. The time does not depend on their lengths or on the position of a difference.
 bool IsSameSecret(std::string_view one, std::string_view other);
 
 /// Whether an authority, "localhost:8080", is a name of this machine: localhost and names below it, 127.0.0.0/8, [::1],
-/// at any port. A page on the web that makes its own name resolve here (DNS rebinding) comes with another.
+/// at any port. A web page that resolves its own name to this machine (DNS rebinding) sends its own name instead.
 bool IsLoopback(std::string_view authority);
 
-/// Whether an authority is in the list, at any port where the entry has none; letters in either case.
+/// Whether an authority is in the list. Entries without a port match any port; case is ignored.
 bool IsListedHost(std::string_view authority, const std::vector<std::string>& allowed_hosts);
 
-/// Whether a browser sent it from another origin: Sec-Fetch-Site says so, unless somebody follows a link to it, or
-/// Origin is another than Host. What is no browser has neither field.
+/// Whether a browser sent the request from another origin: Sec-Fetch-Site says so and it is not a followed link, or
+/// Origin differs from Host. Clients other than browsers send neither field.
 bool IsCrossSite(const HttpRequest& request);
 
 }  // namespace pendulum

@@ -22,7 +22,7 @@
 
 namespace pendulum {
 
-/// A value, or why a request has no answer.
+/// A value, or the problem of a request.
 template <typename T>
 using OrProblem = tl::expected<T, Problem>;
 
@@ -31,53 +31,55 @@ inline tl::unexpected<Problem> Refused(ProblemKind kind, std::string detail) {
   return tl::unexpected(Problem{kind, std::move(detail), {}});
 }
 
-/// How much one request may ask for.
+/// Limits of one request.
 struct RequestLimits {
   std::size_t max_samples = 200'000;  ///< Lines of a recording.
   std::size_t max_runs = 10'000;      ///< Recordings of a batch.
 };
 
-/// What a client asks to be fitted.
+/// A client's request for fits.
 struct FitRequest {
-  FlagTexts flags;          ///< As they were given; all that they do not say has its default.
-  IdentifyOptions options;  ///< What they ask.
+  FlagTexts flags;          ///< The given flags; missing flags have their defaults.
+  IdentifyOptions options;  ///< The options that the flags set.
   std::vector<NamedBytes> data;
   SharedFile rig, calibration;
 };
 
-/// Where recordings have no name of their own.
+/// Name of recordings sent without a name.
 inline constexpr const char* kUnnamed = "data";
 
-/// Reads the request for one fit: its body is the recording (text/csv), a form (multipart/form-data) with the parts
-/// data, rig, calibration and options, or a JSON object of these; its query has flags, and the recording's `name`.
-/// Problems: as RunFlagsOf and MakeRunOptions; an unknown or doubled part, another kind of content, too many lines.
+/// Reads the request for one fit. The body is the recording (text/csv), a form (multipart/form-data) with the parts
+/// data, rig, calibration and options, or a JSON object with these members. The query has flags and the recording's
+/// `name`. Problems: as RunFlagsOf and MakeRunOptions; an unknown or repeated part, another content type, too many
+/// lines.
 OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                       const RequestLimits& limits);
 
-/// The same for a batch: a form with one or more parts data.
+/// Reads the request for a batch: as ParseFitRequest, with a form of one or more parts data.
 OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
                                         const RequestLimits& limits);
 
-/// The changes that a refit asks for: flags whose empty values take away those there were, and a rig or calibration
-/// (null takes it away) instead of those there were, as query or JSON object.
+/// Reads the changes of a refit from the query or a JSON object. A flag with an empty value removes the previous one. A
+/// new rig or calibration replaces the previous one; null removes it.
 OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
                                         RunFiles files);
 
-/// What flags ask of one run of the service, which has that calibration. Errors as RunFlagsOf and MakeRunOptions;
-/// kInvalidArgument: release all.
+/// The options of one run of the service with these flags and this calibration. Errors as RunFlagsOf and
+/// MakeRunOptions; kInvalidArgument: release all.
 Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
-/// kUnsupportedMediaType: the body is of none of these types, or in some coding.
+/// kUnsupportedMediaType: the body has none of these types, or has a content coding.
 OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
 
-/// The flags of a run that was kept, and what they ask of it. kDataLoss: the store has other than it was given.
+/// The flags of a stored run, and the options they set. kDataLoss: the stored text is damaged.
 Result<FlagTexts> FlagsOf(const FitOrder& order);
 Result<IdentifyOptions> OptionsOf(const FitOrder& order);
 
-/// A JSON object of texts, numbers and switches as flags. kInvalidArgument: an array or an object in it.
+/// Converts a JSON object of strings, numbers and booleans to flags. kInvalidArgument: it contains an array or an
+/// object.
 Result<FlagTexts> FlagTextsOf(const nlohmann::ordered_json& object);
 
-/// Flags as a JSON object of texts.
+/// Flags as a JSON object of strings.
 nlohmann::ordered_json JsonOf(const FlagTexts& flags);
 
 }  // namespace pendulum

@@ -19,19 +19,20 @@ namespace pendulum {
 struct ServiceOptions {
   RequestLimits limits;
   AccessRules access;
-  std::chrono::milliseconds fit_time{30'000};   ///< That one fit may take.
-  int threads = 0;                              ///< Runs of batches at a time; 0: cores.
-  std::string live;                             ///< The recording that is being made, as LiveRecording; empty for none.
-  std::function<void(const std::string&)> say;  ///< Told, from any thread, what an operator should know.
+  std::chrono::milliseconds fit_time{30'000};   ///< Longest time of one fit.
+  int threads = 0;                              ///< Runs of batches at a time; 0: one per core.
+  std::string live;                             ///< Path of the recording in progress, as LiveRecording; empty for
+                                                ///< none.
+  std::function<void(const std::string&)> say;  ///< Receives messages for the operator, from any thread.
 };
 
 struct ServiceState;
 
-/// Answers the requests that include/pendulum/service/openapi.json lists: fits recordings, keeps the results
-/// in a store, works off batches, and has the page. What it has answered with success is on the disk.
+/// Answers the requests listed in include/pendulum/service/openapi.json: fits recordings, keeps the results in a store,
+/// runs batches, and serves the page. Everything that it answered with success is on the disk.
 class FittingService : public HttpHandler {
  public:
-  /// Takes up the batches that wait in the store. Errors: of the store.
+  /// Continues the batches that wait in the store. Errors: of the store.
   static Result<std::unique_ptr<FittingService>> Begin(const ServiceOptions& options, std::unique_ptr<FitStore> store);
 
   explicit FittingService(std::unique_ptr<ServiceState> state);
@@ -46,16 +47,16 @@ class FittingService : public HttpHandler {
   HttpResponse Handle(const HttpRequest& request) override;
   HttpResponse Refusal(int status, const std::string& detail) const override;
 
-  /// Counts an answer for the metrics.
+  /// Counts an answer in the metrics.
   void Count(const Answered& answered);
 
-  /// What the metrics say of the server.
+  /// Sets the source of the server's numbers in the metrics.
   void CountServer(std::function<ServerCounts()> counts);
 
-  /// Ends batches, whose runs wait for the next start, and says so to who asks for its health.
+  /// Ends batches and reports the stop in health checks. The remaining runs wait for the next start.
   void Stop();
 
-  /// Stops all fits, whose requests are answered with 503.
+  /// Stops all fits; their requests are answered with 503.
   void StopFits();
 
  private:

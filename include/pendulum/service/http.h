@@ -9,32 +9,32 @@
 
 namespace pendulum {
 
-/// A header field. Names are compared without regard to case (RFC 9110, section 5.1).
+/// A header field. Comparisons of names ignore case (RFC 9110, section 5.1).
 struct HttpField {
   std::string name, value;
 };
 
-/// A request as it came, nothing decoded. Header fields have no line breaks; a field that came twice stands twice.
+/// A request without any decoding. Header fields have no line breaks; a repeated field occurs once per repetition.
 struct HttpRequest {
   std::string method;  ///< "GET"
   std::string target;  ///< Path and query as on the request line: "/v1/fits?model=drag".
   std::vector<HttpField> fields;
-  std::string body;  ///< Whole, without its transfer coding.
+  std::string body;  ///< Complete, without its transfer coding.
 
-  /// The value of a field; none where it is not there. Of several the first.
+  /// The value of the first field of that name; std::nullopt if there is none.
   std::optional<std::string_view> Field(std::string_view name) const;
 
   /// The values of all fields of that name, in their order.
   std::vector<std::string_view> Fields(std::string_view name) const;
 };
 
-/// What a stream of server-sent events has to say since it was asked last.
+/// The new text of a stream of server-sent events since the last call.
 struct EventText {
-  std::string text;      ///< Whole events, each with its empty line; may be empty.
-  bool is_last = false;  ///< Nothing will follow.
+  std::string text;      ///< Complete events, each with its empty line; may be empty.
+  bool is_last = false;  ///< No more events follow.
 };
 
-/// Asked some ten times a second, from one thread at a time, while the client listens.
+/// Called about ten times a second, from one thread at a time, while the client is connected.
 using NextEvents = std::function<EventText()>;
 
 struct HttpResponse {
@@ -44,10 +44,10 @@ struct HttpResponse {
   NextEvents events;  ///< If set, a stream of events instead of a body.
 };
 
-/// Where the server lets a request wait: what is answered at once, and what calculates.
+/// Queue of a request: kQuick for requests answered at once, kFit for those that calculate.
 enum class Lane { kQuick, kFit };
 
-/// What answers requests; any number of threads may ask at a time.
+/// Answers requests; called from any number of threads at a time.
 class HttpHandler {
  public:
   HttpHandler() = default;
@@ -59,12 +59,13 @@ class HttpHandler {
 
   virtual Lane LaneOf(const HttpRequest& request) const = 0;
 
-  /// Whether its head alone refuses it, before its body is read: no token, a foreign host, a path that does not exist.
+  /// Refuses a request by its head, before the body is read: no token, a foreign host, an unknown path. std::nullopt:
+  /// the request is accepted.
   virtual std::optional<HttpResponse> RefuseHead(const HttpRequest& request) const = 0;
 
   virtual HttpResponse Handle(const HttpRequest& request) = 0;
 
-  /// The answer to what never becomes a request, or cannot be taken: 400, 408, 413, 417, 429, 431, 500, 503.
+  /// The answer to malformed requests and to those beyond a limit: 400, 408, 413, 417, 429, 431, 500, 503.
   virtual HttpResponse Refusal(int status, const std::string& detail) const = 0;
 };
 

@@ -11,8 +11,9 @@ namespace pendulum {
 
 inline constexpr std::size_t kLongestIdempotencyKey = 255;  ///< bytes
 
-/// The Idempotency-Key of a request, as it stands there; empty where it has none.
-/// kInvalidArgument: it comes twice, is empty, longer than kLongestIdempotencyKey, or has other than visible ASCII.
+/// The Idempotency-Key of a request, unchanged; empty if there is none.
+/// kInvalidArgument: it is repeated, empty, longer than kLongestIdempotencyKey, or has characters other than visible
+/// ASCII.
 Result<std::string> IdempotencyKey(const HttpRequest& request);
 
 }  // namespace pendulum

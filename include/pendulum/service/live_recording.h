@@ -13,28 +13,29 @@
 namespace pendulum {
 
 enum class LiveState {
-  kWaiting,    ///< There is no run yet, or not its header.
-  kRecording,  ///< PATH.part is there and has been written to within a minute.
-  kEnded,      ///< PATH is there, or its part that nobody writes to any more.
+  kWaiting,    ///< There is no run yet, or its header is incomplete.
+  kRecording,  ///< PATH.part exists and was written to in the last minute.
+  kEnded,      ///< PATH exists, or PATH.part that is no longer written to.
 };
 
-/// Where the recording stands.
+/// State of the recording.
 struct LiveStatus {
   LiveState state = LiveState::kWaiting;
-  std::string name;            ///< Of its file, without folders; that of the recording, not of its part.
+  std::string name;            ///< File name without folders: of the recording, not of its part file.
   std::uint64_t samples = 0;   ///< Rows so far.
-  std::string unit;            ///< Of the values: "deg" where the file has a calibration, else the column's: "counts".
-  std::optional<double> rate;  ///< Hz, as the file says.
+  std::string unit;            ///< Unit of the values: "deg" with a calibration in the file, otherwise the column's
+                               ///< unit, such as "counts".
+  std::optional<double> rate;  ///< Hz, from the file's header.
 };
 
-/// The recording that record_pendulum --out PATH is making, read from PATH.part while it grows and from PATH once it is
-/// whole; nothing else is ever opened. Rows that are not whole yet are left for later, rows that are none are passed
-/// over. The file may be begun anew, cut off or vanish at any time, and be larger than memory. For any thread.
+/// The recording that record_pendulum --out PATH writes. It is read from PATH.part while it grows and from PATH when it
+/// is complete; no other file is opened. Incomplete rows are read later; invalid rows are skipped. The file may be
+/// restarted, truncated or deleted at any time, and may be larger than memory. For any thread.
 class LiveRecording {
  public:
   explicit LiveRecording(const std::filesystem::path& run);
 
-  /// Reads what has been appended since, at most some megabytes of it.
+  /// Reads the appended data, at most some megabytes per call.
   void Poll();
 
   LiveStatus Status() const;
@@ -42,15 +43,15 @@ class LiveRecording {
   /// {"state": "waiting"|"recording"|"ended", "name", "samples", "unit", "rate_hz"|null}, on one line.
   std::string StatusJson() const;
 
-  /// A listener of its own, which polls by itself, twenty times a second for all listeners together, and may outlive
-  /// this object. `event: state` has StatusJson, first of all and whenever that changes; `event: samples` has
-  /// {"time_s": [...], "values": [...]}: first the run so far, in at most 4000 points with all its extremes, then what
-  /// follows, at most 50 points for each of its seconds. A state that is waiting empties the plot: it comes before the
-  /// samples of another run, and where a listener lost the thread. It never ends by itself.
+  /// Adds a listener. It polls by itself, twenty times a second for all listeners together, and may outlive this
+  /// object. `event: state` has StatusJson; it comes first and after every change. `event: samples` has {"time_s":
+  /// [...], "values": [...]}. The first one is the run so far, in at most 4000 points with all its extremes; later ones
+  /// have at most 50 points per second of the recording. The state "waiting" empties the plot: it comes before the
+  /// samples of another run, and if a listener missed samples. The stream never ends by itself.
   NextEvents Listen();
 
-  /// The file as it is now, up to its last whole line. kNotFound: there is none yet. kDataLoss: unreadable, or larger
-  /// than 64 MiB.
+  /// The file's current bytes up to its last complete line. kNotFound: there is no file. kDataLoss: unreadable, or
+  /// larger than 64 MiB.
   Result<std::string> Bytes() const;
 
  private:

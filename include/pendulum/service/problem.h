@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// Why a request has no answer. Each has a code, a title, a status of HTTP and, where the command line knows it too, an
+/// The kind of a problem. Each kind has a code, a title, an HTTP status and, if the command line has the same error, an
 /// exit code.
 enum class ProblemKind {
   kWrongRequest,          ///< 400
@@ -37,35 +37,35 @@ enum class ProblemKind {
 /// Problem details (RFC 9457).
 struct Problem {
   ProblemKind kind = ProblemKind::kInternal;
-  std::string detail;             ///< The sentence, as the command line says it.
-  std::vector<HttpField> fields;  ///< That the answer has beside its content: Allow, Retry-After, WWW-Authenticate.
+  std::string detail;             ///< A sentence, the same as on the command line.
+  std::vector<HttpField> fields;  ///< Additional fields of the answer: Allow, Retry-After, WWW-Authenticate.
 
   int status() const;             ///< 422
   std::string_view code() const;  ///< "unusable_data"
 };
 
-/// After how long a client may ask again, where nobody knows better.
+/// Default time after which a client may try again.
 inline constexpr std::chrono::seconds kRetryAfter{5};
 
-/// What a function says, to the world. kTryAgain is kStopping, with Retry-After.
+/// Converts the error of a function. kTryAgain becomes kStopping, with Retry-After.
 Problem ProblemOf(const Status& status);
 
-/// What HTTP itself refuses (400, 404, 408, 413, 415, 417, 429, 431, 503), with Retry-After where it may succeed later.
-/// Any other status below 500 is 400, any other 500.
+/// A problem for an HTTP status (400, 404, 408, 413, 415, 417, 429, 431, 503), with Retry-After if a later attempt may
+/// succeed. Any other status below 500 becomes 400, any other from 500 on becomes 500.
 Problem ProblemOf(int http_status, std::string detail);
 
-/// 401. `error`: of RFC 6750, section 3.1, such as invalid_token; empty where the request has no token at all.
+/// 401. `error`: as in RFC 6750, section 3.1, such as invalid_token; empty if the request has no token.
 Problem Unauthorized(std::string detail, std::string_view error = "");
 
-/// 405 of a resource that has these methods: "GET, HEAD".
+/// 405 for a resource with the methods `allowed`: "GET, HEAD".
 Problem MethodNotAllowed(std::string_view method, std::string_view allowed);
 
-/// With Retry-After, in whole seconds from 1 on: kTimedOut, kTooManyRequests, kStopping; kConflict while the other
-/// runs.
+/// A problem with Retry-After, in whole seconds, at least 1: kTimedOut, kTooManyRequests, kStopping; kConflict while
+/// another request with the same key runs.
 Problem RetryLater(ProblemKind kind, std::string detail, std::chrono::seconds after = kRetryAfter);
 
 /// application/problem+json: {"type": "urn:pendulum:problem:CODE", "title", "status", "detail", "code", "exit_code"},
-/// on one line. Bytes of the detail that are no UTF-8 become U+FFFD.
+/// on one line. Bytes of the detail that are not valid UTF-8 become U+FFFD.
 HttpResponse ProblemResponse(const Problem& problem);
 
 }  // namespace pendulum

@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// Stops what takes longer than it may. For any thread.
+/// Requests a stop of work that exceeds a time limit. For any thread.
 class TimeLimit {
  public:
   explicit TimeLimit(std::chrono::milliseconds limit);
@@ -21,7 +21,7 @@ class TimeLimit {
   TimeLimit& operator=(TimeLimit&&) = delete;
   ~TimeLimit() = default;
 
-  /// One piece of work, from now on until its end.
+  /// One piece of work, from construction to destruction.
   class Watch {
    public:
     explicit Watch(TimeLimit& limit);
@@ -31,7 +31,7 @@ class TimeLimit {
     Watch& operator=(Watch&&) = delete;
     ~Watch();
 
-    /// Requested when the time is over, or StopAll is called.
+    /// A stop is requested at the time limit, or by StopAll.
     std::stop_token token() const { return source_.get_token(); }
 
    private:
@@ -41,7 +41,7 @@ class TimeLimit {
     std::uint64_t number_;
   };
 
-  /// Stops all there is, and what is still to come.
+  /// Stops all current and future work.
   void StopAll();
 
   std::chrono::milliseconds limit() const { return limit_; }
@@ -58,12 +58,13 @@ class TimeLimit {
   void Work(const std::stop_token& stop);
 
   std::chrono::milliseconds limit_;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // for all members below
   std::condition_variable_any changed_;
-  std::map<std::uint64_t, Running> running_;  // by number; as the limit is one, those that end first stand first
+  std::map<std::uint64_t, Running> running_;  // by number; all have the same limit, so the order is also that of their
+                                              // ends
   std::uint64_t next_ = 0;
   bool all_stopped_ = false;
-  std::jthread thread_;  // last, so that it ends before the rest goes
+  std::jthread thread_;  // last member, so it is joined before the others are destroyed
 };
 
 }  // namespace pendulum
