@@ -61,7 +61,7 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
 /// Where and why a swing begins.
 struct Beginning {
   Index sample;
-  std::string why;
+  WindowBegin why;
   Index behind_hold = sample;
 };
 
@@ -86,9 +86,9 @@ Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
   // The release also lies somewhere within the band.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
-    if (IsSteady(table, begin, held)) return {begin, std::string(kHeld), last + 1};
+    if (IsSteady(table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
   }
-  return {last, "after the release: the hold before it is not steady"};
+  return {last, {WindowBegin::Reason::kUnsteadyHold}};
 }
 
 /// The hold that contains the first turning point of a run, if the reading stays near it for longer than in a swing.
@@ -119,9 +119,8 @@ std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) 
   const bool angle = recording.quantity == Quantity::kAngle && recording.is_calibrated();
   if (!angle || !(table.amplitude[turn] > kUpright)) return std::nullopt;
   const Index next = table.turns[turn + 1].sample;
-  if (table.amplitude[turn] > kOverTheTop) return Beginning{next, "after its turns over the top"};
-  return Beginning{next, "after the fall from " + NumberText(table.amplitude[turn] / kRadFromDeg, 3) +
-                             " deg, where the smallest push decides when it falls and the release tells nothing"};
+  if (table.amplitude[turn] > kOverTheTop) return Beginning{next, {WindowBegin::Reason::kAfterTurns}};
+  return Beginning{next, {WindowBegin::Reason::kAfterFall, table.amplitude[turn] / kRadFromDeg}};
 }
 
 Beginning Begin(const TurnTable& table, const Run& run) {
@@ -132,8 +131,8 @@ Beginning Begin(const TurnTable& table, const Run& run) {
   const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
   const bool within =
       std::abs(recording.value[0] - table.zero[run.first]) <= table.amplitude[run.first] + table.Tolerance(run.first);
-  if (near_start && within) return {0, std::string(kInMotion)};
-  return {table.turns[run.first].sample, "the first turning point after the pendulum was moved otherwise"};
+  if (near_start && within) return {0, {WindowBegin::Reason::kInMotion}};
+  return {table.turns[run.first].sample, {WindowBegin::Reason::kAfterMove}};
 }
 
 /// Fits an oscillation with the period of small swings to samples [first, first + count). Returns its amplitude divided
@@ -177,21 +176,22 @@ bool IsStopped(const TurnTable& table, std::size_t last, Index limit) {
 /// Where and why a swing ends.
 struct Ending {
   Index sample;
-  std::string why;
+  WindowEnd why;
 };
 
 Ending End(const TurnTable& table, const Run& run) {
   const Recording& recording = table.recording;
   const Index turn = table.turns[run.last].sample;
   // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
-  if (run.last < table.half_swings()) return {turn, "the last turning point before the pendulum is moved otherwise"};
+  if (run.last < table.half_swings()) return {turn, {WindowEnd::Reason::kBeforeMove}};
   const Index limit = recording.size() - 1;
-  if (IsStopped(table, run.last, limit)) return {turn, "the last turning point before the pendulum is stopped"};
+  if (IsStopped(table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
   const Index end = EndOfMotion(table, turn, limit);
-  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period) return {limit, "the end of the recording"};
+  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period)
+    return {limit, {WindowEnd::Reason::kEndOfRecording}};
   Index sample = end;
   while (recording.time[sample] - recording.time[end] < 2 * table.half_period) ++sample;
-  return {sample, "at rest from about " + NumberText(recording.time[end], 4) + " s"};
+  return {sample, {WindowEnd::Reason::kAtRest, recording.time[end]}};
 }
 
 FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
@@ -215,9 +215,9 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
 /// out.
 void LeaveHoldsOut(std::vector<FreeSwing>& swings) {
   for (FreeSwing& swing : swings) {
-    if (swing.begins != kHeld) continue;
+    if (swing.begins.reason != WindowBegin::Reason::kHeld) continue;
     swing.from = swing.behind_hold;
-    swing.begins = "after the release, at which an acceleration jumps";
+    swing.begins = {WindowBegin::Reason::kAccelerationJump};
   }
 }
 

@@ -49,8 +49,8 @@ void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& d
   data.resolution_source = used.resolution > 0 ? used.resolution_source : "";
   data.clock_scale = used.clock_scale;
   data.clock_scale_std_dev = used.clock_scale_std_dev;
-  data.begins = swing.begins;
-  data.ends = swing.ends;
+  data.begins = Sentence(swing.begins);
+  data.ends = Sentence(swing.ends);
 }
 
 std::vector<const Identification*> Identification::Parts() const {

@@ -14,7 +14,9 @@ namespace {
 
 Json ParameterJson(const ParameterEstimate& parameter) {
   NumberObject object;
-  if (!parameter.open_interval.empty()) object.Because("the interval is open: " + parameter.open_interval);
+  if (parameter.open_interval != OpenInterval::kClosed) {
+    object.Because("the interval is open: " + std::string(Sentence(parameter.open_interval)));
+  }
   return object.Set("estimate", parameter.estimate)
       .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
       .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
@@ -121,6 +123,16 @@ Json IdentifiabilityJson(const FitReport& fit) {
                    {"advice", TextOrNull(known.advice)}});
   }
   return all;
+}
+
+nlohmann::ordered_json SolverJson(const SolverSummary& solver) {
+  Json attempts = Json::array();
+  for (const AttemptRecord& attempt : solver.attempts)
+    attempts.push_back({{"name", attempt.name}, {"kept", attempt.kept}});
+  return {{"iterations", solver.iterations},
+          {"evaluations", solver.evaluations},
+          {"termination", solver.termination},
+          {"attempts", std::move(attempts)}};
 }
 
 }  // namespace pendulum

@@ -110,8 +110,9 @@ void SayMissingErrors(const FitReport& fit, Section& section) {
 std::string OpenIntervals(const FitReport& fit) {
   std::string text;
   for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.open_interval.empty()) continue;
-    text += " That of " + std::string(parameter.info.name) + " is open: " + parameter.open_interval + ".";
+    if (parameter.open_interval == OpenInterval::kClosed) continue;
+    text += " That of " + std::string(parameter.info.name) +
+            " is open: " + std::string(Sentence(parameter.open_interval)) + ".";
   }
   return text;
 }

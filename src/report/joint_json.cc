@@ -150,9 +150,7 @@ Json JointFitJson(const Identification& report, std::size_t index) {
   json["statistics"] = failed ? Json(nullptr) : WholeStatisticsJson(report, fit);
   json["homogeneity"] = HomogeneityJson(report.joint[index].homogeneity);
   json["runs"] = std::move(runs);
-  json["solver"] = {{"iterations", fit.solver.iterations},
-                    {"evaluations", fit.solver.evaluations},
-                    {"termination", fit.solver.termination}};
+  json["solver"] = SolverJson(fit.solver);
   return json;
 }
 

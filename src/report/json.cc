@@ -74,9 +74,7 @@ Json FitJson(const Identification& report, std::size_t index) {
   json["closed_form"] = CheckJson(report.CheckOf(index));
   json["constancy"] = ConstancyJson(report.ConstancyOf(index));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, report.ConstancyOf(index));
-  json["solver"] = {{"iterations", fit.solver.iterations},
-                    {"evaluations", fit.solver.evaluations},
-                    {"termination", fit.solver.termination}};
+  json["solver"] = SolverJson(fit.solver);
   return json;
 }
 

@@ -63,7 +63,7 @@ void FindProfiles(benchmark::State& state) {
   for (auto _ : state) {
     for (const int k : optimum->free) {
       const ProfileInterval interval = ProfileParameter(*run.cost, *run.problem, run.solution, *optimum, {}, k);
-      if (!interval.lower || !interval.upper) return state.SkipWithError(interval.open.c_str());
+      if (!interval.lower || !interval.upper) return state.SkipWithError(std::string(Sentence(interval.open)).c_str());
     }
   }
   state.counters["parameters"] = static_cast<double>(optimum->free.size());

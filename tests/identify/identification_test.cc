@@ -25,7 +25,7 @@ TEST(SummarizeUsed, DescribesTheWindow) {
   recording.resolution = 0.5;
   recording.resolution_source = "file";
   FreeSwing swing;
-  swing.begins = "as asked";
+  swing.begins = {WindowBegin::Reason::kAsked};
   DataSummary data;
   data.samples = 101;
   SummarizeUsed(*SelectWindow(recording, 1.95, 4.05), swing, data);

@@ -41,7 +41,7 @@ TEST(ParametersJson, HasNumbersUnitsAndFlagsByName) {
 TEST(ParametersJson, SaysWhyAnErrorIsNull) {
   FitReport fit = ExampleFit();
   fit.parameters[3].upper95.reset();
-  fit.parameters[3].open_interval = "the profile stays low";
+  fit.parameters[3].open_interval = OpenInterval::kFlatLikelihood;
   const Json parameters = ParametersJson(fit);
   EXPECT_TRUE(parameters["coulomb"]["std_error"].is_null());
   EXPECT_EQ(parameters["coulomb"]["at_bound"], true);
@@ -49,7 +49,8 @@ TEST(ParametersJson, SaysWhyAnErrorIsNull) {
   EXPECT_TRUE(parameters["zero_angle"]["interval95"].is_null());
   EXPECT_EQ(parameters["zero_angle"]["reason"], "fixed");
   EXPECT_TRUE(parameters["release_angle"]["interval95"][1].is_null());
-  EXPECT_EQ(parameters["release_angle"]["reason"], "the interval is open: the profile stays low");
+  EXPECT_EQ(parameters["release_angle"]["reason"],
+            "the interval is open: the likelihood does not fall far enough on that side, however far out");
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
 }
 

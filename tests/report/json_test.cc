@@ -103,10 +103,10 @@ TEST(ToJson, SaysWhyAnIntervalIsOpen) {
   Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
-  viscous.open_interval = "its likelihood does not fall";
+  viscous.open_interval = OpenInterval::kNothingExcluded;
   const Json json = ToJson(report)["fits"][0]["parameters"]["viscous"];
   EXPECT_EQ(json["interval95"], Json::array({nullptr, 0.004}));
-  EXPECT_EQ(json["reason"], "the interval is open: its likelihood does not fall");
+  EXPECT_EQ(json["reason"], "the interval is open: no value that it may have is excluded");
 }
 
 TEST(ToJson, GivesIntervalsOfDerivedQuantitiesEndByEnd) {

@@ -128,10 +128,11 @@ TEST(ToText, SaysWhichIntervalIsOpen) {
   Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
-  viscous.open_interval = "its likelihood does not fall";
+  viscous.open_interval = OpenInterval::kNothingExcluded;
   const std::string text = ToText(report);
-  EXPECT_THAT(OneLine(text),
-              HasSubstr("Intervals: profile likelihood. That of viscous is open: its likelihood does not fall. "));
+  EXPECT_THAT(
+      OneLine(text),
+      HasSubstr("Intervals: profile likelihood. That of viscous is open: no value that it may have is excluded. "));
   EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 

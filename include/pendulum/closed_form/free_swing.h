@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "pendulum/base/status.h"
+#include "pendulum/closed_form/window_reasons.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
-
-inline constexpr std::string_view kHeld = "held, then released";
-inline constexpr std::string_view kInMotion = "the recording begins in motion";
 
 /// A part of a recording in which only gravity and friction move the pendulum.
 struct FreeSwing {
@@ -19,7 +16,8 @@ struct FreeSwing {
   double amplitude = 0;          ///< rad or rad/s: the largest distance of its turning points from their zero
   double amplitude_outside = 0;  ///< rad or rad/s: the same for turning points that belong to no free swing
   std::vector<double> turns;     ///< s, its turning points
-  std::string begins, ends;      ///< Reasons for its beginning and end, after "begins: " and "ends: ".
+  WindowBegin begins;            ///< Why it begins at `from`.
+  WindowEnd ends;                ///< Why it ends at `to`.
   double behind_hold = 0;        ///< s, the first sample after its initial hold; `from` without a hold
   bool from_given = false;       ///< The user gave `from`; to_given: the user gave `to`.
   bool to_given = false;

@@ -95,7 +95,7 @@ FitReport IntroduceFit(const Recording& recording, const FitProblem& problem, co
   report.quantity = recording.quantity;
   report.sensor = problem.data.sensor;
   report.reading_unit = recording.value_unit();
-  report.solver = {solution.iterations, cost.traces(), solution.message};
+  report.solver = {solution.iterations, cost.traces(), solution.message, {}};
   return report;
 }
 

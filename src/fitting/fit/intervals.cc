@@ -64,8 +64,7 @@ void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
   constexpr int kFewest = kBootstrapFits * 9 / 10;
   for (const int i : NotFixed(fitted.optimum)) {
     if (bootstrap.estimates.rows() < kFewest) {
-      report.parameters[static_cast<std::size_t>(i)].open_interval =
-          std::to_string(bootstrap.failed) + " of the bootstrap's fits cannot be made";
+      report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kFailedResamples;
       continue;
     }
     SetInterval(fitted.problem, i, bootstrap.Quantile(i, 0.025), bootstrap.Quantile(i, 0.975), report);
@@ -206,8 +205,7 @@ void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution,
                 report);
   }
   for (const int i : optimum.at_bound) {
-    report.parameters[static_cast<std::size_t>(i)].open_interval =
-        "at its bound; --interval profile gives the other end";
+    report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kAtBound;
     const double at = solution.parameters[static_cast<std::size_t>(i)];
     const bool low = BoundSide(solve, static_cast<std::size_t>(i), at) < 0;
     SetInterval(problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at), report);
@@ -222,7 +220,7 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
   const auto k = static_cast<std::size_t>(parameter);
   report.parameters[k].open_interval = interval.open;
   if (interval.lower == problem.solve.lower[k] && interval.upper == problem.solve.upper[k]) {
-    report.parameters[k].open_interval = "no value that it may have is excluded";
+    report.parameters[k].open_interval = OpenInterval::kNothingExcluded;
     SetInterval(problem, parameter, std::nullopt, std::nullopt, report);
   } else {
     SetInterval(problem, parameter, interval.lower, interval.upper, report);

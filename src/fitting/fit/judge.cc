@@ -57,13 +57,6 @@ std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
          " choose a window of free swing with --from and --to";
 }
 
-/// Number of the release time among the parameters, if there is one.
-std::optional<std::size_t> ReleaseTimeOf(const FitProblem& problem) {
-  const auto found = std::ranges::find(problem.infos, "release_time", &ParameterInfo::name);
-  if (found == problem.infos.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - problem.infos.begin());
-}
-
 /// RemainingShift, but where the release lies at the instant of a rate's sample: there the sum of squares has a kink.
 /// If it rises on both sides the release is where it belongs, whatever the slope on one of them, and only the step of
 /// the others is left.
@@ -73,7 +66,7 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
   const double shift = RemainingShift(optimum);
   const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
   if (shift <= kLargestShift || !may_have_a_kink) return shift;
-  const auto release = std::ranges::find(optimum.free, static_cast<int>(*ReleaseTimeOf(problem)));
+  const auto release = std::ranges::find(optimum.free, static_cast<int>(*problem.Find(kReleaseTime.name)));
   if (release == optimum.free.end()) return shift;
   const auto k = release - optimum.free.begin();
   double least = 0;
@@ -101,7 +94,7 @@ bool StopsAtJump(const FitProblem& problem, const TrajectoryCost& cost, const So
 /// How many small-angle periods the motion of the solution lasts in the recording.
 double PeriodsOf(const FitProblem& problem, const Solution& solution) {
   const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
-  const std::optional<std::size_t> release = ReleaseTimeOf(problem);
+  const std::optional<std::size_t> release = problem.Find(kReleaseTime.name);
   return (problem.data.time.back() - (release ? solution.parameters[*release] : 0.0)) / period;
 }
 

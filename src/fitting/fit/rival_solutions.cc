@@ -57,10 +57,10 @@ std::size_t SettledBy(const FitProblem& problem, const std::vector<std::size_t>&
 std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters) {
   const SensorModel& sensor = problem.data.sensor;
   if (sensor.kind != SensorKind::kAcceleration || problem.start.start != StartKind::kMoving) return std::nullopt;
-  const std::size_t axis = problem.zero() + 2;
-  const std::size_t radius = problem.zero() + 3;
-  const std::size_t angle = problem.zero() - 2;
-  const std::size_t rate = problem.zero() - 1;
+  const std::size_t axis = *problem.Find(kAxis.name);
+  const std::size_t radius = *problem.Find(kRadius.name);
+  const std::size_t angle = *problem.Find(kInitialAngle.name);
+  const std::size_t rate = *problem.Find(kInitialRate.name);
   if (std::abs(std::cos(parameters[axis])) < std::sqrt(0.5)) return std::nullopt;
   const double square = 1 / parameters[0];
   parameters[radius] = 2 * sensor.gravity / square - parameters[radius];

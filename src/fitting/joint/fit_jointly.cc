@@ -359,7 +359,7 @@ Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vec
   fit.shared = work.joint.shared;
   fit.whole.model = work.joint.members.front().problem->model;
   std::optional<Optimum> optimum = Linearize(work.joint.solve, *work.joint.cost, work.solution);
-  fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message};
+  fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message, {}};
   if (!optimum) return Failed(work.joint, std::move(fit));
   work.optimum = *std::move(optimum);
   // Before posteriors move σ, on which the optimum's information rests.

@@ -44,8 +44,7 @@ std::string Range(const FitProblem& problem, std::size_t i) {
 
 /// Index of a parameter that an option names; `what` the option does, for the message.
 Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& name, const std::string& what) {
-  const auto info = std::ranges::find(problem.infos, name, &ParameterInfo::name);
-  if (info != problem.infos.end()) return static_cast<std::size_t>(info - problem.infos.begin());
+  if (const std::optional<std::size_t> found = problem.Find(name)) return *found;
   return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" + name +
                                                  "' to " + what + " with this start; it has " +
                                                  NameList(problem.infos));
@@ -186,6 +185,12 @@ ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, c
 }
 
 }  // namespace
+
+std::optional<std::size_t> FitProblem::Find(std::string_view name) const {
+  const auto found = std::ranges::find(infos, name, &ParameterInfo::name);
+  if (found == infos.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - infos.begin());
+}
 
 double FitProblem::RmsResidual(const Eigen::VectorXd& readings) const {
   double sum = 0;

@@ -19,7 +19,8 @@ FreeSwing GivenSwing(const Recording& part) {
   swing.from = part.time[0];
   swing.to = part.time[part.size() - 1];
   swing.from_given = swing.to_given = true;
-  swing.begins = swing.ends = "as asked";
+  swing.begins = {WindowBegin::Reason::kAsked};
+  swing.ends = {WindowEnd::Reason::kAsked};
   return swing;
 }
 
@@ -65,12 +66,12 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   if (from_given && choice.release == SwingChoice::kLongest) {
     swing.from = part->time[0];
     swing.from_given = true;
-    swing.begins = "as asked";
+    swing.begins = {WindowBegin::Reason::kAsked};
   }
   if (to_given && choice.release == SwingChoice::kLongest) {
     swing.to = part->time[part->size() - 1];
     swing.to_given = true;
-    swing.ends = "as asked";
+    swing.ends = {WindowEnd::Reason::kAsked};
   }
   swings.chosen = {k};
   return swings;

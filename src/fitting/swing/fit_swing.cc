@@ -2,9 +2,11 @@
 #include "pendulum/fitting/swing/fit_swing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -126,10 +128,13 @@ void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end,
   const std::size_t k = LeaveOut(trials, Steps(turns.size()), window);
   if (k == 0) return;
   const auto [inner_from, inner_to] = window(k);
-  (at_end ? swing.to : swing.from) = at_end ? inner_to : inner_from;
-  (at_end ? swing.ends : swing.begins) = at_end
-                                             ? "what follows it does not fit what is before: touched, or another law"
-                                             : "what is before it does not fit what follows: touched, or another law";
+  if (at_end) {
+    swing.to = inner_to;
+    swing.ends = {WindowEnd::Reason::kDisturbed};
+  } else {
+    swing.from = inner_from;
+    swing.begins = {WindowBegin::Reason::kDisturbed};
+  }
 }
 
 /// A value of the start belongs to the first sample, or to the release, that the user meant.
@@ -150,8 +155,9 @@ void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swin
   if (!swing.to_given) TrimEnd(recording, options, true, swing);
 }
 
-/// Takes whole turns over the top out of the readings, so that the zero is the sensor's own; says how many.
-std::string TakeTurnsOut(Recording& used) {
+/// Removes whole turns over the top from the readings, so that the zero angle is near the sensor's zero. Returns a
+/// sentence that says how many, or an empty one.
+std::string UnwrapOffset(Recording& used) {
   if (used.quantity != Quantity::kAngle || !used.is_calibrated()) return "";
   const double mean = used.value.mean();
   const double turns = std::abs(mean) > 1.5 * kPi ? std::round(mean / (2 * kPi)) : 0;
@@ -167,21 +173,21 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
-  const std::string turned = TakeTurnsOut(*used);
+  const std::string turned = UnwrapOffset(*used);
   Result<FitReport> fit = FitRecording(*used, options);
   if (!fit) return tl::unexpected(fit.error());
   if (!turned.empty()) fit->warnings.push_back({"turns_taken_out", turned});
   SwingFit result{*std::move(used), swing, *std::move(fit)};
-  // The fit has the last word on how it began.
+  // The fit decides how the swing began.
   const bool released = result.fit.start == StartKind::kRelease;
-  const bool held = swing.begins == kHeld;
-  if (released && swing.begins == kInMotion) result.swing.begins = kHeld;
-  if (!released && held) result.swing.begins = "in motion: held before, but its release tells less than its motion";
+  WindowBegin::Reason& begins = result.swing.begins.reason;
+  if (released && begins == WindowBegin::Reason::kInMotion) begins = WindowBegin::Reason::kHeld;
+  if (!released && swing.begins.reason == WindowBegin::Reason::kHeld) begins = WindowBegin::Reason::kReleaseNotUsed;
   return result;
 }
 
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
-Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
+SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurns(result.swing);
   const Recording thinned = Thinned(
       result.used,
@@ -197,9 +203,9 @@ Result<SwingFit> EndEarlier(SwingFit result, const FitOptions& options) {
     if (k == 0) continue;
     FreeSwing shorter = result.swing;
     shorter.to = turns[turns.size() - k];
-    shorter.ends = "with what follows it the fit does not converge";
+    shorter.ends = {WindowEnd::Reason::kNotConverging};
     if (!converges(FitBetween(thinned, shorter, quick))) continue;
-    if (Result<SwingFit> trial = FitBetween(result.used, shorter, options); converges(trial)) return trial;
+    if (Result<SwingFit> trial = FitBetween(result.used, shorter, options); converges(trial)) return *std::move(trial);
   }
   return result;
 }
@@ -232,7 +238,7 @@ void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& resul
   const double length = swing.to - swing.from;
   for (int trial = 0; trial < kMostTrials && doubtful; ++trial) {
     shorter.to = std::min(std::nexttoward(*doubtful, swing.from), shorter.to - kStep * length);
-    shorter.ends = "behind it counts were lost, and how many cannot be told";
+    shorter.ends = {WindowEnd::Reason::kCountsLost};
     if (shorter.to - swing.from < kLeast * length) return;
     Result<SwingFit> part = FitBetween(result.used, shorter, options);
     std::optional<ZeroJumps> found = part ? FindZeroJumps(part->used, options) : std::nullopt;
@@ -258,46 +264,125 @@ std::optional<std::string> WhyNoPendulum(const SwingFit& result, const std::stop
   return WhyLinear(result.used, result.fit, stop);
 }
 
-/// Once a stop is requested, of no meaning.
-Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
-  if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
-  Result<SwingFit> result = FitBetween(std::move(recording), swing, options);
-  if (!result) return result;
-  const auto lacks = [&] {
-    return result->fit.termination != Termination::kConverged || result->fit.Warns("lack_of_fit") ||
-           result->fit.Warns("correlated_residuals");
-  };
-  std::optional<ZeroJumps> jumps;
-  if (lacks() || MayJump(result->fit)) jumps = MendZero(swing, options, result);
-  if (!result) return result;
-  if (!lacks()) {
-    WarnOfLargerMotion(swing, result->fit);
-    WarnOfJumps(jumps, false, result->fit);
-    return result;
+// ---- Rescues -------------------------------------------------------------------------------------------------------
+
+/// A fit of a swing, and what the rescues have found so far.
+struct SwingState {
+  FreeSwing swing;                 ///< The window of the next fit.
+  SwingFit result;                 ///< Of the last fit.
+  std::optional<ZeroJumps> jumps;  ///< Of the readings' zero; std::nullopt: not looked for.
+  bool was_trimmed = false;        ///< Disturbed ends were left out.
+  bool is_pendulum = true;
+
+  /// Whether the fit leaves more than noise.
+  bool IsLacking() const {
+    const FitReport& fit = result.fit;
+    return fit.termination != Termination::kConverged || fit.Warns("lack_of_fit") || fit.Warns("correlated_residuals");
   }
-  if (const auto why = WhyNoPendulum(*result, options.stop)) {
-    Withdraw(*why, result->fit);
-    return result;
+  bool IsTrimmed() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
+};
+
+/// A rescue of a swing's fit: where it applies, it may change the window, the readings or the verdict.
+struct WindowRescue {
+  std::string_view name;  ///< As in SolverSummary::attempts.
+  bool (*applies)(const SwingState& state);
+  Result<bool> (*run)(const FitOptions& options, SwingState& state);  ///< Returns whether the fit is another one now.
+};
+
+bool IsLacking(const SwingState& state) { return state.IsLacking(); }
+
+/// Lost counts move the zero by steps, which leave residuals that are no noise.
+bool MayHaveJumped(const SwingState& state) { return state.IsLacking() || MayJump(state.result.fit); }
+
+Result<bool> CorrectJumps(const FitOptions& options, SwingState& state) {
+  Result<SwingFit> result = std::move(state.result);
+  const double from = result->swing.from, to = result->swing.to;
+  state.jumps = MendZero(state.swing, options, result);
+  if (!result) return tl::unexpected(result.error());
+  state.result = *std::move(result);
+  return (state.jumps && state.jumps->AreMended()) || state.result.swing.from != from || state.result.swing.to != to;
+}
+
+Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
+  const auto why = WhyNoPendulum(state.result, options.stop);
+  if (why) Withdraw(*why, state.result.fit);
+  state.is_pendulum = !why;
+  return why.has_value();
+}
+
+/// A hand at the beginning or the end of a swing does not fit the rest.
+Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
+  Trim(state.result.used, options, state.swing);
+  if (!state.IsTrimmed()) return false;
+  Result<SwingFit> result = FitBetween(std::move(state.result.used), state.swing, options);
+  if (!result) return tl::unexpected(result.error());
+  state.result = *std::move(result);
+  state.was_trimmed = true;
+  return true;
+}
+
+/// Jumps that a disturbed end had hidden.
+bool MayHaveJumpedInside(const SwingState& state) {
+  return state.was_trimmed && !(state.jumps && state.jumps->AreMended());
+}
+
+/// Near its stop a swing may have no minimum.
+bool MayConvergeEarlier(const SwingState& state) {
+  return state.result.fit.termination != Termination::kConverged && !state.swing.to_given;
+}
+
+Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
+  const double to = state.result.swing.to;
+  state.result = EndEarlier(std::move(state.result), options);
+  return state.result.swing.to != to;
+}
+
+constexpr std::array<WindowRescue, 5> kWindowRescues = {{
+    {"offset_jumps", MayHaveJumped, CorrectJumps},
+    {"not_a_pendulum", IsLacking, RejectIfNoPendulum},
+    {"disturbed_ends", IsLacking, TrimDisturbedEnds},
+    {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
+    {"earlier_end", MayConvergeEarlier, TryEarlierEnd},
+}};
+
+/// Applies the rescues in turn, until the fit leaves noise alone or is no pendulum's.
+Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, SwingState& state) {
+  std::vector<AttemptRecord> records;
+  for (const WindowRescue& rescue : kWindowRescues) {
+    if (!state.is_pendulum || !rescue.applies(state)) continue;
+    const Result<bool> changed = rescue.run(options, state);
+    if (!changed) return tl::unexpected(changed.error());
+    records.push_back({std::string(rescue.name), *changed});
   }
-  Trim(result->used, options, swing);
-  const bool disturbed = swing.from != result->swing.from || swing.to != result->swing.to;
-  if (disturbed) result = FitBetween(std::move(result->used), swing, options);
-  if (result && disturbed && !(jumps && jumps->AreMended())) jumps = MendZero(swing, options, result);
-  if (!result) return result;
-  if (result->fit.termination != Termination::kConverged && !swing.to_given) {
-    result = EndEarlier(*std::move(result), options);
-  }
-  if (disturbed) {
-    result->fit.warnings.push_back(
-        {"disturbed", "left out as disturbed: the window begins at " + NumberText(result->swing.from, 4) +
-                          " s and ends at " + NumberText(result->swing.to, 4) +
+  return records;
+}
+
+void AddWarnings(const FitOptions& options, SwingState& state) {
+  FitReport& fit = state.result.fit;
+  if (state.was_trimmed) {
+    fit.warnings.push_back(
+        {"disturbed", "left out as disturbed: the window begins at " + NumberText(state.result.swing.from, 4) +
+                          " s and ends at " + NumberText(state.result.swing.to, 4) +
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
-  WarnOfLargerMotion(swing, result->fit);
-  WarnOfJumps(jumps, lacks(), result->fit);
-  if (const auto why = lacks() ? WhyTwoModes(result->used, result->fit, options.stop) : std::nullopt)
-    Withdraw(*why, result->fit);
-  return result;
+  WarnOfLargerMotion(state.swing, fit);
+  WarnOfJumps(state.jumps, state.IsLacking(), fit);
+  const auto why = state.IsLacking() ? WhyTwoModes(state.result.used, fit, options.stop) : std::nullopt;
+  if (why) Withdraw(*why, fit);
+}
+
+/// Once a stop is requested, the result means nothing.
+Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
+  Result<SwingFit> first = FitBetween(std::move(recording), swing, options);
+  if (!first) return first;
+  SwingState state{std::move(swing), *std::move(first), std::nullopt};
+  const auto records = ApplyRescues(options, state);
+  if (!records) return tl::unexpected(records.error());
+  if (state.is_pendulum) AddWarnings(options, state);
+  std::vector<AttemptRecord>& attempts = state.result.fit.solver.attempts;
+  attempts.insert(attempts.begin(), records->begin(), records->end());
+  return std::move(state.result);
 }
 
 }  // namespace

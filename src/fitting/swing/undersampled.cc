@@ -85,8 +85,8 @@ void LeaveOutHold(Recording& used, FreeSwing& swing) {
   held = std::min(held, used.size() - kMinimumSamples);
   if (held <= 0) return;
   swing.from = used.time[held];
-  swing.begins += held == 1 ? ", without the first reading, before which it may have been released"
-                            : ", without the readings that stay put at first";
+  swing.begins = {held == 1 ? WindowBegin::Reason::kUndersampledAfterFirst
+                            : WindowBegin::Reason::kUndersampledAfterHold};
   const Index left = used.size() - held;
   used.time = used.time.tail(left).eval();
   used.value = used.value.tail(left).eval();
@@ -318,8 +318,8 @@ FreeSwing WholeRecording(const Recording& recording) {
   FreeSwing swing;
   swing.from = recording.time[0];
   swing.to = recording.time[recording.size() - 1];
-  swing.begins = "sampled too slowly to see half swings: the whole recording";
-  swing.ends = "the end of the recording";
+  swing.begins = {WindowBegin::Reason::kUndersampled};
+  swing.ends = {WindowEnd::Reason::kEndOfRecording};
   swing.undersampled = true;
   return swing;
 }

@@ -178,7 +178,7 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   Profile profile(cost, options, solution, optimum, errors_of, samples, k);
   ProfileInterval interval;
   if (!profile.is_defined()) {
-    interval.open = "the recording does not determine it beside the others";
+    interval.open = OpenInterval::kNotDetermined;
     return interval;
   }
   const double lower = options.lower[index];
@@ -188,15 +188,15 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
   if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
   if (!interval.lower || !interval.upper) {
-    interval.open = "the likelihood does not fall far enough on that side, however far out";
+    interval.open = OpenInterval::kFlatLikelihood;
   }
   if (profile.is_exhausted()) {
     interval.lower = interval.upper = std::nullopt;
-    interval.open = "its profile could not be followed; try --interval bootstrap";
+    interval.open = OpenInterval::kNotFollowed;
   }
   if (profile.found_lower()) {
     interval.lower = interval.upper = std::nullopt;
-    interval.open = kBetterMinimum;
+    interval.open = OpenInterval::kBetterMinimum;
   }
   if (profile.is_exhausted() || profile.found_lower()) return interval;
   interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));

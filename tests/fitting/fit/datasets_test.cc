@@ -62,7 +62,7 @@ TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
 TEST(RecordedRun, EndsAtRest) {
   const ChosenSwings swings = Must(ChooseSwings(Must(ReadRecording("datasets/recorded.csv")), {}));
   ASSERT_THAT(swings.found, testing::SizeIs(1));
-  EXPECT_THAT(swings.found.front().ends, testing::StartsWith("at rest from about 4"));
+  EXPECT_THAT(Sentence(swings.found.front().ends), testing::StartsWith("at rest from about 4"));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Datasets,

@@ -111,7 +111,7 @@ TEST(Judge, AParameterAtItsBoundIsSaidToBeSoAndLeavesTheCovariance) {
       EXPECT_GT(coulomb.upper95.value(), 0);
     } else {
       EXPECT_FALSE(coulomb.upper95);
-      EXPECT_EQ(coulomb.open_interval, "at its bound; --interval profile gives the other end");
+      EXPECT_EQ(coulomb.open_interval, OpenInterval::kAtBound);
     }
     EXPECT_THAT(report.covariance_names,
                 ElementsAre("inertia", "viscous", "release_angle", "release_time", "zero_angle"));

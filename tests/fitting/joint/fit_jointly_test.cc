@@ -321,7 +321,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
     const JointFit fit = FitAllJointly(WithoutViscous(seed), options);
     ExpectConverged(fit);
     const ParameterEstimate& viscous = *fit.whole.Find("viscous");
-    ASSERT_TRUE(viscous.upper95 && viscous.lower95) << viscous.open_interval;
+    ASSERT_TRUE(viscous.upper95 && viscous.lower95) << Sentence(viscous.open_interval);
     EXPECT_EQ(*viscous.lower95, 0) << seed;
     EXPECT_THAT(fit.whole.interval_method, StartsWith("profile likelihood of what is shared"));
     EXPECT_THAT(fit.whole.profiles, SizeIs(3));

@@ -52,7 +52,7 @@ TEST(JointProfile, EndsWhereTheJointDevianceHasRisenByChiSquare) {
   for (const std::string& name : kPhysical) {
     SCOPED_TRACE(name);
     const ParameterEstimate& parameter = *best.whole.Find(name);
-    ASSERT_TRUE(parameter.lower95 && parameter.upper95) << parameter.open_interval;
+    ASSERT_TRUE(parameter.lower95 && parameter.upper95) << Sentence(parameter.open_interval);
     EXPECT_THAT(DevianceRise(recordings, best, name, *parameter.upper95), DoubleNear(3.8415, 0.08));
     if (*parameter.lower95 == 0) continue;
     EXPECT_THAT(DevianceRise(recordings, best, name, *parameter.lower95), DoubleNear(3.8415, 0.08));

@@ -70,7 +70,7 @@ TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
       const ChosenSwings swings = Must(ChooseSwings(recording, {}));
       const SwingFit result = Must(FitSwing(recording, swings.found.at(0), {}));
       EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
-      EXPECT_EQ(result.swing.begins, "after the release, at which an acceleration jumps");
+      EXPECT_EQ(Sentence(result.swing.begins), "after the release, at which an acceleration jumps");
       EXPECT_THAT(result.swing.from - release, AllOf(Ge(0.0), Le(0.3)));
       for (const std::string_view name : {"inertia", "viscous", "coulomb", "radius", "axis"}) {
         const ParameterEstimate& parameter = *result.fit.Find(name);

@@ -82,12 +82,12 @@ TEST(ChooseSwings, AnEndThatIsGivenIsTheEndOfTheSwingNextToIt) {
   EXPECT_THAT(from.from, AllOf(Ge(2.5), Lt(2.511)));
   EXPECT_THAT(from.to, Le(9.0));
   EXPECT_TRUE(from.from_given && !from.to_given);
-  EXPECT_EQ(from.begins, "as asked");
+  EXPECT_EQ(Sentence(from.begins), "as asked");
   const FreeSwing to = ChosenOne(Between(kOpen, 25));
   EXPECT_THAT(to.from, Ge(12.9));
   EXPECT_THAT(to.to, DoubleNear(25, 0.01));
   EXPECT_TRUE(!to.from_given && to.to_given);
-  EXPECT_EQ(to.ends, "as asked");
+  EXPECT_EQ(Sentence(to.ends), "as asked");
 }
 
 TEST(ChooseSwings, CountsReleasesWithinTheWindow) {
@@ -105,8 +105,8 @@ TEST(ChooseSwings, LooksForNothingWhereBothEndsAreGiven) {
   EXPECT_THAT(swings.found[0].from, AllOf(Ge(3.0), Lt(3.011)));
   EXPECT_THAT(swings.found[0].to, DoubleNear(20, 0.01));
   EXPECT_TRUE(swings.found[0].from_given && swings.found[0].to_given);
-  EXPECT_EQ(swings.found[0].begins, "as asked");
-  EXPECT_EQ(swings.found[0].ends, "as asked");
+  EXPECT_EQ(Sentence(swings.found[0].begins), "as asked");
+  EXPECT_EQ(Sentence(swings.found[0].ends), "as asked");
 }
 
 TEST(ChooseSwings, RefusesAnEmptyWindow) {

@@ -68,7 +68,7 @@ TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
     const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
     EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
     EXPECT_EQ(result.swing.to, 19.99);
-    EXPECT_EQ(result.swing.begins, "what is before it does not fit what follows: touched, or another law");
+    EXPECT_EQ(Sentence(result.swing.begins), "what is before it does not fit what follows: touched, or another law");
     EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
     ExpectTruthOfThePendulum(result.fit, run);
   }
@@ -81,7 +81,7 @@ TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
   const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
   EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
   EXPECT_EQ(result.swing.from, 0);
-  EXPECT_EQ(result.swing.ends, "what follows it does not fit what is before: touched, or another law");
+  EXPECT_EQ(Sentence(result.swing.ends), "what follows it does not fit what is before: touched, or another law");
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
@@ -152,7 +152,7 @@ TEST(FitSwing, TakesTurnsOverTheTopOutOfTheZero) {
   truth.duration = 40;
   const Recording recording = Must(SimulateRecording(truth));
   const FreeSwing swing = Must(ChooseSwings(recording, {})).found.front();
-  EXPECT_EQ(swing.begins, "after its turns over the top");
+  EXPECT_EQ(Sentence(swing.begins), "after its turns over the top");
   const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
   EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
   EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "turns_taken_out")));

@@ -118,7 +118,7 @@ TEST(FitUndersampled, LeavesTheHoldOut) {
   const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
   EXPECT_THAT(result.used.time[0], AllOf(Ge(2), Le(3)));  // at 2 s it has moved by less than a tenth of its angle
   EXPECT_EQ(result.fit.start, StartKind::kMoving);
-  EXPECT_THAT(result.swing.begins, HasSubstr("without the readings that stay put"));
+  EXPECT_THAT(Sentence(result.swing.begins), HasSubstr("without the readings that stay put"));
   EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
 }
 
@@ -143,7 +143,7 @@ TEST(FitUndersampled, ExplainsTheApparentPeriod) {
   const SwingFit result = FitSimulated(Swing(1, 0.423, 1), TextbookRig(), "viscous");
   EXPECT_THAT(result.fit.warnings, HasWarning("aliased"));
   EXPECT_THAT(result.fit.warnings, Not(HasWarning("ambiguous_frequency")));
-  EXPECT_THAT(result.swing.begins, HasSubstr("sampled too slowly to see half swings: the whole recording"));
+  EXPECT_THAT(Sentence(result.swing.begins), HasSubstr("sampled too slowly to see half swings: the whole recording"));
   EXPECT_NEAR(result.swing.half_period, 0.5 / kFrequency, 1e-3);
   EXPECT_FALSE(result.fit.Find("inertia")->closed_form);
 }

@@ -125,7 +125,7 @@ TEST(ProfileParameter, OfAStraightLineInDisguiseIsTheLinesIntervalInDisguise) {
     // Ends are sought to a hundredth of the root of the likelihood's fall: of half the line's interval.
     EXPECT_NEAR(disguise->slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_NEAR(disguise->slope(*profile.upper), line.Slope() + line.HalfLength(), 0.011 * line.HalfLength());
-    EXPECT_TRUE(profile.open.empty());
+    EXPECT_EQ(profile.open, OpenInterval::kClosed);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(ProfileParameter, IsOpenWhereTheLikelihoodDoesNotFallFarEnough) {
   ASSERT_TRUE(profile.lower);
   EXPECT_NEAR(kSaturating.slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
   EXPECT_FALSE(profile.upper);
-  EXPECT_THAT(profile.open, HasSubstr("does not fall far enough"));
+  EXPECT_EQ(profile.open, OpenInterval::kFlatLikelihood);
 }
 
 TEST(ProfileParameter, EndsAtABoundThatTheLikelihoodReachesAcross) {
@@ -145,7 +145,7 @@ TEST(ProfileParameter, EndsAtABoundThatTheLikelihoodReachesAcross) {
   const ProfileInterval profile = ProfileOfLine(line, kNone, 0.2, -1, bound);
   EXPECT_EQ(profile.upper, bound);
   EXPECT_NEAR(*profile.lower, line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
-  EXPECT_TRUE(profile.open.empty());
+  EXPECT_EQ(profile.open, OpenInterval::kClosed);
 }
 
 /// From a bound beyond the line's own slope the likelihood falls from where the bound is, not from its top.
@@ -162,7 +162,7 @@ TEST(ProfileParameter, OfWhatLeavesNoTraceHasNoEnds) {
   const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
   const ProfileInterval profile = ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded);
   EXPECT_FALSE(profile.lower || profile.upper);
-  EXPECT_THAT(profile.open, HasSubstr("does not determine it"));
+  EXPECT_EQ(profile.open, OpenInterval::kNotDetermined);
 }
 
 // ---- The curve -----------------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@
 #include "pendulum/fitting/start/start_values.h"
 #include "pendulum/fitting/uncertainty/derived.h"
 #include "pendulum/fitting/uncertainty/identifiability.h"
+#include "pendulum/fitting/uncertainty/open_interval.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/model/sensor_model.h"
@@ -44,9 +45,9 @@ struct ParameterEstimate {
   std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
   std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
   std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
-  std::string open_interval;               ///< Why an end of the interval is missing; empty when none is.
-  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent without.
-  std::optional<double> closed_form;           ///< The start value, where it is an estimate in closed form (same unit).
+  OpenInterval open_interval = OpenInterval::kClosed;  ///< Why an end of the interval is missing.
+  std::optional<double> systematic_std_error;          ///< From rig, clock, calibration, inconstancy; absent without.
+  std::optional<double> closed_form;  ///< The start value, where it is an estimate in closed form (same unit).
   bool fixed = false;
   bool at_bound = false;
   std::string reason;
@@ -77,11 +78,18 @@ struct ProfileCurve {
   double threshold = 0;           ///< Of the statistic, where the 95 % interval ends.
 };
 
+/// A rescue that a fit needed (fit.cc, fit_swing.cc): another attempt, or a change of the window or the readings.
+struct AttemptRecord {
+  std::string name;
+  bool kept = false;  ///< Whether the fit is its result.
+};
+
 /// What the solver did, over all its runs.
 struct SolverSummary {
   int iterations = 0;
   int evaluations = 0;  ///< Trajectories of the start that was kept, with and without sensitivities.
   std::string termination;
+  std::vector<AttemptRecord> attempts;  ///< Rescues that were tried, in their order; empty if none was needed.
 };
 
 /// One model fitted to one recording.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "pendulum/fitting/likelihood/fit_parameters.h"
@@ -32,6 +34,12 @@ struct FitProblem {
   /// Parameter i as the report has it, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
   double Internal(std::size_t i, double reported) const { return (reported - offset[i]) / si_per_internal[i]; }
+
+  /// Index of the first angle: release_angle or initial_angle.
+  std::size_t angle() const { return static_cast<std::size_t>(solve.last_friction) + 1; }
+
+  /// Index of the parameter of that name; std::nullopt if there is none.
+  std::optional<std::size_t> Find(std::string_view name) const;
 
   /// Index of the zero, the first parameter of the sensor.
   std::size_t zero() const { return static_cast<std::size_t>(solve.last_friction) + 3; }

@@ -3,13 +3,12 @@
 
 #include <functional>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "pendulum/fitting/residuals/autocorrelation.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/uncertainty/open_interval.h"
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 
 namespace pendulum {
@@ -22,14 +21,11 @@ struct ProfilePoint {
   double statistic = 0;
 };
 
-/// Why an interval is open where the likelihood rises above that of the estimate.
-inline constexpr std::string_view kBetterMinimum = "a better minimum lies within it: the fit is not at the best one";
-
-/// An interval in the problem's units; `open` says why an end is missing, and is empty when none is.
+/// An interval in the problem's units.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
-  std::string open;
+  OpenInterval open = OpenInterval::kClosed;
   std::vector<ProfilePoint> points;  ///< Values increasing, the estimate among them; empty where there is no interval.
   double threshold = 0;              ///< Of the statistic at the ends: Student's t².
 };

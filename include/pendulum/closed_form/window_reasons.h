@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace pendulum {
+
+/// Why a window begins where it does.
+struct WindowBegin {
+  enum class Reason {
+    kUnknown,
+    kAsked,                   ///< By the user.
+    kHeld,                    ///< The steady end of a hold; then it was released.
+    kInMotion,                ///< The recording begins in motion.
+    kReleaseNotUsed,          ///< It was held, but the motion determines the start better than the release does.
+    kUnsteadyHold,            ///< After a release from a hold that is not steady.
+    kAccelerationJump,        ///< After the release, at which an acceleration jumps.
+    kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
+    kAfterTurns,              ///< After turns over the top.
+    kAfterMove,               ///< The first turning point after the pendulum was moved.
+    kDisturbed,               ///< What is before does not fit the rest.
+    kUndersampled,            ///< The whole recording.
+    kUndersampledAfterFirst,  ///< The whole recording without its first reading.
+    kUndersampledAfterHold,   ///< The whole recording without the hold.
+  };
+  Reason reason = Reason::kUnknown;
+  double angle_deg = 0;
+};
+
+/// Why a window ends where it does.
+struct WindowEnd {
+  enum class Reason {
+    kUnknown,
+    kAsked,  ///< By the user.
+    kEndOfRecording,
+    kAtRest,         ///< The pendulum is at rest from about `time`.
+    kBeforeMove,     ///< The last turning point before the pendulum is moved.
+    kBeforeStop,     ///< The last turning point before the pendulum is stopped.
+    kDisturbed,      ///< What follows does not fit the rest.
+    kNotConverging,  ///< With what follows the fit does not converge.
+    kCountsLost,     ///< After it an unknown number of counts was lost.
+  };
+  Reason reason = Reason::kUnknown;
+  double time = 0;  ///< s, file's clock
+};
+
+/// The reason in words, after "begins: " or "ends: "; empty for kUnknown.
+std::string Sentence(const WindowBegin& begin);
+std::string Sentence(const WindowEnd& end);
+
+}  // namespace pendulum

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/closed_form/window_reasons.h"
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+
+std::string Sentence(const WindowBegin& begin) {
+  switch (begin.reason) {
+    using enum WindowBegin::Reason;
+    case kUnknown: return "";
+    case kAsked: return "as asked";
+    case kHeld: return "held, then released";
+    case kInMotion: return "the recording begins in motion";
+    case kReleaseNotUsed: return "in motion: held before, but its release tells less than its motion";
+    case kUnsteadyHold: return "after the release: the hold before it is not steady";
+    case kAccelerationJump: return "after the release, at which an acceleration jumps";
+    case kAfterFall:
+      return "after the fall from " + NumberText(begin.angle_deg, 3) +
+             " deg, where the smallest push decides when it falls and the release tells nothing";
+    case kAfterTurns: return "after its turns over the top";
+    case kAfterMove: return "the first turning point after the pendulum was moved otherwise";
+    case kDisturbed: return "what is before it does not fit what follows: touched, or another law";
+    case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
+    case kUndersampledAfterFirst:
+      return "sampled too slowly to see half swings: the whole recording, without the first reading, before which it "
+             "may have been released";
+    case kUndersampledAfterHold:
+      return "sampled too slowly to see half swings: the whole recording, without the readings that stay put at first";
+  }
+  return "";
+}
+
+std::string Sentence(const WindowEnd& end) {
+  switch (end.reason) {
+    using enum WindowEnd::Reason;
+    case kUnknown: return "";
+    case kAsked: return "as asked";
+    case kEndOfRecording: return "the end of the recording";
+    case kAtRest: return "at rest from about " + NumberText(end.time, 4) + " s";
+    case kBeforeMove: return "the last turning point before the pendulum is moved otherwise";
+    case kBeforeStop: return "the last turning point before the pendulum is stopped";
+    case kDisturbed: return "what follows it does not fit what is before: touched, or another law";
+    case kNotConverging: return "with what follows it the fit does not converge";
+    case kCountsLost: return "behind it counts were lost, and how many cannot be told";
+  }
+  return "";
+}
+
+}  // namespace pendulum

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fitting/fit/attempt.h"
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/solve/cross_jumps.h"
+#include "pendulum/fitting/solve/maximum_likelihood.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/search.h"
+#include "pendulum/fitting/solve/trace_error.h"
+#include "pendulum/trajectory/tolerance.h"
+
+namespace pendulum {
+namespace {
+
+/// Removes whole turns that a search near the top may have added to the zero angle: the modelled readings stay the
+/// same. If the readings do not determine the number of turns, they are removed from the first angle.
+void UnwrapOffset(const FitProblem& problem, Solution& solution) {
+  const std::size_t zero = problem.zero();
+  const std::size_t angle = problem.angle();
+  if (problem.model.gravity != Gravity::kSine) return;
+  if (problem.data.quantity != Quantity::kAngle) {
+    const double turns = std::round((solution.parameters[angle] - problem.start.parameters[angle]) / (2 * kPi));
+    if (!problem.solve.fixed[angle]) solution.parameters[angle] -= 2 * kPi * turns;
+    return;
+  }
+  if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
+  const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
+  solution.parameters[zero] -= 2 * kPi * turns;
+  solution.parameters[angle] += 2 * kPi * turns;
+}
+
+/// Solves at the tolerance expected to suffice and measures the error of the trajectory at the solution. While the
+/// error is too large, solves again at a finer tolerance.
+Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
+  const double max_error = MaxTraceError(problem, options);
+  double tolerance = TraceTolerance(max_error, problem.start.amplitude);
+  cost.set_tolerance(tolerance);
+  const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
+  cost.set_priors(problem.priors);
+  cost.set_noise(problem.noise);
+  Solution solution = Search(cost, problem.data, guess, problem.solve);
+  UnwrapOffset(problem, solution);
+  MaximizeLikelihood(cost, problem, options, solution);
+  CrossJumps(cost, problem, options, solution);
+  for (int refinement = 0; solution.usable; ++refinement) {
+    solution.usable = MeasureTraceError(cost, tolerance, solution);
+    if (solution.trace_error <= max_error || refinement == kMostTraceRefinements) break;
+    tolerance = FinerTolerance(tolerance);
+    cost.set_tolerance(tolerance);
+    solution = Continue(cost, solution, problem.solve);
+  }
+  return solution;
+}
+
+/// Solves a problem that is ready.
+Attempt SolveProblem(std::unique_ptr<FitProblem> problem, const FitOptions& options) {
+  Attempt attempt;
+  attempt.problem = std::move(problem);
+  attempt.cost = MakeTrajectoryCost(attempt.problem->model, attempt.problem->start.start, attempt.problem->data);
+  attempt.cost->set_threads(options.threads);
+  attempt.solution = SolveToAccuracy(*attempt.cost, *attempt.problem, options);
+  return attempt;
+}
+
+Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options) {
+  Result<FitProblem> problem = MakeFitProblem(recording, options);
+  if (!problem) return tl::unexpected(problem.error());
+  return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
+}
+
+/// Whether a search ended at a local minimum, and not because of one of its limits.
+bool IsAtLocalMinimum(const Attempt& attempt) {
+  constexpr double kNear = 1, kNearJump = 3;  // standard errors
+  if (!attempt.solution.usable) return false;
+  const std::optional<Optimum> optimum = Linearize(attempt.problem->solve, *attempt.cost, attempt.solution);
+  return optimum && optimum->inverse.identifiable &&
+         RemainingShift(*optimum) < (HasJumps(*attempt.problem) ? kNearJump : kNear);
+}
+
+/// Keeps the better of two attempts. The local minimum of the other one is remembered.
+void KeepBetter(Attempt other, Attempt& best) {
+  if (IsBetter(other, best)) {
+    other.rivals = std::move(best.rivals);
+    std::swap(best, other);
+  }
+  if (IsAtLocalMinimum(other)) best.rivals.push_back({other.solution.parameters, LogPosterior(other)});
+}
+
+}  // namespace
+
+double LogPosterior(const Attempt& attempt) {
+  return attempt.solution.log_likelihood - 0.5 * attempt.cost->PriorSum(attempt.solution.parameters);
+}
+
+bool IsBetter(const Attempt& a, const Attempt& b) {
+  return a.solution.usable && (!b.solution.usable || LogPosterior(a) > LogPosterior(b));
+}
+
+Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& options) {
+  Result<Attempt> best = SolveFromOneStart(recording, options);
+  if (!best) return best;
+  FitOptions other = options;
+  const std::size_t starts = best->problem->sensor_starts;
+  for (other.search.sensor_start = 1; other.search.sensor_start < starts; ++other.search.sensor_start) {
+    if (Result<Attempt> attempt = SolveFromOneStart(recording, other)) KeepBetter(*std::move(attempt), *best);
+  }
+  if (!best->solution.usable) return best;
+  if (std::optional<std::vector<double>> image = MirrorImage(*best->problem, best->solution.parameters)) {
+    auto problem = std::make_unique<FitProblem>(*best->problem);
+    problem->first_guess = *std::move(image);
+    KeepBetter(SolveProblem(std::move(problem), options), *best);
+  }
+  return best;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pendulum/base/status.h"
+#include "pendulum/fitting/fit/rival_solutions.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/solve/solve.h"
+#include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// A fit before it is judged. The cost refers to the problem.
+struct Attempt {
+  std::unique_ptr<FitProblem> problem;
+  std::unique_ptr<TrajectoryCost> cost;
+  Solution solution;
+  std::vector<RivalSolution> rivals;  ///< Local minima at which the searches from other starts ended.
+};
+
+/// Solves from the start values, from each of the sensor's starts (SensorStarts) and from the mirror image of the
+/// solution, where the sensor has one, and keeps the best. Errors as MakeFitProblem.
+Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& options);
+
+/// Log-likelihood of the samples and the priors.
+double LogPosterior(const Attempt& attempt);
+
+/// Whether `a` is usable and more likely than `b`.
+bool IsBetter(const Attempt& a, const Attempt& b);
+
+}  // namespace pendulum
