@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes a file as a C++ source that defines the function NAME of HEADER, which gives its bytes:
-#   cmake -D FILE=report.html -D HEADER=report/page_template.h -D NAME=PageTemplate -D SOURCE=page_template.cc -P embed_file.cmake
+# Writes the bytes of FILE as a C++ source, which defines the function NAME of HEADER that returns them:
+#   cmake -D FILE=report.html -D HEADER=web/report_page_template.h -D NAME=ReportPageTemplate -D SOURCE=page.cc -P embed_file.cmake
 file(READ ${FILE} hex HEX)
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
 string(REGEX REPLACE "((0x..,)(0x..,)(0x..,)(0x..,)(0x..,)(0x..,)(0x..,)(0x..,))" "\\1\n" bytes "${bytes}")

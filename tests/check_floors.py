@@ -26,9 +26,10 @@ STANDS_ON = {
     "analysis": ["fitting"],
     "identify": ["analysis"],
     "report": ["identify"],
+    "web": ["report"],
     "batch": ["report"],
     "request": ["batch"],
-    "service": ["request"],
+    "service": ["request", "web"],
     "tools": ["acquisition", "service"],
 }
 
@@ -49,7 +50,7 @@ LIBRARY_FLOORS = {
     "hdf5.h": {"recording"},
     "pendulum_logger": {"acquisition", "tools"},
     "matio.h": {"recording"},
-    "nlohmann": {"base", "recording", "model", "identify", "report", "batch", "request", "service", "tools"},
+    "nlohmann": {"base", "recording", "model", "identify", "report", "web", "batch", "request", "service", "tools"},
     "openssl": {"base", "recording", "service"},
     "prometheus": {"service"},
     "sqlite3.h": {"batch"},

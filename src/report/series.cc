@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/series.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
+#include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/closed_form/extrema.h"
+#include "pendulum/model/parameter.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -30,15 +33,18 @@ double Shortened(double value) {
   return std::isfinite(shortened) ? shortened : value;
 }
 
-/// Numbers of N samples; null if the size differs.
-Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDetail detail) {
-  if (values.size() != samples) return nullptr;
+Json NumbersJson(const Eigen::VectorXd& values, SeriesDetail detail) {
   Json json = Json::array();
-  json.get_ref<Json::array_t&>().reserve(static_cast<std::size_t>(samples));
+  json.get_ref<Json::array_t&>().reserve(static_cast<std::size_t>(values.size()));
   for (const double value : values) {
     json.push_back(NumberOrNull(detail == SeriesDetail::kAll ? value : Shortened(value)));
   }
   return json;
+}
+
+/// Numbers of N samples; null where they are of another size.
+Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDetail detail) {
+  return values.size() == samples ? NumbersJson(values, detail) : Json(nullptr);
 }
 
 Json ExtremaJson(const Recording& used) {
@@ -89,6 +95,52 @@ Json ModelJson(const FitReport& fit, const TextbookOverlay& overlay, Eigen::Inde
   json["residual"] = detail == SeriesDetail::kAll ? SamplesJson(fit.residual, samples, detail) : Json(nullptr);
   json["linear_closed_form"] = SamplesJson(overlay.linear, samples, detail);
   json["nonlinear_closed_form"] = SamplesJson(overlay.nonlinear, samples, detail);
+  return json;
+}
+
+/// Whether the samples do not show the motion: they are no angle, some are missing, or they are few in a period.
+bool HidesMotion(const Recording& used, const std::optional<Sampling>& sampling) {
+  constexpr double kFewPerPeriod = 12;
+  if (used.quantity != Quantity::kAngle) return true;
+  if (!sampling) return false;
+  const double per_period = sampling->samples_per_period;  // 0: unknown
+  return sampling->gaps > 0 || (per_period > 0 && per_period < kFewPerPeriod);
+}
+
+/// Null where there is no motion, or it cannot be traced.
+Json MotionJson(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, SeriesDetail detail) {
+  constexpr double kPointsPerPeriod = 60;  // straight lines between them are off by at most 0.14 % of the amplitude
+  constexpr double kMostSteps = 1e5;
+  if (fit.termination == Termination::kFailed || fit.parameters.empty()) return nullptr;
+  const double first = used.time[0], last = used.time[used.size() - 1];
+  const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
+  const double start = release == nullptr ? first : std::max(first, release->estimate);
+  const FittedMotion motion(used, fit, rig);
+  const std::optional<Trajectory> trajectory = motion.Trace();
+  if (!trajectory || !(start < last)) return nullptr;
+  const double duration = used.clock_scale * (last - start);  // true s
+  const double steps = std::ceil(std::min(kMostSteps, kPointsPerPeriod * duration / motion.small_angle_period()));
+  const double from_first = used.clock_scale * (start - first);
+  const Eigen::VectorXd instants =
+      Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(steps) + 1, from_first, from_first + duration);
+  const std::optional<Eigen::VectorXd> readings = motion.Readings(instants);
+  Json json;
+  json["start_s"] = start;
+  json["interval_s"] = (last - start) / steps;
+  json["angle_unit"] = fit.parameters[PhysicalParameters(fit.model).size()].unit;
+  json["angle"] = NumbersJson(instants.unaryExpr([&](double t) { return trajectory->Angle(t); }), detail);
+  json["rate"] = NumbersJson(instants.unaryExpr([&](double t) { return trajectory->Rate(t); }), detail);
+  json["reading"] = readings ? NumbersJson(*readings, detail) : Json(nullptr);
+  return json;
+}
+
+/// By model; null where the samples show the motions.
+Json MotionsJson(const Recording& used, const Identification& report, SeriesDetail detail) {
+  Json json;
+  if (!HidesMotion(used, report.sampling)) return json;
+  for (const FitReport& fit : report.fits) {
+    json[std::string(fit.model.name)] = MotionJson(used, fit, report.rig, detail);
+  }
   return json;
 }
 
@@ -160,6 +212,7 @@ Json PartJson(const Identification& report, SeriesDetail detail) {
     json["models"][std::string(fit.model.name)] =
         ModelJson(fit, has_overlay ? check->overlay : TextbookOverlay(), used.size(), detail);
   }
+  json["motions"] = MotionsJson(used, report, detail);
   return json;
 }
 

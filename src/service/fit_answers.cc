@@ -16,10 +16,10 @@
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
-#include "pendulum/report/page.h"
 #include "pendulum/report/series.h"
 #include "pendulum/service/fit_request.h"
 #include "pendulum/service/thinning.h"
+#include "pendulum/web/report_page.h"
 #include "service/answers.h"
 #include "service/asked_again.h"
 

@@ -22,6 +22,7 @@
 #include "pendulum/request/simulation.h"
 #include "pendulum/request/simulation_text.h"
 #include "pendulum/service/fit_request.h"
+#include "pendulum/web/service_page.h"
 #include "service/answers.h"
 #include "service/service_files.h"
 

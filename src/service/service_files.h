@@ -23,11 +23,8 @@ std::span<const Example> Examples();
 /// openapi.json with the schema of results inserted.
 std::string OpenApiDocument();
 
-// Files embedded unchanged by embed_file.cmake: the page of src/report/page/dist, openapi.json and its parts,
-// recordings and rigs of datasets/.
-std::string_view ServicePage();
-std::string_view ServiceScript();
-std::string_view ServiceStyle();
+// Bytes of embedded files (embed_file.cmake): openapi.json and the schema it refers to, recordings and rigs of
+// datasets/.
 std::string_view OpenApiTemplate();
 std::string_view ResultSchema();
 std::string_view CoulombRecording();

@@ -21,7 +21,7 @@
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/rig.h"
-#include "pendulum/report/summary_page.h"
+#include "pendulum/web/summary_page.h"
 #include "tools/output.h"
 #include "tools/refit_progress.h"
 #include "tools/refit_text.h"

@@ -88,7 +88,7 @@ class LicencesTest(packed.DebianFilesTest):
         self.assertEqual(self.sources - sources, set())
 
     def test_what_the_pages_are_built_from_is_named(self):
-        page = json.loads((SOURCES / "report/page/package.json").read_text())
+        page = json.loads((SOURCES / "web/package.json").read_text())
         self.assertEqual(set(page["dependencies"]), {"uplot"})
         self.assertIn("uplot", self.named)
         self.assertIn("Copyright (c) 2022 Leon Sorokin", self.text)

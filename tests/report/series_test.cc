@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/series.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,7 @@ Identification ReportOfThreeSamples() {
   report.used = ThreeSamples();
   report.fits = {FitOfThreeSamples()};
   report.checks[0].overlay = OverlayOfThreeSamples();
+  report.sampling->gaps = 0;
   return report;
 }
 
@@ -83,11 +85,13 @@ TEST(ToResidualCsv, LeavesFieldsEmptyThatThereAreNot) {
 
 TEST(SeriesJson, HasSamplesAndModelsByName) {
   const Json series = SeriesJson(ReportOfThreeSamples());
-  EXPECT_THAT(Keys(series), ElementsAre("time_s", "measured", "unit", "extrema", "peaks", "profiles", "models"));
+  EXPECT_THAT(Keys(series),
+              ElementsAre("time_s", "measured", "unit", "extrema", "peaks", "profiles", "models", "motions"));
   EXPECT_EQ(series["time_s"].dump(), "[0.0,0.1,0.2]");
   EXPECT_EQ(series["measured"].dump(), "[0.5,-1e-07,0.3333333333333333]");
   EXPECT_EQ(series["unit"], "rad");
   EXPECT_TRUE(series["profiles"].is_null());
+  EXPECT_TRUE(series["motions"].is_null());
   EXPECT_EQ(series["models"].dump(),
             R"({"coulomb":{"fitted":[0.25,0.0,0.5],"residual":[0.25,-1e-07,-0.125],)"
             R"("linear_closed_form":[0.5,0.25,0.125],"nonlinear_closed_form":[1.0,2.0,3.0]}})");
@@ -147,6 +151,102 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
     EXPECT_NEAR(extrema[i][0].get<double>(), 0.5 + 0.5 * static_cast<double>(i), 5e-4);
     EXPECT_NEAR(extrema[i][1].get<double>(), i % 2 == 0 ? -1 : 1, 5e-4);
   }
+}
+
+TEST(SeriesJson, OfThePageHasSevenDigitsAndNoResiduals) {
+  Identification report = ReportOfThreeSamples();
+  report.used.value[2] = -0.123456789012;
+  const Json all = SeriesJson(report);
+  const Json page = SeriesJson(report, SeriesDetail::kPage);
+  EXPECT_EQ(all.at("measured").at(2), -0.123456789012);
+  EXPECT_EQ(page.at("measured").at(2), -0.1234568);
+  for (const auto& [name, model] : page.at("models").items()) EXPECT_TRUE(model.at("residual").is_null()) << name;
+}
+
+/// The small-angle pendulum, I_O = 0.04 s² and b = 0.008 s in units of G, released at 1 s from 0.3 rad.
+FitReport LinearFit() {
+  FitReport fit;
+  fit.model = {"linear", "viscous", Gravity::kLinear};
+  fit.termination = Termination::kConverged;
+  fit.start = StartKind::kRelease;
+  fit.parameters = {ExampleParameter(kInertia, "s^2", 0.04, 0), ExampleParameter(kViscous, "s", 0.008, 0),
+                    ExampleParameter(kReleaseAngle, "rad", 0.3, 0), ExampleParameter(kReleaseTime, "s", 1, 0),
+                    ExampleParameter(kZeroAngle, "rad", 0.01, 0)};
+  return fit;
+}
+
+/// Its angle and rate t s after the release: A exp(-δ t) (cos ω t + δ/ω sin ω t), δ = b / (2 I_O), ω² = 1 / I_O - δ².
+std::array<double, 2> LinearMotion(double t) {
+  const double decay = 0.1, frequency = std::sqrt(25 - decay * decay), amplitude = 0.3 * std::exp(-decay * t);
+  return {amplitude * (std::cos(frequency * t) + decay / frequency * std::sin(frequency * t)),
+          -amplitude * 25 / frequency * std::sin(frequency * t)};
+}
+
+/// 40 samples at 2 Hz from 0 s on, 2.5 a period, and the fit above.
+Identification TwoSamplesASecond() {
+  Identification run;
+  run.used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
+  run.used.value = Eigen::VectorXd::Zero(40);
+  run.fits = {LinearFit()};
+  run.sampling.emplace().samples_per_period = 2.5;
+  return run;
+}
+
+// 60 points a period of 2π 0.2 s from 1 to 19.5 s: 884 steps.
+TEST(SeriesJson, HasTheMotionWhereSamplesAreFewInAPeriod) {
+  const Identification run = TwoSamplesASecond();
+  const Json motion = SeriesJson(run)["motions"]["linear"];
+  EXPECT_THAT(Keys(motion), ElementsAre("start_s", "interval_s", "angle_unit", "angle", "rate", "reading"));
+  EXPECT_EQ(motion["start_s"], 1);
+  EXPECT_NEAR(motion["interval_s"].get<double>(), 18.5 / 884, 1e-12);
+  EXPECT_EQ(motion["angle_unit"], "rad");
+  for (const char* key : {"angle", "rate", "reading"}) ASSERT_EQ(motion[key].size(), 885) << key;
+  for (std::size_t i = 0; i < 885; ++i) {
+    const auto [angle, rate] = LinearMotion(18.5 / 884 * static_cast<double>(i));
+    EXPECT_NEAR(motion["angle"][i].get<double>(), angle, 1e-7) << i;
+    EXPECT_NEAR(motion["rate"][i].get<double>(), rate, 1e-6) << i;
+    EXPECT_NEAR(motion["reading"][i].get<double>(), angle + 0.01, 1e-7) << i;
+  }
+}
+
+// The clock is 2 % slow: its 18.5 s are 18.87 true seconds, in which the pendulum moves.
+TEST(SeriesJson, HasTheMotionAtInstantsOfTheFilesClock) {
+  Identification run = TwoSamplesASecond();
+  run.used.clock_scale = 1.02;
+  const Json motion = SeriesJson(run, SeriesDetail::kPage)["motions"]["linear"];
+  const double interval = motion["interval_s"];
+  EXPECT_NEAR(interval * static_cast<double>(motion["angle"].size() - 1), 18.5, 1e-9);
+  for (const std::size_t i : {0, 100, 800}) {
+    const auto [angle, rate] = LinearMotion(1.02 * interval * static_cast<double>(i));
+    EXPECT_NEAR(motion["angle"][i].get<double>(), angle, 1e-7) << i;
+    EXPECT_NEAR(motion["rate"][i].get<double>(), rate, 1e-6) << i;
+  }
+}
+
+TEST(SeriesJson, HasTheMotionWhereReadingsAreNoAngleOrMissing) {
+  Identification run = TwoSamplesASecond();
+  run.sampling->samples_per_period = 12;
+  EXPECT_TRUE(SeriesJson(run)["motions"].is_null());
+  run.sampling->gaps = 1;
+  EXPECT_FALSE(SeriesJson(run)["motions"].is_null());
+  run.sampling.reset();
+  EXPECT_TRUE(SeriesJson(run)["motions"].is_null());
+  run.used.quantity = run.fits[0].quantity = Quantity::kRate;
+  run.fits[0].parameters[4] = ExampleParameter(kRateBias, "rad/s", 0.2, 0);
+  const Json motion = SeriesJson(run)["motions"]["linear"];
+  EXPECT_NEAR(motion["reading"][200].get<double>(), motion["rate"][200].get<double>() + 0.2, 1e-7);
+}
+
+TEST(SeriesJson, HasNoMotionWhereThereIsNone) {
+  Identification run = TwoSamplesASecond();
+  run.fits[0].termination = Termination::kFailed;
+  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
+  run.fits = {LinearFit()};
+  run.fits[0].parameters[0].estimate = 0;  // no inertia: it cannot be traced
+  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
+  run.fits = {LinearFit()};
+  run.fits[0].parameters[3].estimate = 19.5;  // released at the last sample
+  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
 }
 
 TEST(ToSeriesJsonText, IsOneLineOfTheSame) {

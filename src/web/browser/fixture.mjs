@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results and series of one recording for the tests.
+
+import { fitOf } from './fixture_fit.mjs';
+import { kPeriod, kRate, kRelease, kSigma, kZero, motion, seeded } from './fixture_motion.mjs';
+
+function comparisonOf(fits, recommended) {
+  const prediction = (standardized) => ({ rms_rad: 0.003 * standardized, standardized, samples: 900 });
+  const rows = fits.map((fit, i) => ({
+    model: fit.model,
+    judged: i > 0,
+    parameters: 5 + i,
+    rms_residual_rad: kSigma,
+    log_likelihood: -2889,
+    aic: 1,
+    aicc: 1,
+    bic: 1,
+    delta_bic: i === 0 ? null : 1.9 * (i - 1),
+    akaike_weight: i === 0 ? null : 0.5,
+    cross_validation: prediction(1.01),
+    forward_prediction: i === 0 ? null : prediction(1.02),
+    lag1_correlation: 0.01,
+    ljung_box_p: 0.4,
+    lack_of_fit: i === 0,
+    ...(i === 0 ? { reason: 'it leaves more than noise' } : {}),
+  }));
+  return {
+    recommended,
+    reason: 'it is the simplest of the good ones',
+    criterion: 'bic',
+    criterion_reason: 'residuals are independent',
+    likelihood: 'independent',
+    effective_samples: 2000,
+    rows,
+    tests: [
+      {
+        simpler: 'viscous',
+        richer: 'coulomb',
+        added: ['coulomb'],
+        statistic: 812.1,
+        null: 'half χ²(0), half χ²(1)',
+        p: 1e-150,
+      },
+      {
+        simpler: 'coulomb',
+        richer: 'drag',
+        added: ['drag'],
+        statistic: null,
+        null: 'none',
+        p: null,
+        reason: 'drag did not converge',
+      },
+    ],
+  };
+}
+
+/** A result of these models with all optional parts. */
+export function makeResult({
+  models = ['viscous', 'coulomb', 'drag'],
+  samples = 2000,
+  rate = 100,
+  path = 'folder/run.csv',
+} = {}) {
+  const fits = models.map(fitOf);
+  const end = (samples - 1) / rate;
+  return {
+    schema_version: 1,
+    tool: { name: 'fit_pendulum', version: '0.1.0' },
+    data: {
+      path,
+      sha256: 'ab'.repeat(32),
+      samples,
+      used_samples: samples,
+      duration_s: end,
+      sample_rate_hz: rate,
+      resolution_rad: 0.0035,
+      resolution_source: 'file',
+      clock_scale: 1,
+      clock_scale_std_dev: 0,
+      window_s: [0, end],
+      window_reason: 'begins: held, then released; ends: the end of the recording',
+      releases: [[0, end]],
+      release: 1,
+      start: 'release',
+      sampling: {
+        rate_hz: rate,
+        jitter_s: 0,
+        gaps: 0,
+        longest_gap_s: 0,
+        frequency_hz: 1 / kPeriod,
+        seen_frequency_hz: 1 / kPeriod,
+        expected_frequency_hz: null,
+        samples_per_period: rate * kPeriod,
+        nyquist_margin: (rate * kPeriod) / 2,
+        start_counts: 240,
+        end_counts: 100,
+        saturated_samples: 0,
+      },
+    },
+    rig: { bob_mass: { value: 0.38, std_dev: 0.001 }, rod_mass: 0.095, rod_length: 0.43, gravity: 9.81 },
+    calibration: {
+      schema_version: 1,
+      input: 'counts',
+      angle_unit: 'deg',
+      coefficients: [-49.6077, 0.198544],
+      covariance: null,
+    },
+    fits,
+    closed_forms: {
+      model: models[0],
+      linear: {
+        damped_frequency: { estimate: (2 * Math.PI) / kPeriod, std_error: 0.001, unit: 'rad/s' },
+        log_decrement: { estimate: kRate * kPeriod, std_error: 0.0005, unit: '1' },
+        periods: 12,
+      },
+      decrement: null,
+      envelopes: [{ term: 'viscous', shape: 'exponential', chi_square: 40, dof: 39, p: 0.43 }],
+      envelope: 'exponential (viscous friction alone, p 0.43)',
+      turning_points: 20,
+      noise_rad: kSigma,
+    },
+    comparison: models.length > 1 ? comparisonOf(fits, models[1]) : null,
+    warnings: [{ code: 'at_bound', message: 'at the bound 0: drag; a simpler model has smaller errors' }],
+  };
+}
+
+/** The series of makeResult() with the same options. */
+export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 2000, rate = 100 } = {}) {
+  const random = seeded(1);
+  const noise = () => kSigma * (random() + random() + random() + random() + random() + random() - 3) * Math.SQRT2;
+  const round = (x) => Math.round(x * 1e7) / 1e7;
+  const time = Array.from({ length: samples }, (_unused, i) => round(i / rate));
+  const fitted = time.map((t) => round(motion(t)));
+  const measured = fitted.map((value) => round(value + noise()));
+  const residual = measured.map((value, i) => round(value - fitted[i]));
+  const peaks = [];
+  for (let i = 1; kRelease + (i * kPeriod) / 2 < time[samples - 1] && i < 400; ++i) {
+    const t = kRelease + (i * kPeriod) / 2;
+    peaks.push({
+      number: i,
+      time_s: t,
+      time_std_error: 0.002,
+      angle_rad: motion(t),
+      std_error: 0.0012,
+      zeta_pair: null,
+      zeta: null,
+      periods: null,
+    });
+  }
+  const values = [-2, -1, 0, 1, 2].map((k) => 0.003 + k * 1e-4);
+  const profile = { value: values, statistic: [4.2, 1.05, 0, 0.97, 3.9], threshold: 3.84 };
+  return {
+    time_s: time,
+    measured,
+    unit: 'rad',
+    extrema: peaks.map((peak) => [peak.time_s, peak.angle_rad]),
+    peaks,
+    profiles: Object.fromEntries(models.map((model) => [model, { viscous: profile }])),
+    models: Object.fromEntries(
+      models.map((model) => [
+        model,
+        {
+          fitted,
+          residual,
+          linear_closed_form: fitted.map((value, i) => round(value + 1e-3 * Math.sin(time[i]))),
+          nonlinear_closed_form: fitted,
+        },
+      ]),
+    ),
+    motions: null,
+  };
+}
+
+/** The motions of an undersampled makeSeries() with the same options: 60 points a period from the release on. */
+export function makeMotions({ models, samples, rate }) {
+  const interval_s = kPeriod / 60;
+  const size = Math.floor(((samples - 1) / rate - kRelease) / interval_s) + 1;
+  const reading = Array.from({ length: size }, (_unused, i) => motion(kRelease + i * interval_s));
+  const angle = reading.map((value) => value - kZero);
+  const last = size - 1;
+  const slope = (i) => (angle[Math.min(i + 1, last)] - angle[Math.max(i - 1, 0)]) / (2 * interval_s);
+  const one = { start_s: kRelease, interval_s, angle_unit: 'rad', angle, rate: angle.map((_angle, i) => slope(i)), reading };
+  return Object.fromEntries(models.map((model) => [model, one]));
+}
+
+/** A fit that failed: it has only a reason. */
+export function makeFailed() {
+  const result = makeResult({ models: ['coulomb'] });
+  const empty = { names: [], matrix: [] };
+  Object.assign(result.fits[0], {
+    status: 'failed',
+    reason: 'the pendulum never moves',
+    parameters: {},
+    derived: {},
+    covariance: empty,
+    correlation: empty,
+    noise: null,
+    statistics: null,
+    std_error_method: null,
+    interval_method: null,
+    identifiability: [],
+    closed_form: [],
+    constancy: null,
+    constancy_reason: 'there is no fit',
+  });
+  Object.assign(result, { closed_forms: null, reason: 'there are no turning points', warnings: [] });
+  Object.assign(result.data, {
+    sampling: null,
+    resolution_rad: null,
+    resolution_source: null,
+    start: null,
+    window_reason: null,
+  });
+  return result;
+}

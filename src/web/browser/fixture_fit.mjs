@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// A fit with all optional parts, for the tests.
+
+import { kAmplitude, kRelease, kSigma, kZero } from './fixture_motion.mjs';
+
+const parameter = (estimate, stdError, unit, more = {}) => ({
+  estimate,
+  std_error: stdError,
+  unit,
+  fixed: false,
+  at_bound: false,
+  systematic_std_error: null,
+  interval95: stdError === null ? null : [estimate - 1.96 * stdError, estimate + 1.96 * stdError],
+  ...more,
+});
+
+/** The fit of the model with this name. */
+export function fitOf(model) {
+  const parameters = {
+    inertia: parameter(0.07899964917915511, 2.7734679124217884e-6, 'kg m^2', { systematic_std_error: 4.1e-5 }),
+    viscous: parameter(0.0030015526573362564, 9.688622251656585e-5, 'N m s/rad'),
+    ...(model === 'viscous' ? {} : { coulomb: parameter(0.0039898698406139015, 0.00011368461537974497, 'N m') }),
+    ...(model === 'drag'
+      ? {
+          drag: parameter(0, null, 'N m s^2/rad^2', {
+            at_bound: true,
+            interval95: [0, 0.001],
+            reason: 'at its bound 0',
+          }),
+        }
+      : {}),
+    release_angle: parameter(kAmplitude, 0.0002, 'rad'),
+    release_time: parameter(kRelease, 0.0001, 's'),
+    zero_angle: parameter(kZero, null, 'rad', { fixed: true, reason: 'held by --fix' }),
+  };
+  const names = ['inertia', 'viscous', ...(model === 'viscous' ? [] : ['coulomb'])];
+  const matrix = names.map((_row, i) => names.map((_column, j) => (i === j ? 1 : i + j === 3 ? -0.995 : 0.24)));
+  return {
+    model,
+    status: 'converged',
+    reason: 'the step left to make is below 0.1 standard errors',
+    parameters,
+    derived: {
+      gravity_over_inertia: { estimate: 22.83, std_error: 0.0008, interval95: [22.828, 22.832], unit: '1/s^2' },
+      damping_ratio: { estimate: 0.004, std_error: 0.0001, interval95: null, unit: '1' },
+    },
+    covariance: { names, matrix },
+    correlation: { names, matrix },
+    systematic_covariance: { names: [], matrix: [] },
+    noise: {
+      model: 'gaussian',
+      why: 'rounding drowns in the noise',
+      sigma_rad: kSigma,
+      sigma_std_error: 5e-5,
+      resolution_rad: 0.0035,
+      saturated_samples: 0,
+      lag1_correlation: -0.03,
+      correlation: 'white',
+    },
+    std_error_method: "covariance sigma^2 (J'J)^-1, residuals taken as independent",
+    interval_method: 'estimate ± 1.961 standard errors',
+    identifiability: names.map((name) => ({
+      parameter: name,
+      verdict: name === 'viscous' ? 'weakly identifiable' : 'identifiable',
+      direction: [],
+      advice: name === 'viscous' ? 'record for longer' : null,
+    })),
+    statistics: {
+      rms_residual_rad: kSigma,
+      log_likelihood: -2889,
+      aic: 5792.3,
+      aicc: 5792.4,
+      bic: 5831.6,
+      durbin_watson: 2.07,
+      ljung_box_p: 0.68,
+      runs_p: 0.83,
+      effective_samples: 2000,
+    },
+    closed_form: [
+      {
+        quantity: 'inertia_small_angle',
+        method: 'damped period and log decrement, small angles',
+        closed_form: 0.0798,
+        std_error: 4.4e-5,
+        fit: 0.078999,
+        fit_std_error: 2.8e-6,
+        unit: 'kg m^2',
+        z: 19.1,
+        agrees: false,
+        why: 'differs by +0.00084 kg m^2: by finite amplitude',
+      },
+      {
+        quantity: 'inertia_geometry',
+        method: 'the rig file',
+        closed_form: 0.0761,
+        std_error: null,
+        fit: 0.078999,
+        fit_std_error: 2.8e-6,
+        unit: 'kg m^2',
+        z: null,
+        agrees: null,
+        why: 'no errors to judge that by',
+        reason: 'no errors to judge that by',
+      },
+      {
+        quantity: 'inertia_turning_points',
+        method: 'least squares over all turning points',
+        closed_form: 0.078997,
+        std_error: 1.7e-5,
+        fit: 0.078999,
+        fit_std_error: 2.8e-6,
+        unit: 'kg m^2',
+        z: -0.2,
+        agrees: true,
+        why: null,
+      },
+    ],
+    solver: { iterations: 5, evaluations: 30, termination: 'Function tolerance reached.' },
+    constancy: {
+      verdict: 'inertia and friction are constants of the recording',
+      constant: true,
+      halves: {
+        statistic: 1.7,
+        dof: 1,
+        p: 0.43,
+        rows: [
+          {
+            parameter: 'inertia',
+            unit: 'kg m^2',
+            first: 0.079,
+            first_std_error: 4e-6,
+            second: 0.078998,
+            second_std_error: 5e-6,
+            z: 0.4,
+          },
+        ],
+      },
+      amplitude: {
+        windows: [0.4, 0.3, 0.2].map((amplitude, i) => ({
+          from_s: 4 * i,
+          to_s: 4 * i + 4,
+          amplitude_rad: amplitude,
+          inertia: 0.079 + 1e-6 * i,
+          inertia_std_error: 3e-6,
+          friction: 0.003,
+          friction_std_error: 1e-4,
+        })),
+        trends: [
+          { parameter: 'inertia', unit: 'kg m^2', slope: 1e-5, slope_std_error: 2e-5, span: 0.0012, p: 0.6 },
+          { parameter: 'viscous', unit: 'N m s/rad', slope: 1e-5, slope_std_error: 2e-4, span: 0.0012, p: 0.9 },
+        ],
+      },
+    },
+  };
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mouse and keyboard on the page of a report.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { makeResult, makeSeries } from './fixture.mjs';
+import { assertRange, ink, kPlot, open, shownRange } from './page.mjs';
+
+test('dragging zooms, the residuals follow, and Show all goes back', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  await page.locator(kPlot).scrollIntoViewIfNeeded();
+  const box = await page.locator(`${kPlot} >> .u-over`).boundingBox();
+  const y = box.y + box.height / 2;
+  await page.mouse.move(box.x + 0.25 * box.width, y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.5 * box.width, y, { steps: 5 });
+  await page.mouse.up();
+  const [from, to] = await shownRange(page);
+  assert.ok(Math.abs(from - 0.25 * 19.99) < 0.1 && Math.abs(to - 0.5 * 19.99) < 0.1, `${from} ${to}`);
+  assert.deepEqual(await shownRange(page, '#fit .plot >> nth=1'), [from, to]);
+  await page.locator('#fit').getByRole('button', { name: 'Show all' }).click();
+  assert.deepEqual(await shownRange(page), [0, 19.99]);
+  await page.locator('#fit').getByRole('button', { name: 'Zoom in' }).click();
+  await page.locator('#fit').getByRole('button', { name: 'Later' }).click();
+  const [later] = await shownRange(page);
+  assert.ok(Math.abs(later - (19.99 / 4 + 19.99 / 8)) < 0.02, String(later));
+  await page.locator(kPlot).dblclick();
+  assert.deepEqual(await shownRange(page), [0, 19.99]);
+});
+
+test('the keyboard zooms, moves and resets', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  await page.locator('#fit .linked').focus();
+  await page.keyboard.press('+');
+  assertRange(await shownRange(page), [4.9975, 14.9925]);
+  await page.keyboard.press('ArrowLeft');
+  assertRange(await shownRange(page), [2.49875, 12.49375]);
+  await page.keyboard.press('-');
+  await page.keyboard.press('0');
+  assert.deepEqual(await shownRange(page), [0, 19.99]);
+});
+
+test('every control is reached by the Tab key and shows its focus', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  const reached = new Set();
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press('Tab');
+    reached.add(
+      await page.evaluate(
+        () =>
+          document.activeElement?.getAttribute('aria-label') ||
+          document.activeElement?.textContent?.trim() ||
+          document.activeElement?.getAttribute('value') ||
+          document.activeElement?.className,
+      ),
+    );
+  }
+  for (const name of ['Dark', 'measured', 'Zoom in', 'Later', 'Samples as a table', 'Command'])
+    assert.ok(reached.has(name), name);
+});
+
+test('another model is shown in detail, and over the first', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  const drag = page.locator('#fit').getByRole('button', { name: 'drag' });
+  assert.equal(await drag.getAttribute('aria-pressed'), 'false');
+  await drag.click();
+  assert.match(await page.locator(kPlot).getAttribute('aria-label'), /^measured and coulomb and drag:/);
+  await page.locator('#fit').getByRole('button', { name: 'Zoom in' }).click();
+  await page.locator('.models label', { hasText: 'viscous' }).click();
+  assert.match(await page.locator('.banner').textContent(), /Lack of fit: viscous/);
+  assert.equal(await page.locator('[data-parameter=coulomb]').count(), 0);
+  assertRange(await shownRange(page), [4.9975, 14.9925]);
+  await page.locator('.models label', { hasText: 'drag' }).click();
+  assert.match(await page.locator('[data-parameter=drag]').textContent(), /at its bound/);
+});
+
+test('residuals in counts, σ and degrees', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  const size = async () =>
+    Number(
+      /, ([\d.]+) \S+ root mean square/.exec(await page.locator('#fit .plot >> nth=1').getAttribute('aria-label'))[1],
+    );
+  const radians = await size();
+  for (const [name, unit] of [
+    ['counts', 0.0035],
+    ['σ', 0.003],
+    ['°', Math.PI / 180],
+  ]) {
+    await page.locator('#fit .choice label', { hasText: name }).click();
+    assert.ok(Math.abs((await size()) / (radians / unit) - 1) < 0.01, name);
+  }
+});
+
+test('amplitudes on a logarithmic axis', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  await page.locator('#envelope label', { hasText: 'logarithmic' }).click();
+  await page.waitForSelector('#envelope .plot[aria-label*=logarithmic]');
+  assert.ok((await ink(page, '#envelope .plot')) > 3000);
+  await page.locator('#envelope summary').click();
+  await page.waitForSelector('#envelope details tbody tr'); // made after the click, when the browser reports that it is open
+  assert.equal(await page.locator('#envelope details tbody tr').count(), makeSeries().peaks.length);
+});
+
+test('a million samples are drawn and zoomed', { timeout: 600_000 }, async (t) => {
+  const options = { models: ['coulomb'], samples: 1_000_000, rate: 1000 };
+  const page = await open(t, makeResult(options), makeSeries(options));
+  assert.ok((await ink(page, kPlot)) > 20_000);
+  const took = await page.evaluate(async () => {
+    const start = performance.now();
+    [...document.querySelectorAll('#fit button')]
+      .find((button) => button.getAttribute('aria-label') === 'Zoom in')
+      .click();
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return performance.now() - start;
+  });
+  t.diagnostic(`one step of zoom took ${took.toFixed(0)} ms`);
+  assert.ok(took < 10_000, `${took} ms`); // a page that blocks would take tens of seconds
+  const [from, to] = await shownRange(page);
+  assert.ok(Math.abs(from - 250) < 1 && Math.abs(to - 750) < 1);
+});

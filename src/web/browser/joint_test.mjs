@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of several recordings that were fitted together.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { makeJointFailed, makeJointResult, makeJointSeries } from './fixture_joint.mjs';
+import { assertAccessible, assertRange, ink, kLooks, open, shownRange } from './page.mjs';
+
+const openJoint = (t, options = {}, more = {}) => open(t, makeJointResult(options), makeJointSeries(options), more);
+const kNothing = /NaN|undefined|\bnull\b|Infinity|not_/;
+
+/** The cells of a row of the table of a parameter, such as "0.0789996 ± 0.0000028", separated by "|". */
+const forestRow = async (page, name, row) =>
+  (await page.locator(`[data-forest=${name}] tbody tr`).nth(row).locator('th, td').allTextContents()).join('|');
+
+test('every section is there, in order', async (t) => {
+  const page = await openJoint(t);
+  const ids = await page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
+  const one = ['fit', 'validation', 'envelope', 'phase', 'residuals', 'constancy', 'closed-forms'];
+  const rest = ['correlation', 'profiles', 'comparison', 'rig', 'provenance'];
+  assert.deepEqual(ids, ['verdict', 'agreement', 'recordings', 'overlay', 'one', ...one, ...rest]);
+  assert.equal(await page.locator('nav a').count(), ids.length);
+  assert.equal(await page.locator('h1').textContent(), '3 recordings, fitted together');
+  for (const plot of ['#overlay .plot >> nth=0', '#overlay .plot >> nth=1', '#fit .plot >> nth=0'])
+    assert.ok((await ink(page, plot)) > 3000, plot);
+});
+
+test('agreement is told first, with the shared parameters', async (t) => {
+  const page = await openJoint(t);
+  assert.match(await page.locator('.banner.good').textContent(), /The 3 recordings agree: coulomb describes them together/);
+  assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
+  assert.equal(await page.locator('[data-parameter=release_angle]').count(), 0);
+  assert.doesNotMatch(await page.locator('#verdict table').first().textContent(), /release_angle/);
+  assert.doesNotMatch(await page.locator('.figures').textContent(), /random effects/);
+});
+
+test('each recording alone, the joint fit and the random effects stand in plot and table', async (t) => {
+  const page = await openJoint(t);
+  // By hand from 0.07899964917915511 ± 2.7734679e-6: alone at -1, 0.5 and 1.25 of it, with twice the error.
+  assert.equal(await forestRow(page, 'inertia', 0), 'recording 1|0.078997 ± 0.000006|−0.5|0.078986 to 0.079008');
+  assert.equal(await forestRow(page, 'inertia', 2), 'recording 3|0.079003 ± 0.000006|0.6|0.078992 to 0.079014');
+  assert.equal(await forestRow(page, 'inertia', 3), 'joint fit|0.0789996 ± 0.0000028|–|0.0789942 to 0.0790051');
+  assert.equal(await forestRow(page, 'inertia', 4), 'random effects|0.079002 ± 0.000006|–|0.078986 to 0.079019');
+  assert.equal(await forestRow(page, 'coulomb', 1), 'recording 2|not told|–|–');
+  const words = await page.locator('[data-forest=inertia] figcaption').textContent();
+  assert.match(words, /χ² = 1\.75 with 2 degrees of freedom, p = 0\.42\. Between recordings a standard deviation of 1\.4 × 10⁻⁶/);
+  const told = await page.locator('[data-forest=inertia] .forest').getAttribute('aria-label');
+  assert.match(told, /recording 1 0\.078997 ± 0\.000006, .*, joint fit 0\.0789996 ± 0\.0000028 and random effects/);
+  assert.equal(await page.locator('[data-forest=inertia] line.joint').count(), 1);
+  const places = await page.locator('[data-forest=inertia] .strip svg path').evaluateAll((all) =>
+    all.map((path) => path.getBoundingClientRect()).filter((box) => box.width > 9).map((box) => box.x + box.width / 2),
+  );
+  assert.equal(places.length, 5);
+  assert.ok(places[0] < places[3] && places[3] < places[1] && places[1] < places[2], String(places)); // as the estimates are
+});
+
+test('a recording that disagrees is marked in words everywhere', async (t) => {
+  const page = await openJoint(t, { odd: true });
+  assert.match(await page.locator('.banner.bad').textContent(), /Recording 3 disagrees with the others/);
+  assert.match(await page.locator('.agreement strong').textContent(), /Recording 3 disagrees with the others\./);
+  assert.match(await forestRow(page, 'inertia', 2), /^recording 3disagrees\|/);
+  assert.match(await page.locator('[data-forest=inertia] .labels').textContent(), /recording 3disagrees/);
+  assert.match(await page.locator('[data-forest=inertia] figcaption').textContent(), /p < 10⁻⁹⁹/);
+  assert.match(await page.locator('#recordings tbody tr').nth(2).textContent(), /^3disagreesrun3\.csv/);
+  assert.equal(await page.locator('#recordings .no').count(), 2); // in the tables of the recordings and of their parameters
+});
+
+test('recordings that scatter have the mean of random effects beside the joint estimate', async (t) => {
+  const result = makeJointResult();
+  for (const fit of result.fits) Object.assign(fit.homogeneity, { agrees: false, verdict: 'they scatter' });
+  const page = await open(t, result, makeJointSeries());
+  assert.match(await page.locator('.banner.caution').textContent(), /do not agree within their errors\s*They scatter\./);
+  assert.match(await page.locator('[data-parameter=inertia] small').textContent(), /random effects: 0\.079002 ± 0\.000006/);
+});
+
+test('the recordings with their noise and their own parameters', async (t) => {
+  const page = await openJoint(t);
+  const cells = page.locator('#recordings table').first().locator('tbody tr').nth(1).locator('th, td');
+  assert.match((await cells.allTextContents()).join('|'), /^2\|run2\.csv\|2000 of 2000\|0 to 19\.99\|100\|held\|11\.5°\|0\.004.rad\|0\.003.rad\|−0\.03\|not identifiable: coulomb is not told$/);
+  const own = page.locator('#recordings table').nth(1);
+  assert.match(await own.locator('thead').textContent(), /release angle.*release time.*zero of the sensor/);
+  assert.match(await own.locator('tbody tr').nth(1).textContent(), /0\.41000 ± 0\.00020.rad/);
+  assert.match(await own.locator('tbody tr').nth(2).textContent(), /2\.00000 ± 0\.00010.s.*held fixed: held by --fix/);
+});
+
+test('recordings over each other are shown and hidden, and zoomed together', async (t) => {
+  const page = await openJoint(t);
+  const [main, below] = ['#overlay .plot >> nth=0', '#overlay .plot >> nth=1'];
+  const label = (plot) => page.locator(plot).getAttribute('aria-label');
+  assert.match(await label(main), /^Recordings 1, 2 and 3, measured and fitted: angle over time from −1 to 18\.99 s\.$/);
+  const toggle = page.locator('#overlay').getByRole('button', { name: 'recording 2' });
+  await toggle.click();
+  assert.equal(await toggle.getAttribute('aria-pressed'), 'false');
+  assert.match(await label(main), /^Recordings 1 and 3, measured and fitted/);
+  const { residual } = makeJointSeries()[0].models.coulomb; // the same for all recordings
+  const rms = Math.sqrt(residual.reduce((sum, x) => sum + x * x, 0) / residual.length).toPrecision(3);
+  const sizes = `root mean squares: recording 1 ${rms} rad, recording 3 ${rms} rad.`;
+  assert.equal((await label(below)).split('; ')[1], sizes);
+  for (const name of ['recording 1', 'recording 3'])
+    await page.locator('#overlay').getByRole('button', { name, exact: true }).click();
+  assert.match(await label(main), /^Recordings none/);
+  assert.ok((await ink(page, main)) < 0.7 * (await ink(await openJoint(t), main)));
+  await toggle.click();
+  await page.locator('#overlay').getByRole('button', { name: 'fitted' }).click();
+  assert.match(await label(main), /^Recordings 2, measured: /);
+  await page.locator('#overlay').getByRole('button', { name: 'Zoom in' }).click();
+  assertRange(await shownRange(page, main), [3.998, 13.99]);
+  assert.deepEqual(await shownRange(page, below), await shownRange(page, main));
+  await page.locator('#overlay .linked').focus();
+  await page.keyboard.press('0');
+  assertRange(await shownRange(page, main), [-1, 18.99]);
+  await page.locator('#overlay summary').click();
+  assert.match(await page.locator('#overlay details tbody tr').first().textContent(), /^2−1\.000/);
+});
+
+test('another recording and another model are shown in detail', async (t) => {
+  const page = await openJoint(t);
+  assert.equal(await page.locator('#fit h2').textContent(), 'Measured and fitted · recording 1');
+  await page.locator('.recordings label', { hasText: '2' }).click();
+  assert.equal(await page.locator('#fit h2').textContent(), 'Measured and fitted · recording 2');
+  assert.match(await page.locator('#one').textContent(), /Recording 2: run2\.csv\./);
+  assertRange(await shownRange(page), [0.5, 20.49]);
+  assert.match(await page.locator('#residuals').textContent(), /0\.004.rad/);
+  await page.locator('.models label', { hasText: 'drag' }).click();
+  assert.equal(await page.locator('#fit h2').textContent(), 'Measured and fitted · recording 2');
+  assert.match(await page.locator('#fit .plot >> nth=0').getAttribute('aria-label'), /^measured and drag/);
+  assert.equal(await page.locator('[data-forest]').count(), 4);
+  assert.match(await page.locator('[data-parameter=drag]').textContent(), /at its bound/);
+});
+
+test('all files stand in the provenance, and calibrations that differ apart', async (t) => {
+  const page = await openJoint(t);
+  const words = await page.locator('#provenance').textContent();
+  for (const k of [1, 2, 3]) assert.match(words, new RegExp(`folder/run${k}\\.csv.*(${k}a){32}`));
+  assert.match(await page.locator('#rig').textContent(), /Recording 1: run1\.csv.*No calibration.*Recording 2: run2\.csv/);
+  assert.equal(await page.title(), '3 recordings – pendulum report');
+});
+
+test('a joint fit that failed says so, and that nothing is known', async (t) => {
+  const failed = makeJointFailed();
+  const series = makeJointSeries({ models: [] }).map((one) => ({ ...one, profiles: null, peaks: [], extrema: [] }));
+  const page = await open(t, failed, series);
+  assert.match(await page.locator('.banner.bad').textContent(), /The joint fit failed.*the pendulum never moves/s);
+  assert.match(await page.locator('#agreement').textContent(), /Not known\./);
+  assert.match(await page.locator('#recordings').textContent(), /failed: the pendulum never moves/);
+  assert.ok((await ink(page, '#overlay .plot')) > 3000);
+  assert.doesNotMatch(await page.locator('main').innerText(), kNothing);
+});
+
+test('without samples the tables remain; no number is NaN', async (t) => {
+  const bare = await open(t, makeJointResult(), null, { command: null });
+  assert.match(await bare.locator('#overlay').textContent(), /samples are not part of this report/);
+  assert.match(await forestRow(bare, 'inertia', 3), /0\.0789996 ± 0\.0000028/);
+  const page = await openJoint(t, { odd: true });
+  for (const summary of await page.locator('summary').all()) await summary.click();
+  for (const one of [bare, page]) assert.doesNotMatch(await one.locator('main').innerText(), kNothing);
+});
+
+for (const [colorScheme, name, width] of kLooks) {
+  test(`${colorScheme}, ${name}: a joint report is accessible and not wider than the window`, async (t) => {
+    const page = await openJoint(t, { odd: true, count: 8 }, { context: { colorScheme, viewport: { width, height: 800 } } });
+    await assertAccessible(page);
+  });
+}
+
+test('on paper the forest plots fit the page', async (t) => {
+  const page = await openJoint(t, { odd: true }, { context: { viewport: { width: 680, height: 900 } } });
+  await page.emulateMedia({ media: 'print' });
+  const ends = await page.locator('.forest').evaluateAll((all) => all.map((plot) => plot.getBoundingClientRect().right));
+  assert.ok(Math.max(...ends) <= 680, String(ends)); // A4 less margins of 15 mm is 680 px wide
+  assert.ok((await page.pdf({ preferCSSPageSize: true })).length > 20_000);
+});

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixtures match summary.schema.json.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import { makeSummary, summaries } from './fixture_summary.mjs';
+
+const schema = fileURLToPath(new URL('../../../include/pendulum/report/summary.schema.json', import.meta.url));
+const script = `
+import json, sys, jsonschema
+schema = json.load(open(sys.argv[1]))
+jsonschema.Draft202012Validator.check_schema(schema)
+for error in jsonschema.Draft202012Validator(schema).iter_errors(json.load(sys.stdin)):
+    print(error.json_path, error.message[:200])
+`;
+
+/** Violations of the schema in a summary. */
+function complaints(summary) {
+  const { status, stdout, stderr } = spawnSync('python3', ['-c', script, schema], {
+    input: JSON.stringify(summary),
+    encoding: 'utf8',
+  });
+  assert.equal(status, 0, stderr);
+  return stdout;
+}
+
+for (const [name, make] of Object.entries(summaries)) {
+  test(`${name} is valid`, () => {
+    const summary = make();
+    // All parameters of the large one are alike, and the validator is slow.
+    assert.equal(complaints({ ...summary, parameters: summary.parameters.slice(0, 7) }), '');
+  });
+}
+
+test('what the page could not show is not valid', () => {
+  assert.match(complaints({ ...makeSummary({ runs: 40 }), schema_version: 2 }), /schema_version/);
+  const unreasoned = makeSummary({ runs: 40 });
+  Object.assign(unreasoned.parameters[0], { repeatability: null, repeatability_reason: null });
+  assert.match(complaints(unreasoned), /repeatability_reason/);
+});

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of the summary of a batch.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { kHostile, makeFailures, makeHostile, makeLarge, makeSummary, makeTiny } from './fixture_summary.mjs';
+import { assertAccessible, assertRange, ink, kLooks, openSummary, shownRange, summaryTemplate } from './page.mjs';
+
+const kTrend = '#trend .plot';
+const ids = (page) => page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
+const heading = (page, id) => page.locator(`#${id}-title`).textContent();
+
+test('the placeholder stands in the page once', () => {
+  assert.equal(summaryTemplate.split('@SUMMARY@').length, 2);
+  assert.match(
+    summaryTemplate,
+    /Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"/,
+  );
+});
+
+test('every section is there, in order, with its plots', async (t) => {
+  const page = await openSummary(t, makeSummary());
+  assert.deepEqual(await ids(page), [
+    'verdict',
+    'models',
+    'parameters',
+    'distribution',
+    'repeatability',
+    'outliers',
+    'trend',
+    'failures',
+    'provenance',
+  ]);
+  assert.equal(await page.locator('nav a').count(), 9);
+  for (const plot of ['#distribution .plot', kTrend]) assert.ok((await ink(page, plot)) > 3000, plot);
+  assert.equal((await page.locator('#repeatability .forest svg').count()) > 0, true);
+  assert.equal(await page.title(), 'results.sqlite – summary of runs');
+});
+
+test('values on the page are those of the JSON', async (t) => {
+  const summary = makeSummary();
+  const page = await openSummary(t, summary);
+  assert.match(
+    await page.locator('.banner').textContent(),
+    /1978 of 1998 fits of coulomb converged, and their error bars are true/,
+  );
+  const row = await page.locator('#parameters tr', { hasText: 'inertia' }).first().textContent();
+  const inertia = summary.parameters.find(({ model, name }) => model === 'coulomb' && name === 'inertia');
+  assert.ok(Math.abs(Number(/0\.07\d+/.exec(row)[0]) - inertia.median) <= 0.51e-7, row); // 2 digits of 1.2e-6
+  assert.match(
+    await page.locator('#models .bars').textContent(),
+    /coulomb1580 \(79\.0 %\).*viscous400 \(20\.0 %\).*none20 \(1\.0 %\)/,
+  );
+  assert.match(await page.locator('#failures').textContent(), /24 fits failed: there is no such file/);
+  assert.equal(await page.locator('#outliers tbody tr').count(), 3);
+  assert.match(await page.locator('#outliers').textContent(), /run_350/);
+  assert.match(await page.locator('#provenance').textContent(), /(3f){32}/);
+  assert.match(await page.locator('#verdict .warnings').textContent(), /2 runs have not been fitted yet/);
+});
+
+test('another parameter and another model are shown, each by name', async (t) => {
+  const page = await openSummary(t, makeSummary());
+  assert.match(await heading(page, 'trend'), /moment of inertia/);
+  await page.locator('.shown label', { hasText: 'dry friction' }).click();
+  for (const id of ['distribution', 'repeatability', 'outliers', 'trend'])
+    assert.match(await heading(page, id), /dry friction/);
+  assert.match(await page.locator('#parameters .marked').textContent(), /dry friction/);
+  assert.ok((await ink(page, kTrend)) > 3000);
+  await page.locator('.shown label', { hasText: 'release angle' }).click();
+  assert.match(await page.locator('#repeatability').textContent(), /Each run has a release angle of its own\./);
+  assert.match(await page.locator('#trend').textContent(), /no trend to show/);
+  await page.locator('.models label', { hasText: 'viscous' }).click();
+  assert.match(await page.locator('.banner').textContent(), /1986 of 1998 fits of viscous converged/);
+  assert.match(await heading(page, 'distribution'), /moment of inertia/);
+});
+
+test('error bars that are too small are told first', async (t) => {
+  const page = await openSummary(t, makeSummary({ scatter: 1.4 }));
+  assert.match(
+    await page.locator('.banner.caution').textContent(),
+    /scatter up to 1\.[34]\d times as much as their error bars say.*moment of inertia \(1 of 4/,
+  );
+  assert.equal(await page.locator('#parameters .no').count(), 1);
+  assert.match(await page.locator('#repeatability').textContent(), /Error bars are too small\./);
+});
+
+test('the trend zooms by buttons, keys and the mouse', async (t) => {
+  const page = await openSummary(t, makeSummary());
+  const all = await shownRange(page, kTrend);
+  const width = all[1] - all[0];
+  await page.locator('#trend').getByRole('button', { name: 'Zoom in' }).click();
+  assertRange(
+    (await shownRange(page, kTrend)).map((end) => end / 10),
+    [all[0] + width / 4, all[1] - width / 4].map((end) => end / 10),
+  );
+  await page.locator('#trend .linked').focus();
+  await page.keyboard.press('0');
+  assert.deepEqual(await shownRange(page, kTrend), all);
+  await page.locator(kTrend).scrollIntoViewIfNeeded();
+  const box = await page.locator(`${kTrend} >> .u-over`).boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 50);
+  assert.match(await page.locator('#trend .readout').textContent(), /^run_\d+ \(rig_[abc]\): .*± .* at 2\d\.\d+$/);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.75 * box.width, box.y + 50, { steps: 5 });
+  await page.mouse.up();
+  const [from, to] = await shownRange(page, kTrend);
+  assert.ok(
+    Math.abs(from - (all[0] + 0.5 * width)) < 0.3 && Math.abs(to - (all[0] + 0.75 * width)) < 0.3,
+    `${from} ${to}`,
+  );
+});
+
+test('groups are hidden one by one, and drawn about their medians', async (t) => {
+  const page = await openSummary(t, makeSummary());
+  const told = () => page.locator(kTrend).getAttribute('aria-label');
+  assert.match(await told(), /of 1980 runs/);
+  await page.locator('#trend').getByRole('button', { name: 'rig_b' }).click();
+  assert.match(await told(), /of 1320 runs/);
+  await page.locator('#trend .choice label', { hasText: 'differences' }).click();
+  assert.ok((await ink(page, kTrend)) > 3000);
+});
+
+test('every control is reached by the Tab key', async (t) => {
+  const page = await openSummary(t, makeSummary());
+  const reached = new Set();
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press('Tab');
+    reached.add(
+      await page.evaluate(() => {
+        const at = document.activeElement;
+        return at?.getAttribute('aria-label') || at?.textContent?.trim() || at?.parentElement?.textContent || '';
+      }),
+    );
+  }
+  for (const name of [
+    'Dark',
+    'coulomb',
+    'moment of inertia',
+    'rig_a',
+    'Zoom in',
+    'Further',
+    'Bars as a table',
+    'Runs as a table',
+    '10 of the runs',
+  ])
+    assert.ok(reached.has(name), `${name} of ${[...reached].join('; ')}`);
+});
+
+test('three runs', async (t) => {
+  const page = await openSummary(t, makeTiny());
+  assert.match(
+    await page.locator('.banner').textContent(),
+    /3 of 3 fits of coulomb converged; nothing is found against their error bars/,
+  );
+  assert.match(await page.locator('#models').textContent(), /No run compared models/);
+  assert.match(await page.locator('#failures').textContent(), /Every fit gave a result/);
+  assert.match(await page.locator('#trend').textContent(), /per run/);
+  assert.equal(await page.locator('.models').count(), 0);
+});
+
+test('failures only', async (t) => {
+  const page = await openSummary(t, makeFailures());
+  assert.deepEqual(await ids(page), ['verdict', 'models', 'parameters', 'failures', 'provenance']);
+  assert.match(
+    await page.locator('.banner.bad').textContent(),
+    /None of 40 fits converged.*Most often \(38 fits\): there is no such file/,
+  );
+  await page.locator('#failures summary').click();
+  await page.waitForSelector('#failures details .id');
+  assert.equal(await page.locator('#failures details .id').count(), 10);
+});
+
+test('100 parameters of 2000 points are drawn, one after another', { timeout: 600_000 }, async (t) => {
+  const page = await openSummary(t, makeLarge());
+  assert.equal(await page.locator('#parameters tbody tr').count(), 100);
+  const took = await page.evaluate(async () => {
+    const start = performance.now();
+    const list = document.querySelector('select');
+    list.value = 'term_99';
+    list.dispatchEvent(new Event('change'));
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return performance.now() - start;
+  });
+  t.diagnostic(`another parameter took ${took.toFixed(0)} ms`);
+  assert.ok(took < 10_000, `${took} ms`); // a page that blocks would take tens of seconds
+  assert.match(await heading(page, 'trend'), /term_99/);
+  assert.match(
+    await page.locator('#repeatability figcaption').first().textContent(),
+    /24 groups of 40 that agree least/,
+  );
+  await page.locator('#repeatability summary').click();
+  await page.waitForSelector('#repeatability details tbody tr');
+  assert.equal(await page.locator('#repeatability details tbody tr').count(), 40);
+  assert.ok((await ink(page, kTrend)) > 3000);
+});
+
+test('names are shown as text, whatever they are', async (t) => {
+  const page = await openSummary(t, makeHostile(), { context: { viewport: { width: 390, height: 800 } } });
+  const names = await page.locator('#outliers tbody th').allTextContents();
+  assert.deepEqual(names, [kHostile[0], kHostile[1], 'two\\nlines\\tand a tab', kHostile[3], '\\u202etxt.exe']);
+  assert.equal(await page.locator('main script, main img').count(), 0);
+  assert.match(await page.locator('#failures').textContent(), /<script>alert\(1\)<\/script> x{300}/);
+  await page.locator('#trend summary').click();
+  await page.waitForSelector('#trend details tbody tr');
+  await assertAccessible(page);
+});
+
+for (const [colorScheme, name, width] of kLooks) {
+  test(`${colorScheme}, ${name}: accessible, and not wider than the window`, async (t) => {
+    const options = { context: { colorScheme, viewport: { width, height: 800 } } };
+    for (const make of [() => makeSummary({ scatter: 1.4 }), makeFailures, makeLarge]) {
+      const page = await openSummary(t, make(), options);
+      assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+      await assertAccessible(page);
+    }
+  });
+}
+
+test('paper is light, without controls, and no plot is wider than the page', async (t) => {
+  const page = await openSummary(t, makeSummary(), { context: { colorScheme: 'dark' } });
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');
+  assert.equal(await page.locator('.buttons').first().isVisible(), false);
+  const widths = await page
+    .locator('.plot canvas')
+    .evaluateAll((all) => all.map((canvas) => canvas.getBoundingClientRect().width));
+  assert.ok(Math.max(...widths) <= 680, String(widths)); // A4 less margins of 15 mm is 680 px wide
+  assert.ok((await page.pdf({ preferCSSPageSize: true })).length > 20_000);
+});

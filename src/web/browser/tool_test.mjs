@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page that fit_pendulum writes. The variable FIT_PENDULUM is the path of the tool.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { after, test } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+import { ink, openFile, shownRange } from './page.mjs';
+
+const tool = process.env.FIT_PENDULUM ?? fileURLToPath(new URL('../../../build/release/bin/fit_pendulum', import.meta.url));
+const datasets = fileURLToPath(new URL('../../../datasets/', import.meta.url));
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'pendulum-tool-'));
+after(() => fs.rmSync(folder, { recursive: true }));
+
+/** Runs a fit. Returns the address of the page and the result. */
+function fit(name, ...flags) {
+  const html = path.join(folder, `${name}.html`);
+  const json = path.join(folder, `${name}.json`);
+  execFileSync(tool, [...flags, '--report', html, '--json', json], { stdio: 'ignore' });
+  return { url: pathToFileURL(html).href, result: JSON.parse(fs.readFileSync(json, 'utf8')) };
+}
+
+/** [value, error] from "0.0790 ± 0.0003". */
+function numbersOf(text) {
+  const scaled = /^\((\S+) ± (\S+)\)×10(\S+)$/.exec(text.replace(/−/g, '-'));
+  if (scaled) throw new Error(`a power of ten in ${text}`);
+  return text.replace(/−/g, '-').split(' ± ').map(Number);
+}
+
+test('a comparison shows the numbers of its JSON', async (t) => {
+  const { url, result } = fit(
+    'compared',
+    ...['--data', path.join(datasets, 'coulomb.csv'), '--rig', path.join(datasets, 'textbook_rig.json')],
+    ...['--model', 'viscous,coulomb,drag'],
+  );
+  const page = await openFile(t, url);
+  assert.equal(result.comparison.recommended, 'coulomb');
+  assert.match(await page.locator('.recommendation').textContent(), /coulomb/);
+  const { parameters } = result.fits[1];
+  for (const name of ['inertia', 'viscous', 'coulomb', 'release_time']) {
+    const shown =
+      name === 'release_time' // a circumstance, not a figure of the pendulum: in the table only
+        ? page.locator('#verdict tr', { hasText: name }).locator('td').first()
+        : page.locator(`[data-parameter=${name}] .value`).first();
+    const [value, error] = numbersOf((await shown.textContent()).replace(/\ss$/, ''));
+    const { estimate, std_error: expected } = parameters[name];
+    assert.ok(Math.abs(value - estimate) <= 0.05 * expected, `${name}: ${value} is not ${estimate}`); // 2 digits of the error
+    assert.ok(Math.abs(error - expected) <= 0.05 * expected, `${name}: ± ${error} is not ${expected}`);
+  }
+  const rows = await page.locator('#comparison tbody tr').allTextContents();
+  for (const model of ['viscous', 'coulomb', 'drag']) assert.ok(rows.some((row) => row.includes(model)), model);
+  const [from, to] = await shownRange(page);
+  assert.ok(Math.abs(from) < 0.01 && Math.abs(to - 19.99) < 0.01, `${from} to ${to}`);
+  assert.match(await page.locator('#provenance pre').textContent(), /--model viscous,coulomb,drag/);
+  assert.match(await page.locator('#constancy').textContent(), /constants of the recording/);
+});
+
+test('closed forms alone are shown', async (t) => {
+  const { url } = fit('closed', '--data', path.join(datasets, 'coulomb.csv'), '--closed_form_only');
+  const page = await openFile(t, url);
+  assert.ok((await page.locator('main section').count()) > 2);
+});
+
+/** Every `stride`-th row of a recording, as a file of its own. */
+function thinned(name, stride) {
+  const rows = fs.readFileSync(path.join(datasets, name), 'utf8').trimEnd().split('\n');
+  const first = rows.findIndex((row) => /^[-+.\d]/.test(row));
+  const file = path.join(folder, `every_${stride}_of_${name}`);
+  fs.writeFileSync(file, [...rows.slice(0, first), ...rows.slice(first).filter((_row, i) => i % stride === 0), ''].join('\n'));
+  return file;
+}
+
+test('a recording that is sampled too slowly has the fitted motion between its samples', async (t) => {
+  const data = ['--data', thinned('coulomb.csv', 100), '--rig', path.join(datasets, 'textbook_rig.json')];
+  const { url } = fit('slow', ...data, '--model', 'viscous');
+  const page = await openFile(t, url);
+  // 100 Hz / 100 = 1 Hz; the rig swings at 0.76 Hz (README), so the samples seem to swing at 0.24 Hz.
+  const words = await page.locator('#validation').textContent();
+  assert.match(words, /swings at f = 0\.7[56]\d* Hz and was sampled at fₛ = 1 Hz/);
+  assert.match(words, /= 0\.24\d* Hz/);
+  for (const plot of ['#fit .plot', '#validation .plot', '#phase .plot']) {
+    assert.ok((await ink(page, plot)) > 3000, plot);
+  }
+});
+
+test('a Stribeck fit has its equation and profiles', async (t) => {
+  const { url, result } = fit(
+    'stribeck',
+    ...['--data', path.join(datasets, 'to_rest.csv'), '--model', 'stribeck,asymmetric', '--interval', 'covariance'],
+  );
+  const page = await openFile(t, url);
+  assert.equal(result.fits.length, 2);
+  assert.match(await page.locator('#verdict').textContent(), /asymmetric|stribeck/);
+});
+
+/** Compares all numbers on the page of a joint fit with its JSON. */
+async function assertJoint(t, ...files) {
+  const data = files.map((name) => path.join(datasets, name)).join(',');
+  const { url, result } = fit(`joint_${files.length}`, '--data', data, '--model', 'viscous,coulomb', '--interval', 'covariance');
+  const page = await openFile(t, url);
+  assert.equal(await page.locator('h1').textContent(), `${files.length} recordings, fitted together`);
+  const recommended = result.comparison.recommended;
+  const shown = result.fits.find((one) => one.model === recommended) ?? result.fits.find((one) => one.status === 'converged');
+  assert.equal(await page.locator('[data-forest]').count(), shown.shared.length);
+  // Values are rounded to the last digit of their error, which is at most 1 / 3.55 of the error.
+  for (const name of shown.shared) {
+    const { runs } = shown.homogeneity.parameters[name];
+    const told = [...runs, shown.parameters[name]].filter((one) => one.std_error !== null && one.estimate > 1e-4);
+    for (const one of told) {
+      const row = page.locator(`[data-forest=${name}] tbody tr`).nth(runs.includes(one) ? runs.indexOf(one) : runs.length);
+      const [value, error] = numbersOf(await row.locator('td').first().textContent());
+      assert.ok(Math.abs(value - one.estimate) <= 0.15 * one.std_error, `${name}: ${value} is not ${one.estimate}`);
+      assert.ok(Math.abs(error - one.std_error) <= 0.15 * one.std_error, `${name}: ± ${error} is not ${one.std_error}`);
+    }
+  }
+  const agreement = await page.locator('.agreement').textContent();
+  assert.match(agreement, shown.homogeneity.agrees ? /^They agree/ : /disagree|do not agree/);
+  assert.equal(await page.locator('#recordings table').first().locator('tbody tr').count(), files.length);
+  const provenance = await page.locator('#provenance').textContent();
+  for (const { sha256 } of result.data) assert.ok(provenance.includes(sha256), sha256);
+  const label = await page.locator('#overlay .plot').first().getAttribute('aria-label');
+  assert.match(label, /^Recordings 1(, \d)* and \d, measured and fitted/);
+  return { page, homogeneity: shown.homogeneity };
+}
+
+test('recordings of one rig agree, and the page has the numbers of the JSON', async (t) => {
+  const { page, homogeneity } = await assertJoint(t, 'runs_1.csv', 'runs_2.csv', 'runs_3.csv');
+  assert.equal(homogeneity.agrees, true);
+  assert.equal(await page.locator('#agreement .no, #recordings .no').count(), 0);
+});
+
+test('a recording of another rig among them is marked', async (t) => {
+  const { page, homogeneity } = await assertJoint(t, 'runs_1.csv', 'runs_2.csv', 'runs_3.csv', 'runs_4.csv');
+  assert.deepEqual(homogeneity.disagreeing, [4]);
+  assert.match(await page.locator('.banner.bad').textContent(), /Recording 4 disagrees with the others/);
+  assert.match(await page.locator('#recordings tbody tr').nth(3).textContent(), /^4disagrees/);
+});

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The rows of the forest plot of a shared parameter. */
+
+import type { ForestRow } from '../../shared/forest';
+import type { JointFit, SharedAgreement } from './joint_types';
+
+const kTwoSided95 = 1.96;
+
+type Estimate = Pick<ForestRow, 'estimate' | 'std_error' | 'interval95'>;
+const pick = ({ estimate, std_error, interval95 }: Estimate): Estimate => ({ estimate, std_error, interval95 });
+
+function recordingRows(agreement: SharedAgreement, disagreeing: readonly number[]): ForestRow[] {
+  return agreement.runs.map(({ estimate, std_error, z }, k) => {
+    const reach = estimate !== null && std_error !== null ? kTwoSided95 * std_error : null;
+    return {
+      kind: 'recording',
+      label: `recording ${k + 1}`,
+      disagrees: disagreeing.includes(k + 1),
+      estimate,
+      std_error,
+      interval95: estimate !== null && reach !== null ? [estimate - reach, estimate + reach] : null,
+      z,
+    };
+  });
+}
+
+/** One row for each recording alone, then the joint estimate and the random-effects mean, if they exist. */
+export function forestRows(fit: JointFit, name: string): ForestRow[] {
+  const agreement = fit.homogeneity.parameters[name];
+  const joint = fit.parameters?.[name];
+  const scatter = agreement.random_effects;
+  const rows = recordingRows(agreement, fit.homogeneity.disagreeing);
+  const common = { disagrees: false, z: null };
+  if (joint && joint.estimate !== null)
+    rows.push({ ...common, ...pick(joint), kind: 'joint', label: 'joint fit' });
+  if (scatter && scatter.mean !== null)
+    rows.push({ ...common, ...pick({ ...scatter, estimate: scatter.mean }), kind: 'random', label: 'random effects' });
+  return rows;
+}

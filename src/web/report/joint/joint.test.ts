@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, test } from 'vitest';
+
+import { clipped, forestRange, placeOf, type ForestRow } from '../../shared/forest';
+import { clippedWords, forestSentence } from '../../shared/forest_plot';
+import type { Num, Parameter, Result, Series } from '../../shared/result_types';
+import { forestRows } from './forest_rows';
+import { isJoint, makeJointReport, ownNames, recordingFile, recordingView, showModel, wholeView } from './joint';
+import { disagreement, jointHeadline } from './joint_headline';
+import type { Homogeneity, JointFit, JointResult, JointRun, SharedAgreement } from './joint_types';
+import { beginning, elapsed, originWords, overlay } from './overlay';
+
+const parameter = (estimate: Num, error: Num = null): Parameter =>
+  ({
+    estimate,
+    std_error: error,
+    interval95: estimate === null || error === null ? null : [estimate - 2 * error, estimate + 2 * error],
+    unit: 's',
+  }) as Parameter;
+
+function agreement(runs: [Num, Num][], mean: Num = 2): SharedAgreement {
+  return {
+    unit: 's',
+    statistic: 3,
+    dof: runs.length - 1,
+    p: 0.2,
+    mean: 2,
+    std_error: 0.1,
+    random_effects: { mean, std_error: 0.2, interval95: [1.5, 2.5], between_std_dev: 0.1, between_interval95: [0, 1] },
+    runs: runs.map(([estimate, std_error]) => ({ estimate, std_error, z: 0 })),
+  };
+}
+
+const homogeneity = (more: Partial<Homogeneity> = {}): Homogeneity => ({
+  statistic: 3,
+  dof: 2,
+  p: 0.2,
+  agrees: true,
+  disagreeing: [],
+  verdict: 'the recordings agree on inertia',
+  parameters: { inertia: agreement([[1.9, 0.1], [2, 0.1], [2.2, 0.2]]) },
+  amplitude_dependence: [],
+  ...more,
+});
+
+const run = (k: number): JointRun =>
+  ({
+    path: `f/run${k}.csv`,
+    release: 1,
+    parameters: { inertia: parameter(2, 0.1), release_time: parameter(0.5 + k, 0.01), zero_angle: parameter(0.1 * k) },
+    noise: { lag1_correlation: 0.1 * k },
+    alone: 'converged',
+  }) as unknown as JointRun;
+
+const jointFit = (more: Partial<JointFit> = {}): JointFit =>
+  ({
+    model: 'viscous',
+    status: 'converged',
+    reason: 'a small step',
+    shared: ['inertia'],
+    parameters: { inertia: parameter(2, 0.05) },
+    statistics: { aic: 7 },
+    homogeneity: homogeneity(),
+    runs: [run(0), run(1), run(2)],
+    ...more,
+  }) as unknown as JointFit;
+
+const joint = (fits: JointFit[] = [jointFit()], more: Partial<JointResult> = {}): JointResult =>
+  ({
+    data: [0, 1, 2].map((k) => ({ path: `f/run${k}.csv`, release: 1, clock_scale: 1 + k, window_s: [k, 9] })),
+    calibration: [null, { input: 'counts' }, null],
+    closed_forms: [null, null, null],
+    fits,
+    warnings: [],
+    ...more,
+  }) as unknown as JointResult;
+
+describe('views of a joint fit', () => {
+  test('the result of one recording is not joint', () => {
+    expect(isJoint(joint())).toBe(true);
+    expect(isJoint({ data: { path: 'a' } } as unknown as Result)).toBe(false);
+  });
+
+  test('a recording has its own data, parameters and warnings', () => {
+    const warnings = ['recording 1 (a): x', 'recording 10 (b): y', 'viscous: they disagree', 'recording 2 (c): z', 'each recording: u'];
+    const result = joint([jointFit()], { warnings: warnings.map((message) => ({ code: 'c', message })) });
+    const view = recordingView(result, 1);
+    expect(view.data.path).toBe('f/run1.csv');
+    expect(view.calibration).toEqual({ input: 'counts' });
+    expect(view.fits[0].parameters.release_time.estimate).toBe(1.5);
+    expect(view.fits[0].noise?.lag1_correlation).toBe(0.1);
+    expect(view.warnings.map((warning) => warning.message)).toEqual(['recording 2 (c): z', 'each recording: u']);
+    expect(recordingView(result, 0).warnings.map((warning) => warning.message)).toEqual(['recording 1 (a): x', 'each recording: u']);
+  });
+
+  test('the view of all recordings has the shared parameters and all warnings', () => {
+    const view = wholeView(joint());
+    expect(Object.keys(view.fits[0].parameters)).toEqual(['inertia']);
+    expect([view.fits[0].noise, view.fits[0].closed_form]).toEqual([null, []]);
+  });
+
+  test('another model is shown in all views', () => {
+    const report = makeJointReport(joint([jointFit(), jointFit({ model: 'drag' })]), null, null);
+    showModel(report, 1);
+    expect([report.whole, ...report.recordings].map((view) => view.shown)).toEqual([1, 1, 1, 1]);
+  });
+
+  test('parameters that are not shared belong to each recording', () => {
+    expect(ownNames(jointFit())).toEqual(['release_time', 'zero_angle']);
+    expect(ownNames(jointFit({ runs: [{ parameters: {} } as unknown as JointRun] }))).toEqual([]);
+  });
+
+  test('the number of the free swing is shown for a file with several', () => {
+    const result = joint();
+    expect(recordingFile(result, 2)).toBe('run2.csv');
+    result.data[1].path = result.data[2].path;
+    result.data[1].release = 3;
+    expect(recordingFile(result, 1)).toBe('run2.csv, free swing 3');
+  });
+});
+
+describe('the verdict of a joint fit', () => {
+  const of = (fit: Partial<JointFit>, more: Partial<JointResult> = {}) => {
+    const made = jointFit(fit);
+    return jointHeadline(joint([made], more), made);
+  };
+
+  test('agreement is reported with the number of recordings', () => {
+    expect(of({})).toEqual({
+      level: 'good',
+      title: 'The 3 recordings agree: viscous describes them together',
+      sentence: 'The recordings agree on inertia.',
+    });
+    expect(of({ homogeneity: homogeneity({ agrees: null }) }).level).toBe('caution');
+  });
+
+  test('disagreement is reported before all problems except a refusal', () => {
+    const lack = { warnings: [{ code: 'lack_of_fit', message: 'm' }] };
+    const odd = homogeneity({ agrees: false, disagreeing: [2], verdict: 'they do not' });
+    expect(of({ homogeneity: odd }, lack)).toMatchObject({ level: 'bad', title: 'Recording 2 disagrees with the others' });
+    expect(disagreement(homogeneity({ disagreeing: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
+    const scattered = homogeneity({ agrees: false, verdict: 'they scatter' });
+    expect(of({ homogeneity: scattered })).toMatchObject({ level: 'caution', sentence: 'They scatter.' });
+    expect(of({ homogeneity: scattered, status: 'not_converged', reason: 'no; they scatter' })).toEqual({
+      level: 'bad',
+      title: 'Refused: the recordings are not of one pendulum; these numbers are no result',
+      sentence: 'No; they scatter.',
+    });
+    expect(of({}, lack).title).toMatch(/^Lack of fit: viscous/);
+  });
+
+  test('a fit without a result is reported, with or without agreement', () => {
+    for (const status of ['failed', 'not_converged', 'not_identifiable'] as const)
+      expect(of({ status })).toMatchObject({ level: 'bad', sentence: 'A small step. The recordings agree on inertia.' });
+  });
+});
+
+const rowsOf = (runs: [Num, Num][], more: Partial<JointFit> = {}): ForestRow[] =>
+  forestRows(jointFit({ homogeneity: homogeneity({ parameters: { inertia: agreement(runs) } }), ...more }), 'inertia');
+
+describe('the forest plot', () => {
+  test('has each recording with ±1.96 errors, the joint estimate and the mean of random effects', () => {
+    const rows = rowsOf([[1.9, 0.1], [2, 0.1], [null, null]]);
+    expect(rows.map((row) => row.label)).toEqual([
+      'recording 1',
+      'recording 2',
+      'recording 3',
+      'joint fit',
+      'random effects',
+    ]);
+    expect(rows[0].interval95![0]).toBeCloseTo(1.704, 12);
+    expect(rows[2]).toMatchObject({ estimate: null, interval95: null });
+    expect(rows[3]).toMatchObject({ estimate: 2, interval95: [1.9, 2.1] });
+    expect(rows[4]).toMatchObject({ estimate: 2, interval95: [1.5, 2.5] });
+    expect(forestSentence('moment of inertia', 's', rows)).toBe(
+      'Forest plot of the moment of inertia in s: recording 1 1.90 ± 0.10, recording 2 2.00 ± 0.10, joint fit 2.00 ± 0.05 and random effects 2.00 ± 0.20.',
+    );
+  });
+
+  test('shows intervals of similar length completely', () => {
+    const rows = rowsOf([[1.9, 0.1], [2, 0.1], [2.2, 0.2]]);
+    const [low, high] = forestRange(rows)!;
+    expect(low).toBeLessThan(1.5);
+    expect(high).toBeGreaterThan(2.592); // 2.2 + 1.96 0.2
+    expect(clipped(rows, [low, high])).toEqual([]);
+    expect(clippedWords(rows)).toBe('');
+  });
+
+  test('a recording with a very long interval does not hide the others', () => {
+    const rows = rowsOf([[1.9, 0.01], [2, 0.01], [50, 100]]);
+    const range = forestRange(rows)!;
+    expect(range[1] - range[0]).toBeLessThan(2);
+    expect(placeOf(rows[2], range)).toMatchObject({ at: null, cutLow: true, cutHigh: true, from: 0, to: 1 });
+    expect(clippedWords(rows)).toBe(
+      'The intervals of recording 3 and the random effects are longer than drawn (arrows); the table has them.',
+    );
+  });
+
+  test('places are shares of the axis', () => {
+    const [row] = rowsOf([[2, 1 / 1.96]]);
+    const place = placeOf(row, [0, 4])!;
+    expect([place.from, place.at, place.to].map((share) => share?.toFixed(6))).toEqual(['0.250000', '0.500000', '0.750000']);
+    expect([place.cutLow, place.cutHigh]).toEqual([false, false]);
+  });
+
+  test('there is no plot without estimates, and estimates without errors are points', () => {
+    const nothing = { parameters: {}, homogeneity: homogeneity({ parameters: { inertia: agreement([[null, null]], null) } }) };
+    expect(forestRange(rowsOf([], nothing))).toBeNull();
+    const points = rowsOf([[1, null], [3, null]], { parameters: {} });
+    const range = forestRange(points)!;
+    expect(range[0]).toBeLessThan(1);
+    expect(placeOf(points[0], range)).toMatchObject({ cutLow: false, cutHigh: false });
+  });
+});
+
+describe('recordings in one plot', () => {
+  const series = (unit: string): Series =>
+    ({
+      time_s: [0, 1, 2],
+      measured: [0.1, 0.2, 0.3],
+      unit,
+      models: { viscous: { fitted: [0, 0, 0], residual: null, linear_closed_form: null, nonlinear_closed_form: null } },
+    }) as unknown as Series;
+
+  test('times are true seconds since the release, or since the start of the window', () => {
+    const report = makeJointReport(joint(), null, null);
+    expect([...elapsed(Float64Array.of(1.5, 2.5), report.recordings[1])]).toEqual([0, 2]); // 1 s of this clock is 2 s
+    expect(originWords(report.recordings)).toBe('time since the release [s]');
+    delete report.recordings[2].result.fits[0].parameters.release_time;
+    expect(beginning(report.recordings[2])).toEqual({ time: 2, released: false });
+    expect(originWords(report.recordings)).toMatch(/release or first used sample/);
+    expect(originWords(report.recordings.slice(2))).toBe('time since the first used sample [s]');
+  });
+
+  test('recordings with another unit are left out and listed', () => {
+    const { curves, unit, others } = overlay(makeJointReport(joint(), [series('rad'), series('V'), series('rad')], null));
+    expect([curves.map((curve) => curve.k), unit, others]).toEqual([[0, 2], 'rad', [2]]);
+    expect([...curves[0].measured.time]).toEqual([-0.5, 0.5, 1.5]);
+    expect([...curves[0].residual!.values]).toEqual([0.1, 0.2, 0.3]);
+    expect(curves[0].measured.mark.colour).not.toBe(curves[1].measured.mark.colour);
+    expect(overlay(makeJointReport(joint(), null, null)).curves).toEqual([]);
+  });
+
+  test('fits of one recording keep the clock of its file', () => {
+    const report = makeJointReport(joint(), [series('rad'), series('rad'), series('rad')], null);
+    const { curves } = overlay({ ...report, oneClock: true }, 'fit');
+    for (const curve of curves) expect([...curve.measured.time]).toEqual([0, 1, 2]);
+  });
+});

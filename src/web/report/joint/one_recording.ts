@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The recordings of a joint fit one at a time, with the sections of a report of one recording. */
+
+import { choice, el, text } from '../../shared/dom';
+import { refill } from '../../shared/page';
+import { section } from '../../shared/section';
+import type { Report } from '../report';
+import { closedFormSection } from '../sections/closed_form_section';
+import { constancySection } from '../sections/constancy_section';
+import { envelopeSection } from '../sections/envelope_section';
+import { fitSection } from '../sections/fit_section';
+import { phaseSection } from '../sections/phase_section';
+import { residualSection } from '../sections/residual_section';
+import { validationSection } from '../sections/validation_section';
+import { recordingFile, type JointReport } from './joint';
+
+const kSections: ((report: Report) => HTMLElement | null)[] = [
+  fitSection,
+  validationSection,
+  envelopeSection,
+  phaseSection,
+  residualSection,
+  constancySection,
+  closedFormSection,
+];
+
+/** The sections of the recording that is shown. Their headings have its number. */
+function sectionsOf({ recordings, recording }: JointReport): HTMLElement[] {
+  const made = kSections.flatMap((make) => make(recordings[recording]) ?? []);
+  for (const part of made) {
+    part.querySelector('h2')?.append(el('span', { class: 'which' }, ` · recording ${recording + 1}`));
+  }
+  return made;
+}
+
+/** Radio buttons for the recordings, and the sections of the chosen one. `changed` is called after a choice. */
+export function oneRecordingPart(report: JointReport, changed: () => void): HTMLElement {
+  const sections = el('div', {}, ...sectionsOf(report));
+  const options = report.result.data.map((_data, k) => ({ value: String(k), label: String(k + 1) }));
+  const name = el('p', { class: 'quiet', 'aria-live': 'polite' });
+  const tell = (): void => {
+    const number = report.recording;
+    name.textContent = `Recording ${number + 1}: ${recordingFile(report.result, number)}.`;
+  };
+  tell();
+  const chooser = choice('Recording shown', options, String(report.recording), (value) => {
+    report.recording = Number(value);
+    tell();
+    refill(sections, sectionsOf(report));
+    changed();
+  });
+  chooser.classList.add('recordings');
+  const words = 'The sections below show one recording with its own start and zero, the shared parameters by the joint fit.';
+  return el('div', {}, section('one', 'One recording in detail', text(words), chooser, name), sections);
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Whether inertia and friction stay constant during the recording. */
+
+import { Chart, padded } from '../../shared/chart';
+import { append, el, text } from '../../shared/dom';
+import { sentence } from '../../shared/prose';
+import type { AmplitudeWindow, Constancy, Fit, Num } from '../../shared/result_types';
+import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
+import { extent } from '../../shared/samples';
+import { absent, figure, section } from '../../shared/section';
+import { table, type Column } from '../../shared/table';
+import { spacedUnit, unitText, wordsOf } from '../../shared/units';
+import { shownFit, type Report } from '../report';
+
+type Amplitude = NonNullable<Constancy['amplitude']>;
+
+/** Key of a parameter of a window, and key of its standard error. */
+type Value = (window: AmplitudeWindow) => [Num, Num];
+
+function halvesTable(constancy: Constancy): HTMLElement | null {
+  const { halves } = constancy;
+  if (!halves || halves.rows.length === 0) return null;
+  const number = 'number' as const;
+  const rows = halves.rows.map((row) => [
+    wordsOf(row.parameter),
+    plusMinus(row.first, row.first_std_error) + spacedUnit(row.unit),
+    plusMinus(row.second, row.second_std_error) + spacedUnit(row.unit),
+    row.z === null ? '–' : fixed(row.z, 1),
+  ]);
+  const columns = [
+    { head: 'Parameter' },
+    { head: 'First half', kind: number },
+    { head: 'Second half', kind: number },
+    { head: 'z', kind: number },
+  ];
+  const joint = `All together: χ² = ${significant(halves.statistic, 3)} with ${halves.dof} degrees of freedom, p = ${probabilityText(halves.p)}.`;
+  return el(
+    'div',
+    {},
+    table('Each half of the recording fitted by itself', columns, rows),
+    halves.p !== null && text(joint),
+  );
+}
+
+function windowChart(
+  name: string,
+  unit: string,
+  windows: AmplitudeWindow[],
+  value: Value,
+  whole: Num,
+): HTMLElement | null {
+  const used = windows.filter((w) => w.amplitude_rad !== null && value(w)[0] !== null);
+  if (used.length < 2) return null;
+  const x = used.map((w) => w.amplitude_rad as number);
+  const y = used.map((w) => value(w)[0] as number);
+  const error = used.map((w) => value(w)[1] ?? 0);
+  const [low, high] = [y.map((v, i) => v - error[i]), y.map((v, i) => v + error[i])];
+  const words = `${wordsOf(name)} in ${used.length} windows, against the amplitude there, with standard errors; the line is the whole fit's`;
+  const chart = new Chart({
+    sentence: () =>
+      `${words}. From ${significant(y[0], 4)} at ${significant(x[0], 3)} rad to ${significant(y[y.length - 1], 4)} at ${significant(x[x.length - 1], 3)} rad.`,
+    xLabel: 'amplitude [rad]',
+    yLabel: () => `${wordsOf(name)}${unitText(unit) ? ` [${unitText(unit)}]` : ''}`,
+    xRange: () => padded(extent([x]), 0.08),
+    yRange: () => padded(extent([low, high, whole === null ? [] : [whole]]), 0.12),
+    draw: (painter) => {
+      if (whole !== null) painter.horizontal(whole, 'rule', [5, 4]);
+      painter.errorBars(x, low, high, 'curve-1');
+      painter.dots(x, y, 'curve-1', 3.2);
+    },
+    height: 230,
+  });
+  return figure(sentence(words), chart.host);
+}
+
+/** Inertia and the fitted friction parameter against the amplitude. */
+function windowCharts(fit: Fit, { windows, trends }: Amplitude): HTMLElement {
+  const friction = trends.find((trend) => trend.parameter !== 'inertia')?.parameter;
+  const unitOf = (name: string): string =>
+    fit.parameters[name]?.unit ?? trends.find((trend) => trend.parameter === name)?.unit ?? '1';
+  const whole = (name: string): Num => fit.parameters[name]?.estimate ?? null;
+  const charts = el('div', { class: 'pair' });
+  const inertia: Value = (window) => [window.inertia, window.inertia_std_error];
+  append(charts, [windowChart('inertia', unitOf('inertia'), windows, inertia, whole('inertia'))]);
+  const free: Value = (window) => [window.friction, window.friction_std_error];
+  if (friction) append(charts, [windowChart(friction, unitOf(friction), windows, free, whole(friction))]);
+  return charts;
+}
+
+function trendTable({ trends }: Amplitude): HTMLElement | null {
+  if (trends.length === 0) return null;
+  const columns: Column[] = [
+    { head: 'Parameter' },
+    { head: 'Slope on amplitude²', kind: 'number' },
+    { head: 'Change over the windows', kind: 'number' },
+    { head: 'p', kind: 'number' },
+  ];
+  const rows = trends.map((trend) => [
+    wordsOf(trend.parameter),
+    plusMinus(trend.slope, trend.slope_std_error) +
+      spacedUnit(trend.unit === '1' ? '1/rad^2' : `${trend.unit} / rad^2`),
+    trend.span === null ? '–' : `${significant(100 * trend.span, 2)} %`,
+    probabilityText(trend.p),
+  ]);
+  return table('Trends with amplitude', columns, rows);
+}
+
+function amplitudePart(fit: Fit, { amplitude }: Constancy): HTMLElement | null {
+  if (!amplitude || amplitude.windows.length === 0) return null;
+  return el('div', {}, windowCharts(fit, amplitude), trendTable(amplitude));
+}
+
+export function constancySection(report: Report): HTMLElement | null {
+  const fit = shownFit(report);
+  if (!fit || (fit.constancy === undefined && fit.constancy_reason === undefined)) return null;
+  const title = 'Constant over the recording?';
+  const { constancy } = fit;
+  if (!constancy)
+    return section('constancy', title, absent(sentence(`not tested: ${fit.constancy_reason ?? 'no reason is given'}`)));
+  return section(
+    'constancy',
+    title,
+    el('p', { class: constancy.constant ? '' : 'note' }, el('strong', {}, sentence(constancy.verdict))),
+    constancy.reason && text(sentence(constancy.reason), 'quiet'),
+    halvesTable(constancy),
+    amplitudePart(fit, constancy),
+  );
+}

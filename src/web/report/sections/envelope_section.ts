@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Decay of the amplitudes: turning points, the exponential of the log decrement, and the fitted motion. */
+
+import { Chart, padded, type Range } from '../../shared/chart';
+import { choice, details, el, text } from '../../shared/dom';
+import { kLinear, kMeasured, modelMark, swatch, type Mark } from '../../shared/marks';
+import type { Painter } from '../../shared/painter';
+import { sentence } from '../../shared/prose';
+import type { ClosedForms, Fit } from '../../shared/result_types';
+import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
+import { extent } from '../../shared/samples';
+import { absent, figure, section } from '../../shared/section';
+import { table } from '../../shared/table';
+import { quantityOf, unitText } from '../../shared/units';
+import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf, type Turn } from '../envelope';
+import { rankOf, shownFit, type Report } from '../report';
+
+interface Curve {
+  name: string;
+  mark: Mark;
+  time: number[];
+  amplitude: number[];
+}
+
+function curvesOf(report: Report, fit: Fit | null, turns: Turn[]): Curve[] {
+  const { samples, result } = report;
+  const curves: Curve[] = [];
+  const rate = decrementRate(result);
+  const times = turns.map((turn) => turn.time);
+  if (rate !== null) {
+    const [first, last] = [times[0], times[times.length - 1]];
+    const even = Array.from({ length: 101 }, (_unused, i) => first + ((last - first) * i) / 100);
+    const periods = result.closed_forms?.linear?.periods as unknown;
+    const used = typeof periods === 'number' ? 2 * periods + 1 : undefined;
+    curves.push({
+      name: 'log decrement',
+      mark: kLinear,
+      time: even,
+      amplitude: exponentialThrough(turns, rate, even, used),
+    });
+  }
+  const fitted = fit && samples?.models.get(fit.model)?.fitted;
+  if (fit && samples && fitted) {
+    const own = curveTurns(samples.time, fitted, zeroOf(fit.parameters, result.data.window_s[0]));
+    const from = times[0] - 1e-9 - (times.length > 1 ? 0.3 * (times[1] - times[0]) : 0);
+    const seen = own.filter((turn) => turn.time >= from);
+    curves.push({
+      name: `fitted ${fit.model}`,
+      mark: modelMark(rankOf(report.result, report.shown)),
+      time: seen.map((turn) => turn.time),
+      amplitude: seen.map((turn) => turn.amplitude),
+    });
+  }
+  return curves;
+}
+
+function legend(curves: Curve[]): HTMLElement {
+  const box = el('ul', { class: 'legend', 'aria-label': 'Curves' });
+  for (const { name, mark } of [{ name: 'turning points', mark: kMeasured }, ...curves]) {
+    box.append(el('li', {}, swatch(mark), name));
+  }
+  return box;
+}
+
+function peakTable(turns: Turn[], unit: string): HTMLElement {
+  return table(
+    'Turning points',
+    [{ head: 't [s]' }, { head: `amplitude [${unitText(unit)}]`, kind: 'number' }],
+    turns.map((turn) => [fixed(turn.time, 3), plusMinus(turn.amplitude, turn.error)]),
+  );
+}
+
+/** Which single friction term describes the amplitudes. */
+function shapes(forms: ClosedForms | null): HTMLElement | null {
+  if (!forms || forms.envelopes.length === 0) return null;
+  const rows = forms.envelopes.map((law) => [
+    law.term,
+    law.shape,
+    law.chi_square === null ? '–' : `${significant(law.chi_square, 4)} / ${law.dof}`,
+    probabilityText(law.p),
+  ]);
+  const columns = [
+    { head: 'Friction of one term' },
+    { head: 'Shape of the amplitudes' },
+    { head: 'χ² / degrees of freedom', kind: 'number' as const },
+    { head: 'p', kind: 'number' as const },
+  ];
+  return el(
+    'div',
+    {},
+    forms.envelope && text(sentence(`shape of the amplitudes: ${forms.envelope}`)),
+    table('One term of friction alone', columns, rows),
+  );
+}
+
+class EnvelopePlot {
+  private log = false;
+  private readonly chart: Chart;
+
+  constructor(
+    private readonly turns: Turn[],
+    private readonly curves: Curve[],
+    unit: string,
+  ) {
+    const spans = extent([turns.map((turn) => turn.time), ...curves.map((curve) => curve.time)]);
+    this.chart = new Chart({
+      sentence: () =>
+        `Amplitudes of ${turns.length} turning points from ${significant(turns[0].amplitude, 3)} to ` +
+        `${significant(turns[turns.length - 1].amplitude, 3)} ${unitText(unit)} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
+        `${curves.length > 0 ? `, with ${curves.map((curve) => curve.name).join(' and ')}` : ''}.`,
+      xLabel: 'time [s]',
+      yLabel: () => `amplitude of the ${quantityOf(unit)} [${unitText(unit)}]`,
+      xRange: () => padded(spans, 0.02),
+      yRange: () => this.yRange(),
+      yLog: () => this.log,
+      draw: (painter) => this.draw(painter),
+      height: 300,
+    });
+  }
+
+  private yRange(): Range {
+    const all = [this.turns.map((turn) => turn.amplitude), ...this.curves.map((curve) => curve.amplitude)];
+    if (!this.log) return [0, 1.06 * (extent(all)?.[1] ?? 1)];
+    const top = extent(all)?.[1] ?? 1;
+    const measured = extent([all[0].filter((amplitude) => amplitude > 0)]) ?? [top / 10, top];
+    return [Math.max(measured[0] / 1.3, top * 1e-4), top * 1.15];
+  }
+
+  private draw(painter: Painter): void {
+    const known = this.turns.filter((turn) => turn.error !== null);
+    const least = this.log ? 1e-300 : -Infinity;
+    painter.errorBars(
+      known.map((turn) => turn.time),
+      known.map((turn) => Math.max(least, turn.amplitude - (turn.error ?? 0))),
+      known.map((turn) => turn.amplitude + (turn.error ?? 0)),
+      'measured',
+    );
+    painter.dots(
+      this.turns.map((turn) => turn.time),
+      this.turns.map((turn) => turn.amplitude),
+      'measured',
+      this.turns.length > 120 ? 1.4 : 2.8,
+    );
+    for (const curve of this.curves) painter.line(curve.time, curve.amplitude, curve.mark);
+  }
+
+  element(): HTMLElement {
+    const scales = [
+      { value: 'linear', label: 'linear' },
+      { value: 'log', label: 'logarithmic' },
+    ];
+    const bar = el(
+      'div',
+      { class: 'bar' },
+      legend(this.curves),
+      choice('Amplitude axis', scales, 'linear', (value) => {
+        this.log = value === 'log';
+        this.chart.rebuild();
+      }),
+    );
+    const caption =
+      'Viscous friction alone is a straight line on the logarithmic axis, dry friction alone on the linear one.';
+    return figure(caption, this.chart.host, bar);
+  }
+}
+
+export function envelopeSection(report: Report): HTMLElement {
+  const fit = shownFit(report);
+  const { series, result } = report;
+  const forms = result.closed_forms;
+  const zero = zeroOf(fit?.parameters ?? forms?.decrement?.parameters ?? {}, result.data.window_s[0]);
+  const turns = series ? measuredTurns(series, zero).filter((turn) => Number.isFinite(turn.amplitude)) : [];
+  const title = 'Amplitudes';
+  if (!series) return section('envelope', title, absent('The samples are not part of this report.'), shapes(forms));
+  if (turns.length < 2) {
+    const why = 'No turning points could be located: the samples are too few a swing, or nothing swings.';
+    return section('envelope', title, absent(why), shapes(forms));
+  }
+  const plot = new EnvelopePlot(turns, curvesOf(report, fit, turns), series.unit);
+  return section(
+    'envelope',
+    title,
+    plot.element(),
+    details('Turning points as a table', () => peakTable(turns, series.unit)),
+    shapes(forms),
+  );
+}

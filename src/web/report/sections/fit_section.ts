@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Measured and fitted readings of all models, with their residuals below. */
+
+import { choice, details, el, text, toggle } from '../../shared/dom';
+import { kMeasured, modelMark, swatch } from '../../shared/marks';
+import { keyboardBox, navigationButtons } from '../../shared/navigation';
+import type { Painter } from '../../shared/painter';
+import type { Fit } from '../../shared/result_types';
+import { fixed, significant } from '../../shared/rounding';
+import { lowerBound, medianInterval, rootMeanSquare, type Samples } from '../../shared/samples';
+import { absent, figure, section } from '../../shared/section';
+import { table } from '../../shared/table';
+import { TimeView } from '../../shared/time_view';
+import { inDegrees, quantityOf, unitText, withUnit } from '../../shared/units';
+import { rankOf, shownFit, type Report } from '../report';
+import { TimePlot, type Trace } from '../time_plot';
+
+/** A unit for residuals, and its label. */
+interface ResidualUnit {
+  value: string;
+  label: string;
+  axis: string;
+  factor: number;
+}
+
+const axisLabel = (unit: string): string => `${quantityOf(unit)} [${unitText(unit)}]`;
+
+const kFewPerPeriod = 12; // samples: with fewer, straight lines between them do not look like the motion
+
+/** The fitted readings of fit i: at the samples, or as a smooth curve where samples are few in a period. */
+export function fittedTrace(report: Report, samples: Samples, fit: Fit, i: number): Trace | null {
+  const fitted = samples.models.get(fit.model)?.fitted;
+  if (!fitted) return null;
+  const trace: Trace = {
+    name: fit.model,
+    time: samples.time,
+    values: fitted,
+    mark: modelMark(rankOf(report.result, i)),
+    shown: i === report.shown,
+  };
+  const perPeriod = report.result.data.sampling?.samples_per_period ?? Infinity;
+  if (perPeriod === null || perPeriod >= kFewPerPeriod) return trace;
+  const motion = samples.motions.get(fit.model);
+  return motion ? { ...trace, time: motion.time, values: motion.reading } : trace;
+}
+
+function residualUnits(report: Report, samples: Samples): ResidualUnit[] {
+  const fit = shownFit(report);
+  const own = unitText(samples.unit);
+  const units: ResidualUnit[] = [{ value: 'own', label: own, axis: `residual [${own}]`, factor: 1 }];
+  const degrees = inDegrees(samples.unit);
+  if (degrees)
+    units.push({ value: 'degrees', label: degrees.unit, axis: `residual [${degrees.unit}]`, factor: degrees.factor });
+  const sigma = withUnit(fit?.noise, 'sigma')?.value;
+  if (sigma) units.push({ value: 'sigma', label: 'σ', axis: 'residual [σ]', factor: 1 / sigma });
+  const level = withUnit(report.result.data, 'resolution')?.value;
+  if (level) units.push({ value: 'counts', label: 'counts', axis: 'residual [counts]', factor: 1 / level });
+  return units;
+}
+
+function legend(traces: Trace[], change: (trace: Trace, on: boolean) => void): HTMLElement {
+  const box = el('div', { class: 'legend', role: 'group', 'aria-label': 'Curves shown' });
+  for (const trace of traces) {
+    box.append(toggle([swatch(trace.mark), trace.name], trace.shown, (on) => change(trace, on)));
+  }
+  return box;
+}
+
+/** "t = 3.42 s: measured 0.123 rad, coulomb 0.120 rad" */
+function readout(samples: Samples, traces: Trace[], time: number | null): string {
+  if (time === null) return '\u00a0';
+  const i = Math.min(samples.time.length - 1, lowerBound(samples.time, time));
+  const near = i > 0 && time - samples.time[i - 1] < samples.time[i] - time ? i - 1 : i;
+  const values = traces
+    .filter((trace) => trace.shown && trace.time === samples.time)
+    .map((trace) => `${trace.name} ${significant(trace.values[near], 4)}`);
+  return `t = ${fixed(samples.time[near], 3)} s: ${values.join(', ')} ${unitText(samples.unit)}`;
+}
+
+/** Table of about 50 samples in the visible range. */
+function sampleTable(samples: Samples, traces: Trace[], view: TimeView): HTMLElement {
+  const [from, to] = view.current;
+  const [first, end] = [lowerBound(samples.time, from), lowerBound(samples.time, to + 1e-12)];
+  const stride = Math.max(1, Math.ceil((end - first) / 50));
+  const shown = traces.filter((trace) => trace.time === samples.time);
+  const rows: string[][] = [];
+  for (let i = first; i < end; i += stride) {
+    rows.push([fixed(samples.time[i], 3), ...shown.map((trace) => significant(trace.values[i], 4))]);
+  }
+  const columns = [
+    { head: 't [s]' },
+    ...shown.map((trace) => ({ head: `${trace.name} [${unitText(samples.unit)}]`, kind: 'number' as const })),
+  ];
+  return table(`Every ${stride === 1 ? '' : `${stride}th `}sample of the range shown`, columns, rows);
+}
+
+function makeTraces(report: Report, samples: Samples): { fitted: Trace[]; residual: Trace[] } {
+  const fitted: Trace[] = [
+    { name: 'measured', time: samples.time, values: samples.measured, mark: kMeasured, shown: true },
+  ];
+  const residual: Trace[] = [];
+  report.result.fits.forEach((fit, i) => {
+    const trace = fittedTrace(report, samples, fit, i);
+    if (trace) fitted.push(trace);
+    const values = samples.models.get(fit.model)?.residual;
+    if (!values) return;
+    const mark = { ...modelMark(rankOf(report.result, i)), points: true };
+    residual.push({ name: fit.model, time: samples.time, values, mark, shown: i === report.shown });
+  });
+  return { fitted, residual };
+}
+
+const inWords = ([from, to]: readonly [number, number]): string =>
+  `from ${significant(from, 4)} to ${significant(to, 4)} s`;
+
+const names = (traces: Trace[]): string =>
+  traces
+    .filter((trace) => trace.shown)
+    .map((trace) => trace.name)
+    .join(' and ') || 'nothing';
+
+class FitPlots {
+  readonly view: TimeView;
+  private readonly traces: { fitted: Trace[]; residual: Trace[] };
+  private readonly units: ResidualUnit[];
+  private unit: ResidualUnit;
+  private readonly main: TimePlot;
+  private readonly below: TimePlot | null;
+  private readonly line = el('p', { class: 'readout', 'aria-hidden': 'true' }, '\u00a0');
+
+  constructor(
+    report: Report,
+    private readonly samples: Samples,
+  ) {
+    const { time } = samples;
+    this.view = new TimeView(time[0], time[time.length - 1], 8 * medianInterval(time));
+    if (report.range) this.view.set(...report.range);
+    this.view.onChange(() => (report.range = [...this.view.current]));
+    this.traces = makeTraces(report, samples);
+    this.units = residualUnits(report, samples);
+    this.unit = this.units[0];
+    this.main = this.mainPlot();
+    this.below = this.traces.residual.length > 0 ? this.residualPlot() : null;
+  }
+
+  private onCursor = (time: number | null): void => {
+    this.line.textContent = readout(this.samples, this.traces.fitted, time);
+  };
+
+  private mainPlot(): TimePlot {
+    const degrees = inDegrees(this.samples.unit);
+    return new TimePlot(this.traces.fitted, this.view, {
+      sentence: () =>
+        `${names(this.traces.fitted)}: ${quantityOf(this.samples.unit)} over time ${inWords(this.view.current)}.`,
+      xLabel: '',
+      yLabel: () => axisLabel(this.samples.unit),
+      right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
+      aligned: degrees ? 'with right axis' : 'without',
+      height: 330,
+      onCursor: this.onCursor,
+    });
+  }
+
+  private residualPlot(): TimePlot {
+    const size = (): string => {
+      const shown = this.traces.residual.find((trace) => trace.shown);
+      return shown
+        ? `, ${significant(this.unit.factor * rootMeanSquare(shown.values), 3)} ${this.unit.label} root mean square`
+        : '';
+    };
+    const wide = inDegrees(this.samples.unit) !== null;
+    return new TimePlot(this.traces.residual, this.view, {
+      sentence: () =>
+        `Residuals (measured minus fitted) of ${names(this.traces.residual)} over time ${inWords(this.view.current)}${size()}.`,
+      xLabel: 'time [s]',
+      yLabel: () => this.unit.axis,
+      aligned: wide ? 'with right axis' : 'without',
+      height: 190,
+      symmetric: true,
+      factor: () => this.unit.factor,
+      behind: (painter: Painter) => painter.horizontal(0, 'rule'),
+      onCursor: this.onCursor,
+    });
+  }
+
+  /** Shows or hides a model and its residuals. */
+  private change = (trace: Trace, on: boolean): void => {
+    this.main.setShown(trace, on);
+    const residual = this.traces.residual.find((other) => other.name === trace.name);
+    if (residual) this.below?.setShown(residual, on);
+  };
+
+  private setUnit = (value: string): void => {
+    this.unit = this.units.find((unit) => unit.value === value) ?? this.units[0];
+    this.below?.chart.rebuild();
+  };
+
+  element(): HTMLElement {
+    const bar = el('div', { class: 'bar' }, legend(this.traces.fitted, this.change), navigationButtons(this.view));
+    const box = keyboardBox('Measured and fitted, and residuals', this.view, this.main.chart.host);
+    if (this.below)
+      box.append(
+        el(
+          'div',
+          { class: 'bar residual' },
+          el('h3', {}, 'Residuals: measured − fitted'),
+          choice('in', this.units, this.unit.value, this.setUnit),
+        ),
+        this.below.chart.host,
+      );
+    box.append(this.line);
+    const hint = 'Drag to zoom, double click to show all; Shift and drag, or a finger, moves.';
+    const dense = 'Where samples lie closer than pixels, each column shows the least and the largest.';
+    const many = this.samples.time.length > 2000 && ` ${dense}`;
+    const caption = el('span', {}, el('span', { class: 'hint' }, hint), many);
+    return el(
+      'div',
+      {},
+      figure(caption, box, bar),
+      details('Samples as a table', () => sampleTable(this.samples, this.traces.fitted, this.view)),
+    );
+  }
+}
+
+export function fitSection(report: Report): HTMLElement {
+  const title = 'Measured and fitted';
+  if (!report.samples)
+    return section('fit', title, absent('The samples are not part of this report, so there is nothing to draw.'));
+  const onlyMeasured = report.result.fits.every((fit) => !report.samples?.models.get(fit.model)?.fitted);
+  return section(
+    'fit',
+    title,
+    onlyMeasured && text('There is no fitted motion to compare with.', 'absent'),
+    new FitPlots(report, report.samples).element(),
+  );
+}

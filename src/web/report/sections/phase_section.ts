@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Phase portrait of the fitted motion. */
+
+import { Chart, padded } from '../../shared/chart';
+import { modelMark } from '../../shared/marks';
+import type { Fit } from '../../shared/result_types';
+import { significant } from '../../shared/rounding';
+import { extent, medianInterval } from '../../shared/samples';
+import { absent, figure, section } from '../../shared/section';
+import { unitText } from '../../shared/units';
+import { zeroOf } from '../envelope';
+import { centralDifferences, thinned } from '../phase';
+import { isAliased, rankOf, shownFit, type Report } from '../report';
+
+const kMostPoints = 20_000;
+
+/** Angle and rate of the fitted motion. Where the series has no motion, the samples show it: their fitted values are used. */
+function portrait(report: Report, fit: Fit): { angle: Float64Array; rate: Float64Array } | null {
+  const { samples, result } = report;
+  const fitted = samples?.models.get(fit.model)?.fitted;
+  const motion = samples?.motions.get(fit.model);
+  if (motion) return { angle: thinned(motion.angle, kMostPoints), rate: thinned(motion.rate, kMostPoints) };
+  if (!samples || !fitted || samples.unit === 'rad/s' || isAliased(report)) return null;
+  const zero = zeroOf(fit.parameters, result.data.window_s[0]);
+  const angle = fitted.map((value, i) => value - zero(samples.time[i]));
+  const rate = centralDifferences(samples.time, angle, 3 * medianInterval(samples.time));
+  return { angle: thinned(angle, kMostPoints), rate: thinned(rate, kMostPoints) };
+}
+
+export function phaseSection(report: Report): HTMLElement {
+  const fit = shownFit(report);
+  const path = fit && report.samples ? portrait(report, fit) : null;
+  const angles = path && extent([path.angle]);
+  const rates = path && extent([path.rate]);
+  if (!fit || !path || !angles || !rates) {
+    return section(
+      'phase',
+      'Phase portrait',
+      absent('There is no fitted angle to draw against its rate: the sensor gives no angle, or there is no fit.'),
+    );
+  }
+  const start = fit.parameters.release_angle ?? fit.parameters.initial_angle;
+  const unit = unitText(start?.unit ?? 'rad');
+  const most = (range: readonly [number, number]): number => Math.max(-range[0], range[1]);
+  const chart = new Chart({
+    sentence: () =>
+      `Rate against angle of the fitted motion: a spiral from angles up to ${significant(most(angles), 3)} ${unit} ` +
+      `and rates up to ${significant(most(rates), 3)} ${unit}/s towards rest at the origin.`,
+    xLabel: `angle from the zero [${unit}]`,
+    yLabel: () => `rate [${unit}/s]`,
+    xRange: () => padded([-most(angles), most(angles)]),
+    yRange: () => padded([-most(rates), most(rates)]),
+    draw: (painter) => {
+      painter.horizontal(0, 'rule');
+      painter.vertical(0, 'rule');
+      painter.line(path.angle, path.rate, { ...modelMark(rankOf(report.result, report.shown)), dash: [], width: 1 });
+    },
+    height: 340,
+  });
+  const element = section('phase', 'Phase portrait', figure(`Fitted ${fit.model}, angle against rate.`, chart.host));
+  element.classList.add('half');
+  return element;
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Whether the residuals are noise: autocorrelation, histogram and tests. */
+
+import { Chart, padded } from '../../shared/chart';
+import { details, el, text } from '../../shared/dom';
+import type { Fit } from '../../shared/result_types';
+import { probabilityText, significant } from '../../shared/rounding';
+import { absent, figure, section } from '../../shared/section';
+import { facts, table, type Cell } from '../../shared/table';
+import { inDegrees, unitText, withUnit } from '../../shared/units';
+import { autocorrelation } from '../autocorrelation';
+import { histogram, normalDensity, type Histogram } from '../histogram';
+import { shownFit, type Report } from '../report';
+
+const kLags = 100;
+const kNormal95 = 1.96;
+
+function autocorrelationPart(residual: Float64Array): HTMLElement {
+  const { r, used } = autocorrelation(residual, kLags);
+  if (r.length < 2) return absent('The residuals do not vary, so nothing can be said of their memory.');
+  const limit = kNormal95 / Math.sqrt(used);
+  const lags = r.map((_value, k) => k);
+  const beyond = r.slice(1).filter((value) => Math.abs(value) > limit).length;
+  const low = Math.min(-2 * limit, ...r) * 1.15;
+  const share = `${beyond} of ${r.length - 1} lags lie beyond ±${significant(limit, 2)}, where 95 % of those of white noise lie within`;
+  const chart = new Chart({
+    sentence: () => `Autocorrelation of the residuals: ${share}.`,
+    xLabel: 'lag [samples]',
+    yLabel: () => 'autocorrelation',
+    xRange: () => [0, r.length],
+    yRange: () => [low, Math.max(3 * limit, ...r.slice(1)) * 1.15],
+    draw: (painter) => {
+      painter.band(-limit, limit, 'band');
+      painter.horizontal(0, 'rule');
+      painter.bars(
+        lags.slice(1).map((k) => k - 0.35),
+        lags.slice(1).map((k) => k + 0.35),
+        r.slice(1),
+        'curve-1',
+      );
+    },
+    height: 240,
+  });
+  const rows = (): HTMLElement =>
+    table(
+      'Autocorrelation by lag',
+      [{ head: 'Lag' }, { head: 'r', kind: 'number' }],
+      r.slice(1, 21).map((value, i) => [String(i + 1), significant(value, 3)]),
+    );
+  return el('div', {}, figure(`Autocorrelation: ${share}.`, chart.host), details('First lags as a table', rows));
+}
+
+function normalCurve(bars: Histogram): { x: number[]; y: number[] } {
+  const [low, high] = [bars.start, bars.start + bars.width * bars.counts.length];
+  const x = Array.from({ length: 161 }, (_unused, i) => low + ((high - low) * i) / 160);
+  return { x, y: x.map((value) => normalDensity(value, bars.mean, bars.deviation)) };
+}
+
+function histogramPart(residual: Float64Array, unit: string): HTMLElement {
+  const bars = histogram(residual);
+  if (!bars) return absent('The residuals do not vary, so they have no distribution to draw.');
+  const left = bars.counts.map((_count, i) => bars.start + i * bars.width);
+  const right = left.map((x) => x + bars.width);
+  const curve = normalCurve(bars);
+  const sentence =
+    `Residuals from ${significant(left[0], 2)} to ${significant(right[right.length - 1], 2)} ${unitText(unit)}, ` +
+    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, beside the normal curve of that width`;
+  const chart = new Chart({
+    sentence: () => `Histogram. ${sentence}.`,
+    xLabel: `residual [${unitText(unit)}]`,
+    yLabel: () => `density [1/${unitText(unit)}]`,
+    xRange: () => padded([left[0], right[right.length - 1]], 0.02),
+    yRange: () => [0, 1.08 * Math.max(...bars.density, ...curve.y)],
+    draw: (painter) => {
+      painter.bars(left, right, bars.density, 'bar');
+      painter.line(curve.x, curve.y, { colour: 'curve-2', dash: [7, 4], width: 1.75 });
+    },
+    height: 240,
+  });
+  const rows = (): HTMLElement =>
+    table(
+      'Residuals by size',
+      [{ head: `From [${unitText(unit)}]` }, { head: 'To', kind: 'number' }, { head: 'Samples', kind: 'number' }],
+      bars.counts.map((count, i) => [significant(left[i], 3), significant(right[i], 3), String(count)]),
+    );
+  return el('div', {}, figure(`${sentence} (dashed).`, chart.host), details('Bars as a table', rows));
+}
+
+/** Root mean square and tests of the residuals. */
+function numbers(fit: Fit): HTMLElement | null {
+  const { statistics, noise } = fit;
+  if (!statistics || !noise) return null;
+  const sized = (found: { value: number; unit: string } | null): Cell => {
+    if (!found) return '–';
+    const degrees = inDegrees(found.unit);
+    const other = degrees ? ` (${significant(found.value * degrees.factor, 3)}${degrees.unit})` : '';
+    return `${significant(found.value, 4)} ${unitText(found.unit)}${other}`;
+  };
+  return facts([
+    ['root mean square', sized(withUnit(statistics, 'rms_residual'))],
+    ['noise σ of a sample', sized(withUnit(noise, 'sigma'))],
+    ['correlation of neighbours', significant(noise.lag1_correlation, 3)],
+    ['memory', noise.correlation],
+    ['Durbin–Watson (2: none)', significant(statistics.durbin_watson, 4)],
+    ['Ljung–Box p', probabilityText(statistics.ljung_box_p)],
+    ['runs of signs p', probabilityText(statistics.runs_p)],
+    ['effective samples', significant(statistics.effective_samples, 5)],
+  ]);
+}
+
+export const kResidualsTitle = 'Are the residuals noise?';
+
+export function residualSection(report: Report): HTMLElement {
+  const fit = shownFit(report);
+  if (!fit) return section('residuals', kResidualsTitle, absent('Without a fit there are no residuals.'));
+  const residual = report.samples?.models.get(fit.model)?.residual;
+  const plots =
+    residual && report.samples
+      ? el('div', { class: 'pair' }, autocorrelationPart(residual), histogramPart(residual, report.samples.unit))
+      : absent('The residuals are not part of this report.');
+  return section('residuals', kResidualsTitle, numbers(fit) ?? text('There are no statistics of this fit.', 'absent'), plots);
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Measured, fitted and textbook motion in one plot; for slow sampling the apparent swing. */
+
+import { el, text, toggle } from '../../shared/dom';
+import { kApparent, kLinear, kMeasured, kNonlinear, modelMark, swatch } from '../../shared/marks';
+import { keyboardBox, navigationButtons } from '../../shared/navigation';
+import type { Fit, Sampling } from '../../shared/result_types';
+import { significant } from '../../shared/rounding';
+import { medianInterval, rootMeanSquare, type Samples } from '../../shared/samples';
+import { absent, figure, section } from '../../shared/section';
+import { table } from '../../shared/table';
+import { TimeView } from '../../shared/time_view';
+import { inDegrees, quantityOf, unitText } from '../../shared/units';
+import { apparentFrequency, apparentSwing } from '../aliasing';
+import { curveTurns, zeroOf } from '../envelope';
+import { isAliased, rankOf, shownFit, type Report } from '../report';
+import { TimePlot, type Trace } from '../time_plot';
+
+/** Time zero of the plot, s on the file's clock: the release, or the start of the window. */
+function origin(report: Report, fit: Fit): { time: number; words: string } {
+  const release = fit.parameters.release_time?.estimate;
+  if (typeof release === 'number') return { time: release, words: 'time since the release [s]' };
+  return { time: report.result.data.window_s[0], words: 'time since the start of the window [s]' };
+}
+
+const sampling = (report: Report): Sampling | null => report.result.data.sampling ?? null;
+
+function difference(a: Float64Array, b: Float64Array): number {
+  return rootMeanSquare(a.map((value, i) => value - b[i]));
+}
+
+function rmsTable(samples: Samples, curves: Trace[]): HTMLElement {
+  const degrees = inDegrees(samples.unit);
+  const rows = curves.map((curve) => {
+    const rms = difference(samples.measured, curve.values);
+    const other = degrees ? ` (${significant(rms * degrees.factor, 3)}${degrees.unit})` : '';
+    return [[swatch(curve.mark), curve.name], `${significant(rms, 3)} ${unitText(samples.unit)}${other}`];
+  });
+  return table(
+    'How far each motion is from the readings',
+    [{ head: 'Motion' }, { head: 'Root mean square difference', kind: 'number' }],
+    rows,
+  );
+}
+
+function closedFormTraces(report: Report, samples: Samples, fit: Fit): Trace[] {
+  const model = samples.models.get(fit.model);
+  const candidates: [string, Float64Array | null | undefined, Trace['mark']][] = [
+    ['linear closed form', model?.linear, kLinear],
+    ['nonlinear, same numbers', model?.nonlinear, kNonlinear],
+    [`fitted ${fit.model}`, model?.fitted, modelMark(rankOf(report.result, report.shown))],
+  ];
+  return candidates.flatMap(([name, values, mark]) =>
+    values ? [{ name, time: samples.time, values, mark, shown: true }] : [],
+  );
+}
+
+interface Slow {
+  traces: Trace[];
+  words: string;
+}
+
+/** The fitted swing and the slower apparent one. Null if the motion is unknown. */
+function slowTraces(report: Report, samples: Samples, fit: Fit): Slow | null {
+  const motion = samples.motions.get(fit.model);
+  const rate = sampling(report)?.rate_hz;
+  if (!motion || !rate) return null;
+  const zero = zeroOf(fit.parameters, report.result.data.window_s[0]);
+  const about = motion.reading.map((value, i) => value - zero(motion.time[i]));
+  const turns = curveTurns(motion.time, about, () => 0);
+  if (turns.length < 3) return null;
+  const frequency = (turns.length - 1) / (2 * (turns[turns.length - 1].time - turns[0].time));
+  const { apparent, cycles } = apparentFrequency(frequency, rate);
+  const firstSign = Math.sign(about[motion.time.findIndex((t) => t >= turns[0].time)]);
+  const slow = apparentSwing(turns, firstSign, motion.time, cycles, rate, samples.time[0]);
+  const traces: Trace[] = [
+    {
+      name: 'true swing, fitted',
+      time: motion.time,
+      values: motion.reading,
+      mark: modelMark(rankOf(report.result, report.shown)),
+      shown: true,
+    },
+    { name: 'apparent swing', time: motion.time, values: slow.map((value, i) => value + zero(motion.time[i])), mark: kApparent, shown: true },
+  ];
+  const words =
+    `The pendulum swings at f = ${significant(frequency, 4)} Hz and was sampled at fₛ = ${significant(rate, 4)} Hz. ` +
+    `The samples lie just as well on a swing of |f − ${cycles === 1 ? '' : `${cycles} `}fₛ| = ${significant(apparent, 4)} Hz, which is what a plot of them seems to show.`;
+  return { traces, words };
+}
+
+function moved(traces: Trace[], by: number): Trace[] {
+  const clocks = new Map<Float64Array, Float64Array>();
+  return traces.map((trace) => {
+    if (!clocks.has(trace.time))
+      clocks.set(
+        trace.time,
+        trace.time.map((t) => t - by),
+      );
+    return { ...trace, time: clocks.get(trace.time)! };
+  });
+}
+
+const kManySwings = 30;
+const kFirstSwings = 12;
+
+/** Shows only the first swings if there are many, so that differences can be seen. A button shows all. */
+function firstView(time: Float64Array, report: Report): TimeView {
+  const [from, to] = [time[0], time[time.length - 1]];
+  const view = new TimeView(from, to, 8 * medianInterval(time));
+  const frequency = sampling(report)?.frequency_hz;
+  const many = isAliased(report) ? kFirstSwings + 2 : kManySwings;
+  if (frequency && (to - from) * frequency > many) view.set(Math.max(from, -1 / frequency), kFirstSwings / frequency);
+  return view;
+}
+
+function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], sentence: string): HTMLElement {
+  const { time: start, words } = origin(report, fit);
+  const measured: Trace = {
+    name: 'measured',
+    time: samples.time,
+    values: samples.measured,
+    mark: kMeasured,
+    shown: true,
+  };
+  const traces = moved([measured, ...curves], start);
+  const view = firstView(traces[0].time, report);
+  const degrees = inDegrees(samples.unit);
+  const plot = new TimePlot(traces, view, {
+    sentence: () => sentence,
+    xLabel: words,
+    yLabel: () => `${quantityOf(samples.unit)} [${unitText(samples.unit)}]`,
+    right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
+    height: 300,
+    behind: (painter) => painter.vertical(0, 'rule', [3, 3]),
+  });
+  const legend = el('div', { class: 'legend', role: 'group', 'aria-label': 'Curves shown' });
+  for (const trace of traces) {
+    legend.append(toggle([swatch(trace.mark), trace.name], true, (on) => plot.setShown(trace, on)));
+  }
+  const bar = el('div', { class: 'bar' }, legend, navigationButtons(view));
+  const rest = ' The first swings are shown; Show all has the rest.';
+  const caption = el('span', {}, sentence, !view.whole && el('span', { class: 'hint' }, rest));
+  return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.host), bar);
+}
+
+function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | null {
+  const slow = slowTraces(report, samples, fit);
+  if (!slow) return null;
+  return el(
+    'div',
+    {},
+    text(slow.words),
+    overlay(
+      report,
+      samples,
+      fit,
+      slow.traces,
+      'Samples, the swing that was fitted to them, and the slower one that they seem to show.',
+    ),
+  );
+}
+
+export function validationSection(report: Report): HTMLElement {
+  const fit = shownFit(report);
+  const { samples } = report;
+  const title = 'Against the textbook';
+  if (!fit || !samples)
+    return section(
+      'validation',
+      title,
+      absent('Without a fit and its samples there is nothing to lay over each other.'),
+    );
+  if (isAliased(report)) {
+    const part = slowPart(report, samples, fit);
+    const why =
+      'The swing is sampled less than twice a period; for this model the motion between the samples cannot be drawn here.';
+    return section('validation', 'Sampled too slowly: true and apparent swing', part ?? absent(why));
+  }
+  const curves = closedFormTraces(report, samples, fit);
+  if (curves.length < 2)
+    return section('validation', title, absent('There are no closed forms of this recording to lay over it.'));
+  const sentence =
+    'Measured motion, the linear closed form, the nonlinear equation with the same textbook numbers, and the fit, from the release on.'.replace(
+      'release',
+      fit.parameters.release_time ? 'release' : 'start of the window',
+    );
+  return section('validation', title, overlay(report, samples, fit, curves, sentence), rmsTable(samples, curves));
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+/** JSON of the service's answers. The result of a fit is in shared/result_types.ts. */
+
+import type { Loose, Num, Status } from '../shared/result_types';
+
+export interface ItemParameter {
+  estimate: Num;
+  std_error: Num;
+  unit: string;
+}
+
+export interface ItemModel {
+  model: string;
+  status: Status;
+  reason: string;
+  rms_residual: Num;
+  residual_unit: string;
+  parameters: Record<string, ItemParameter>;
+}
+
+/** A fit in the list of fits. */
+export interface FitItem {
+  id: string;
+  name: string;
+  created: string;
+  batch: string | null;
+  state: 'done' | 'waiting';
+  exit_code: number | null;
+  reason: string;
+  recommended: string | null;
+  models: ItemModel[];
+}
+
+export interface FitList {
+  fits: FitItem[];
+  /** Cursor of the next page. */
+  next: string | number | null;
+}
+
+export type Flags = Record<string, string>;
+
+export interface FitRequest {
+  id: string;
+  name: string;
+  created: string;
+  batch: string | null;
+  options: Flags;
+  rig: Loose | null;
+  calibration: Loose | null;
+  data_sha256: string;
+}
+
+/** The whole recording, reduced to at most 4000 samples. */
+export interface WholeRecording {
+  time_s: number[];
+  measured: Num[];
+  unit: string;
+  samples: number;
+}
+
+export interface BatchRun {
+  id: string;
+  name: string;
+  state: 'done' | 'waiting';
+  exit_code: number | null;
+  reason: string;
+}
+
+export interface Batch {
+  id: string;
+  created: string;
+  state: 'running' | 'done';
+  runs: number;
+  done: number;
+  failed: number;
+  fits: BatchRun[];
+}
+
+/** A finished run of a batch. */
+export interface BatchProgress {
+  id: string;
+  name: string;
+  exit_code: number | null;
+  reason: string;
+  done: number;
+  failed: number;
+  runs: number;
+}
+
+export interface ModelInfo {
+  name: string;
+  label: string;
+  about: string;
+  equation: string;
+}
+
+export interface Example {
+  name: string;
+  title: string;
+  about: string;
+  models: string | string[];
+  has_rig: boolean;
+}
+
+export interface ExampleData extends Omit<Example, 'has_rig'> {
+  recording: string;
+  rig: Loose | null;
+}
+
+export interface CalibrationPoint {
+  reading: number;
+  angle: number;
+  fitted: number;
+  residual: number;
+  left_out: Num;
+}
+
+export interface CalibrationAnswer {
+  calibration: Loose & { coefficients: number[]; input: string; angle_unit: string; residual_std_dev: Num };
+  order: number;
+  points: CalibrationPoint[];
+  leave_one_out_rms: Num;
+  text: string;
+}
+
+export interface LiveState {
+  state: 'waiting' | 'recording' | 'ended';
+  name: string;
+  samples: number;
+  unit: string;
+  rate_hz: Num;
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+/** A batch: its runs, as they are finished. */
+
+import { button, el, text } from '../../shared/dom';
+import { confirmed } from '../dialog';
+import { follow } from '../follow';
+import { go } from '../router';
+import { comparePath, kMostCompared } from '../routes';
+import { selectionBar } from '../selection';
+import { ask, askJson } from '../server/api';
+import type { ServerEvent } from '../server/sse';
+import type { Place, View } from '../shell';
+import type { Batch, BatchProgress, BatchRun, FitItem, FitList } from '../types';
+import { pause } from '../waiting';
+import { fitRow, fitTable } from './fit_rows';
+import { alertPlace, attempt, showProblem } from './problem_view';
+
+const kMostRows = 500;
+const kPage = 100;
+const kLeastPause = 0.4; // s between two requests for the numbers of finished runs
+
+/** A run that is not finished yet. */
+const itemOf = (run: BatchRun, { id, created }: Batch): FitItem => ({
+  ...run,
+  created,
+  batch: id,
+  recommended: null,
+  models: [],
+});
+
+const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? '' : 's'}`;
+
+/** "3 of 12 recordings fitted, 1 could not be fitted" */
+export function progressWords({ runs, done, failed }: Pick<Batch, 'runs' | 'done' | 'failed'>): string {
+  const fitted = `${done - failed} of ${counted(runs, 'recording')} fitted`;
+  return failed === 0 ? `${fitted}.` : `${fitted}, ${failed} could not be fitted.`;
+}
+
+class BatchView {
+  private readonly table = fitTable('Recordings in the order they were sent', false);
+  private readonly chosen = selectionBar();
+  private readonly bar = el('progress', { 'aria-label': 'Recordings done' });
+  private readonly words = text('');
+  private readonly problems = alertPlace();
+  private readonly connection = text('', 'quiet');
+  private readonly rows = new Map<string, HTMLElement>();
+  private readonly full = new Set<string>();
+  private done = 0;
+  private changed = false;
+  private over = false;
+
+  constructor(
+    private readonly place: Place,
+    private readonly path: string,
+    private readonly batch: Batch,
+  ) {
+    this.words.setAttribute('role', 'status');
+    for (const run of batch.fits.slice(0, kMostRows)) this.put(itemOf(run, batch));
+  }
+
+  private put(item: FitItem): void {
+    const row = fitRow(item, this.chosen.selection, false);
+    const old = this.rows.get(item.id);
+    if (old) old.replaceWith(row);
+    else if (this.rows.size < kMostRows) this.table.body.append(row);
+    else return;
+    this.rows.set(item.id, row);
+  }
+
+  /** Updates the progress. Events begin with runs that were finished earlier; the displayed count never decreases. */
+  private tell(state: Pick<Batch, 'runs' | 'done' | 'failed'>): void {
+    if (state.done < this.done) return;
+    this.done = state.done;
+    this.bar.max = Math.max(1, state.runs);
+    this.bar.value = state.done;
+    this.words.textContent = progressWords(state);
+  }
+
+  private take = ({ event, data }: ServerEvent): boolean => {
+    if (event === 'done') {
+      this.tell(JSON.parse(data) as BatchProgress);
+      this.over = true;
+      return true;
+    }
+    if (event !== 'fit') return false;
+    const progress = JSON.parse(data) as BatchProgress;
+    this.tell(progress);
+    this.changed = true;
+    const { id, name, exit_code, reason } = progress;
+    if (!this.full.has(id)) this.put(itemOf({ id, name, exit_code, reason, state: 'done' }, this.batch));
+    return false;
+  };
+
+  /** Requests the numbers of finished runs from time to time, until all are finished. */
+  private async fillNumbers(): Promise<void> {
+    for (let last = false; !last; await pause(kLeastPause, this.place.signal)) {
+      last = this.over;
+      if (!this.changed && !last) continue;
+      this.changed = false;
+      let next: FitList['next'] = '';
+      for (let seen = 0; next !== null && seen < kMostRows; seen += kPage) {
+        const query = new URLSearchParams({ batch: this.batch.id, limit: String(kPage) });
+        if (next !== '') query.set('before', String(next));
+        const list: FitList = await askJson<FitList>(`/v1/fits?${query}`, { signal: this.place.signal });
+        for (const item of list.fits) this.fill(item);
+        next = list.next;
+      }
+    }
+  }
+
+  /** Shows the numbers of a finished run. */
+  private fill(item: FitItem): void {
+    if (item.state !== 'done' || !this.rows.has(item.id) || this.full.has(item.id)) return;
+    this.full.add(item.id);
+    this.put(item);
+  }
+
+  private actions(): HTMLElement {
+    const { batch } = this;
+    const remove = button('Delete all', () => void this.remove(remove), { class: 'danger' });
+    const all = button('Compare all', () => go(comparePath([...this.rows.keys()])));
+    all.hidden = batch.runs < 2 || batch.runs > kMostCompared;
+    return el('div', { class: 'actions' }, all, remove);
+  }
+
+  private async remove(control: HTMLButtonElement): Promise<void> {
+    const what = `Delete all ${counted(this.batch.runs, 'recording')}?`;
+    if (!(await confirmed(what, 'What waits is not fitted any more, and the fits of this batch go too.', 'Delete')))
+      return;
+    await attempt(control, this.problems, async () => {
+      await ask(this.path, { method: 'DELETE', signal: this.place.signal });
+      go('/fits', true);
+    });
+  }
+
+  async show(): Promise<void> {
+    const { main, signal } = this.place;
+    const { runs } = this.batch;
+    const few =
+      runs > kMostRows && text(`The first ${kMostRows} are listed here; “Past fits” has all of them.`, 'quiet');
+    main.append(
+      this.words,
+      this.bar,
+      this.connection,
+      this.problems,
+      this.actions(),
+      this.chosen.bar,
+      this.table.element,
+    );
+    if (few) main.append(few);
+    this.tell(this.batch);
+    const connected = (): void => void (this.connection.textContent = '');
+    const lost = (s: number): void =>
+      void (this.connection.textContent = `The connection broke off; next attempt in ${Math.ceil(s)} s.`);
+    const following = follow(`${this.path}/events`, { take: this.take, connected, lost }, signal);
+    await Promise.all([following, this.fillNumbers()]).catch((error: unknown) => {
+      if (!signal.aborted) showProblem(this.problems, error);
+    });
+  }
+}
+
+export const batchView =
+  (id: string): View =>
+  async (place) => {
+    place.name('Several recordings');
+    const path = `/v1/batches/${encodeURIComponent(id)}`;
+    const batch = await askJson<Batch>(path, { signal: place.signal });
+    place.name(`${counted(batch.runs, 'recording')}`);
+    await new BatchView(place, path, batch).show();
+  };

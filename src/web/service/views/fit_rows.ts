@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Fits as rows of a table, which becomes a list of cards on a narrow page. */
+
+import { append, el, symbolElement, type Child } from '../../shared/dom';
+import { typeset } from '../../shared/prose';
+import { plusMinus } from '../../shared/rounding';
+import { symbolOf, unitText } from '../../shared/units';
+import { fitPath } from '../routes';
+import type { FitItem, ItemModel } from '../types';
+
+/** The parameters that a list shows, and their headings. */
+export const kParameters = [
+  ['inertia', 'Inertia'],
+  ['viscous', 'Viscous'],
+  ['coulomb', 'Dry'],
+] as const;
+
+/** The recommended model of a fit, else the first that converged, else the first. */
+export function mainModel(item: Pick<FitItem, 'recommended' | 'models'>): ItemModel | null {
+  const { models, recommended } = item;
+  const found =
+    models.find((model) => model.model === recommended) ?? models.find((model) => model.status === 'converged');
+  return found ?? models[0] ?? null;
+}
+
+/** "0.0790 ± 0.0028" and "kg m²", "G s²" without a rig; "–" if the model has no such parameter. */
+export function parameterWords(model: ItemModel | null, name: string): { value: string; unit: string } {
+  const parameter = model?.parameters?.[name];
+  if (!parameter || parameter.estimate === null) return { value: '–', unit: '' };
+  const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'G' : '';
+  const unit = [overG, unitText(parameter.unit)].filter((part) => part !== '').join('\u00a0');
+  return { value: plusMinus(parameter.estimate, parameter.std_error), unit };
+}
+
+function parameterCell(model: ItemModel | null, name: string, label: string): HTMLElement {
+  const { value, unit } = parameterWords(model, name);
+  return cell(label, value, ' ', unit !== '' && el('small', {}, unit));
+}
+
+export type State = 'good' | 'caution' | 'bad' | 'waiting';
+
+/** Whether a run has no result. The exit codes of fits are 0 and 1. */
+const isUnfitted = ({ exit_code: code }: Pick<FitItem, 'exit_code'>): boolean => (code ?? 0) > 1;
+
+/** How a fit ended, in words. */
+export function stateOf(item: Pick<FitItem, 'state' | 'exit_code' | 'recommended' | 'models'>): {
+  words: string;
+  level: State;
+} {
+  if (item.state === 'waiting') return { words: 'waiting', level: 'waiting' };
+  if (isUnfitted(item)) return { words: 'not fitted', level: 'bad' };
+  const status = mainModel(item)?.status;
+  if (status === undefined) return { words: 'closed forms', level: 'good' };
+  if (status === 'converged') return { words: 'converged', level: 'good' };
+  return { words: status.replace(/_/g, ' '), level: status === 'failed' ? 'bad' : 'caution' };
+}
+
+/** A time of the service in the time zone of the browser. */
+export function localTime(instant: string): HTMLElement {
+  const date = new Date(instant);
+  const words = Number.isNaN(date.getTime())
+    ? instant
+    : date.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+  return el('time', { datetime: instant }, words);
+}
+
+export function badge(words: string, level: State): HTMLElement {
+  return el('span', { class: `badge ${level}-badge` }, words);
+}
+
+function cell(label: string, ...children: Child[]): HTMLElement {
+  return el('td', { role: 'cell', 'data-label': label }, el('span', {}, ...children));
+}
+
+/** The name of a fit as a link to it. A waiting run has no link yet. */
+function nameCell(item: FitItem): HTMLElement {
+  const name = item.name || 'recording without a name';
+  const shown = el('bdi', {}, name);
+  const linked = item.state === 'waiting' ? shown : el('a', { href: fitPath(item.id) }, shown);
+  const why = isUnfitted(item) && item.reason !== '' && el('small', {}, typeset(item.reason));
+  return el('th', { scope: 'row', role: 'rowheader' }, linked, why);
+}
+
+/** Ids and names of the selected fits. `changed` is called after a change. */
+export interface Selection {
+  ids: Map<string, string>;
+  changed: () => void;
+}
+
+function selectCell(item: FitItem, { ids, changed }: Selection): HTMLElement {
+  const input = el('input', { type: 'checkbox', 'aria-label': `Select ${item.name}` });
+  input.checked = ids.has(item.id);
+  input.disabled = item.state === 'waiting' || isUnfitted(item);
+  input.addEventListener('change', () => {
+    if (input.checked) ids.set(item.id, item.name);
+    else ids.delete(item.id);
+    changed();
+  });
+  return el('td', { role: 'cell', class: 'select-cell' }, el('label', { class: 'box' }, input));
+}
+
+export function fitRow(item: FitItem, selection: Selection, withDate = true): HTMLTableRowElement {
+  const model = mainModel(item);
+  const { words, level } = stateOf(item);
+  const row = el('tr', { role: 'row', 'data-id': item.id }, selectCell(item, selection), nameCell(item));
+  const values = kParameters.map(([name, label]) => parameterCell(model, name, label));
+  append(row, [withDate && cell('Date', localTime(item.created)), cell('Model', model?.model ?? '–'), ...values]);
+  row.append(cell('Status', badge(words, level)));
+  return row;
+}
+
+/** An empty table for rows of fits. */
+export function fitTable(caption: string, withDate = true): { element: HTMLElement; body: HTMLElement } {
+  const head = el('tr', { role: 'row' }, el('td', { role: 'cell' }));
+  const heading = (...words: Child[]): void =>
+    void head.append(el('th', { scope: 'col', role: 'columnheader' }, ...words));
+  heading('Recording');
+  if (withDate) heading('Date');
+  heading('Model');
+  for (const [name, label] of kParameters) heading(`${label} `, symbolElement(symbolOf(name) ?? name));
+  heading('Status');
+  const body = el('tbody', { role: 'rowgroup' });
+  const table = el(
+    'table',
+    { class: 'runs', role: 'table' },
+    el('caption', {}, caption),
+    el('thead', { role: 'rowgroup' }, head),
+    body,
+  );
+  return { element: el('div', { class: 'runs-box' }, table), body };
+}

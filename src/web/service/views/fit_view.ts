@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+/** One fit: its report, and further actions. */
+
+import { reportContent } from '../../report/render';
+import { shownFit, makeReport } from '../../report/report';
+import { el, text } from '../../shared/dom';
+import { reportColumns } from '../../shared/page';
+import type { Result, Series } from '../../shared/result_types';
+import { commandOf } from '../command';
+import { knownModels } from '../forms/model_form';
+import { freshResult } from '../forms/submit';
+import { batchPath, fitApi } from '../routes';
+import { askJson } from '../server/api';
+import { ProblemError } from '../server/problem';
+import type { Place, View } from '../shell';
+import type { FitRequest } from '../types';
+import { againSection } from './again_section';
+import { fitActions } from './fit_actions';
+import { localTime } from './fit_rows';
+import { alertPlace, tellProblem } from './problem_view';
+
+/** The result, or the reason why there is none: a run of a batch may have failed. */
+async function resultOf(id: string, signal: AbortSignal): Promise<Result | ProblemError> {
+  const fresh = freshResult(id);
+  if (fresh) return fresh;
+  try {
+    return await askJson<Result>(fitApi(id), { signal });
+  } catch (error) {
+    if (error instanceof ProblemError && error.problem.status === 422) return error;
+    throw error;
+  }
+}
+
+function factsOf(request: FitRequest, facts: string): HTMLElement {
+  const parts = el(
+    'p',
+    { class: 'quiet facts-line' },
+    facts,
+    facts !== '' && ' · ',
+    facts === '' ? 'sent ' : 'fitted ',
+    localTime(request.created),
+  );
+  if (request.batch) parts.append(' · ', el('a', { href: batchPath(request.batch) }, 'its batch'));
+  return parts;
+}
+
+/** Announcement for screen readers when a fit is shown. */
+function spoken(result: Result): string {
+  const fit = shownFit(makeReport(result, null, null));
+  return fit ? `Fitted: ${fit.model}, ${fit.status.replace(/_/g, ' ')}.` : 'Done: closed forms only.';
+}
+
+function showReport(
+  place: Place,
+  request: FitRequest,
+  result: Result,
+  series: Series | null,
+  again: HTMLElement,
+): void {
+  const problems = alertPlace();
+  const content = reportContent(result, series, { command: commandOf(request) }, request.name);
+  const { sections } = content;
+  const withAgain = (changed: () => void): HTMLElement[] => {
+    const made = sections(changed);
+    const next = made.findIndex((part) => part.id === 'fit') + 1;
+    return [...made.slice(0, next), again, ...made.slice(next)];
+  };
+  const columns = reportColumns({ ...content, sections: withAgain }, el('div', { class: 'report' }));
+  place.main.append(
+    factsOf(request, content.facts),
+    fitActions(request.id, request.name, true, problems, place),
+    problems,
+    columns,
+  );
+  place.say(spoken(result));
+}
+
+/** For a recording that could not be fitted: the reason, and a form to try again. */
+function showFailure(place: Place, request: FitRequest, error: ProblemError, again: HTMLElement): void {
+  const problems = alertPlace();
+  place.main.append(factsOf(request, ''), fitActions(request.id, request.name, false, problems, place), problems, again);
+  tellProblem(problems, error);
+}
+
+export const fitView =
+  (id: string): View =>
+  async (place) => {
+    const { main, signal, name } = place;
+    name('Fit');
+    const waiting = text('Fetching the fit …', 'progress');
+    main.append(waiting);
+    const asked = askJson<FitRequest>(fitApi(id, 'request'), { signal });
+    asked.catch(() => undefined); // the request for the result below fails in the same way and is reported
+    const named = knownModels(signal).catch(() => undefined); // sentences use their labels
+    try {
+      const result = await resultOf(id, signal);
+      const request = await asked;
+      await named;
+      name(request.name || 'Recording without a name');
+      if (result instanceof ProblemError) {
+        showFailure(place, request, result, await againSection(place, request, null));
+        return;
+      }
+      const series = askJson<Series>(fitApi(id, 'series'), { signal }).catch(() => null);
+      const again = againSection(place, request, result);
+      showReport(place, request, result, await series, await again);
+    } finally {
+      waiting.remove();
+    }
+  };

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The verdict above a page, and the list of warnings. */
+
+import { el } from './dom';
+import { sentence } from './prose';
+import type { Result } from './result_types';
+
+export type Level = 'good' | 'caution' | 'bad';
+
+export interface Headline {
+  level: Level;
+  title: string;
+  sentence: string;
+}
+
+const kSigns: Record<Level, string> = { good: '✓', caution: '!', bad: '✕' };
+
+export function banner({ level, title, sentence: words }: Headline): HTMLElement {
+  const box = el('div', {}, el('p', { class: 'title' }, title), el('p', {}, words));
+  return el(
+    'div',
+    { class: `banner ${level}` },
+    el('span', { class: 'sign', 'aria-hidden': 'true' }, kSigns[level]),
+    box,
+  );
+}
+
+export function warnings({ warnings: list }: Pick<Result, 'warnings'>): HTMLElement | null {
+  if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
+  const items = el('ul', { class: 'warnings' });
+  for (const { code, message } of list) {
+    items.append(el('li', {}, el('span', { class: 'code' }, code.replace(/_/g, ' ')), ' ', sentence(message)));
+  }
+  return el('div', {}, el('h3', {}, list.length === 1 ? 'Warning' : `Warnings (${list.length})`), items);
+}

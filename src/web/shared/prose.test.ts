@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+import { expect, test } from 'vitest';
+
+import { inList, sentence, typeset } from './prose';
+
+test('sentences are typeset', () => {
+  expect(typeset('p 4.1e-26, 0.00126 kg m^2, 1e+06 and e2e')).toBe('p 4.1 × 10⁻²⁶, 0.00126 kg m², 1 × 10⁶ and e2e');
+  expect(sentence('the fit failed')).toBe('The fit failed.');
+  expect(sentence('')).toBe('');
+});
+
+test('lists in words', () => {
+  expect(inList([1, 2, 3])).toBe('1, 2 and 3');
+  expect(inList([])).toBe('');
+});

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, test } from 'vitest';
+
+import { errorText, fixed, intervalText, plusMinus, probabilityText, significant } from './rounding';
+
+describe('value ± error', () => {
+  // Particle Data Group, Review of Particle Physics, introduction, "Rounding": the first three of its examples.
+  test.each([
+    [0.827, 0.119, '0.83 ± 0.12'],
+    [0.827, 0.367, '0.8 ± 0.4'],
+    [14.674, 0.964, '14.7 ± 1.0'],
+    [0.827, 0.354, '0.83 ± 0.35'],
+    [0.827, 0.355, '0.8 ± 0.4'],
+    [0.827, 0.949, '0.8 ± 0.9'],
+    [0.827, 0.95, '0.8 ± 1.0'],
+  ])('%f ± %f is rounded as the Particle Data Group does', (value, error, expected) => {
+    expect(plusMinus(value, error)).toBe(expected);
+  });
+
+  test('halves of decimal digits are rounded up, regardless of the nearest double', () => {
+    expect(plusMinus(0.1, 0.0075)).toBe('0.100 ± 0.008');
+  });
+
+  test('small numbers share a power of ten', () => {
+    expect(plusMinus(1.234e-5, 3.1e-7)).toBe('(1.234 ± 0.031) × 10⁻⁵');
+    expect(plusMinus(-1.234e-5, 3.1e-7)).toBe('(−1.234 ± 0.031) × 10⁻⁵');
+    expect(plusMinus(0, 2e-6)).toBe('(0.0 ± 2.0) × 10⁻⁶');
+  });
+
+  test('large numbers do, too, if the error has no decimals', () => {
+    expect(plusMinus(12345678, 120000)).toBe('(1.235 ± 0.012) × 10⁷');
+  });
+
+  test('values are rounded to tens and hundreds', () => {
+    expect(plusMinus(0, 74.5)).toBe('0 ± 70');
+    expect(plusMinus(123456, 1200)).toBe('123500 ± 1200');
+    expect(intervalText([-946, 946], 0, 74.5)).toBe('−950 to 950');
+  });
+
+  test('null is a dash, and without an error only the value is written', () => {
+    expect(plusMinus(null, 0.1)).toBe('–');
+    expect(plusMinus(0.25, null)).toBe('0.25');
+    expect(plusMinus(0, 0)).toBe('0');
+    expect(plusMinus(NaN, 1)).toBe('–');
+  });
+
+  test('a second error has the decimals that it needs', () => {
+    expect(errorText(4.1e-5, 0.079, 2.8e-6)).toBe('0.00004');
+    expect(errorText(1.2e-5, 0.079, 2.8e-6)).toBe('0.000012');
+    expect(errorText(1.2e-5, 4.44e-5, 2e-7)).toBe('1.2 × 10⁻⁵');
+    expect(errorText(null, 1, 1)).toBe('–');
+  });
+});
+
+test('intervals have the decimals of the error, and missing ends a question mark', () => {
+  expect(intervalText([0.0789942, 0.0790051], 0.0789996, 2.8e-6)).toBe('0.0789942 to 0.0790051');
+  expect(intervalText([0, null], 0.5, 0.1)).toBe('0.00 to ?');
+  expect(intervalText([0, 0.00123], 0, null)).toBe('0 to 0.00123');
+  expect(intervalText(null, 1, 0.1)).toBe('–');
+});
+
+test('significant digits have no trailing zeros', () => {
+  expect(significant(19.99, 4)).toBe('19.99');
+  expect(significant(100.00000000000001, 4)).toBe('100');
+  expect(significant(9.9996, 4)).toBe('10');
+  expect(significant(0.00012, 3)).toBe('0.00012');
+  expect(significant(1.5e-5, 3)).toBe('1.5 × 10⁻⁵');
+  expect(significant(2000, 5)).toBe('2000');
+  expect(significant(0, 3)).toBe('0');
+  expect(significant(-0.5, 2)).toBe('−0.5');
+  expect(significant(undefined)).toBe('–');
+});
+
+test('zero has no minus sign', () => {
+  expect(fixed(-0.0001, 2)).toBe('0.00');
+  expect(fixed(-0.01, 2)).toBe('−0.01');
+});
+
+test('probabilities', () => {
+  expect(probabilityText(0.4321)).toBe('0.43');
+  expect(probabilityText(2.2e-9)).toBe('2 × 10⁻⁹');
+  expect(probabilityText(1e-161)).toBe('< 10⁻⁹⁹');
+  expect(probabilityText(0)).toBe('< 10⁻⁹⁹');
+  expect(probabilityText(null)).toBe('–');
+});

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Units, symbols and names of quantities as they are displayed. */
+
+import type { Loose } from './result_types';
+
+const kSuperscript: Record<string, string> = { '-': '⁻', '0': '⁰', '1': '¹', '2': '²', '3': '³', '4': '⁴' };
+const kDegreesPerRadian = 180 / Math.PI;
+const kNoBreak = '\u00a0';
+
+/** "kg m²" for "kg m^2"; "" for "1", a pure number. */
+export function unitText(unit: string): string {
+  if (unit === '1') return '';
+  const raised = unit.replace(/\^(-?\d+)/g, (_all, power: string) =>
+    [...power].map((c) => kSuperscript[c] ?? c).join(''),
+  );
+  return raised.replace(/\bdeg\b/g, '°').replace(/ /g, kNoBreak);
+}
+
+/** The unit after a space; "" for a pure number. */
+export function spacedUnit(unit: string): string {
+  const text = unitText(unit);
+  return text === '' ? '' : kNoBreak + text;
+}
+
+/** Conversion to degrees; null unless the unit is that of an angle or an angular rate. */
+export function inDegrees(unit: string): { unit: string; factor: number } | null {
+  if (unit === 'rad') return { unit: '°', factor: kDegreesPerRadian };
+  if (unit === 'rad/s') return { unit: '°/s', factor: kDegreesPerRadian };
+  return null;
+}
+
+/** Units by the suffixes of the keys in the JSON. */
+const kUnitOfSuffix: Record<string, string> = { rad: 'rad', rad_s: 'rad/s', counts: 'counts', volts: 'V', m_s2: 'm/s²', m: 'm', px: 'px' };
+
+/** The number under the key `name` + "_" + unit, such as rms_residual_rad, with its unit; null if there is none. */
+export function withUnit(object: Loose | null | undefined, name: string): { value: number; unit: string } | null {
+  for (const [suffix, unit] of Object.entries(kUnitOfSuffix)) {
+    const value = object?.[`${name}_${suffix}`];
+    if (typeof value === 'number') return { value, unit };
+  }
+  return null;
+}
+
+const kSymbols: Record<string, string> = {
+  inertia: 'I_O',
+  viscous: 'b',
+  coulomb: 'τ_c',
+  drag: 'c',
+  stiction: 'τ_s',
+  stribeck_rate: 'ω_s',
+  asymmetry: 'α',
+  release_angle: 'θ_r',
+  release_time: 't_r',
+  initial_angle: 'θ_0',
+  initial_rate: 'ω_0',
+  zero_angle: 'z',
+  rate_bias: 'z',
+  zero_drift: 'z′',
+  bias_drift: 'z′',
+  rate_scale: 'k',
+  acceleration_bias: 'c',
+  acceleration_scale: 'k',
+  axis: 'ψ',
+  radius: 'r',
+  pivot_x: 'x_P',
+  pivot_y: 'y_P',
+  edge_lag: 'h',
+  natural_frequency: 'ω_n',
+  damped_frequency: 'ω_d',
+  damping_ratio: 'ζ',
+  small_angle_period: 'P',
+  quality_factor: 'Q',
+  log_decrement: 'δ',
+  gravity_over_inertia: 'G/I_O',
+  viscous_over_inertia: 'b/I_O',
+  coulomb_over_inertia: 'τ_c/I_O',
+  drag_over_inertia: 'c/I_O',
+};
+
+/** Units of ratios to the gravity torque G, which a fit without a rig file has. */
+const kUnitOverG: Record<string, string> = {
+  inertia: 's^2',
+  viscous: 's',
+  coulomb: '1',
+  stiction: '1',
+  drag: 's^2',
+};
+
+const kWords: Record<string, string> = {
+  inertia: 'moment of inertia',
+  viscous: 'viscous friction',
+  coulomb: 'dry friction',
+  drag: 'air drag',
+  stiction: 'static friction',
+  stribeck_rate: 'Stribeck rate',
+  asymmetry: 'asymmetry of friction',
+  release_angle: 'release angle',
+  release_time: 'release time',
+  initial_angle: 'initial angle',
+  initial_rate: 'initial rate',
+  zero_angle: 'zero of the sensor',
+  rate_bias: 'bias of the sensor',
+  zero_drift: 'drift of the zero',
+  bias_drift: 'drift of the bias',
+  rate_scale: 'scale of the gyro',
+  acceleration_bias: 'bias of the accelerometer',
+  acceleration_scale: 'scale of the accelerometer',
+  axis: 'axis of the accelerometer',
+  radius: 'distance from the pivot',
+  pivot_x: 'pivot, horizontally',
+  pivot_y: 'pivot, vertically',
+  edge_lag: 'lag of the edges',
+  natural_frequency: 'natural frequency',
+  small_angle_period: 'period of small swings',
+  damping_ratio: 'damping ratio',
+  quality_factor: 'quality factor',
+  gravity_over_inertia: 'gravity torque over inertia',
+  viscous_over_inertia: 'viscous friction over inertia',
+  coulomb_over_inertia: 'dry friction over inertia',
+  drag_over_inertia: 'air drag over inertia',
+};
+
+const kRigWords: Record<string, [string, string]> = {
+  bob_mass: ['mass of the bob', 'kg'],
+  rod_mass: ['mass of the rod', 'kg'],
+  rod_length: ['length of the rod', 'm'],
+  gravity: ['gravity', 'm/s^2'],
+  gravity_torque: ['gravity torque', 'N m'],
+  mass: ['mass', 'kg'],
+  center_of_mass: ['distance of the centre of mass', 'm'],
+  inertia: ['moment of inertia as given', 'kg m^2'],
+};
+
+/** "I_O" for inertia, "I_O/G" if its unit is that of a ratio to G; null for an unknown name. */
+export function symbolOf(name: string, unit = ''): string | null {
+  const symbol = kSymbols[name];
+  if (symbol === undefined) return null;
+  return kUnitOverG[name] === unit ? `${symbol}/G` : symbol;
+}
+
+/** "moment of inertia" for inertia; an unknown name is returned unchanged. */
+export const wordsOf = (name: string): string => kWords[name] ?? name;
+
+/** Name in words and unit of an entry of the rig file. */
+export const rigWords = (name: string): [string, string] => kRigWords[name] ?? [name, '1'];
+
+/** Name of the quantity that has this unit. */
+export const quantityOf = (unit: string): string => (unit === 'rad/s' ? 'rate' : unit === 'rad' ? 'angle' : 'reading');

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Table of all parameters of the selected model, in which one can be selected. */
+
+import { el, symbolElement, text, type Child } from '../shared/dom';
+import { probabilityText } from '../shared/rounding';
+import { absent, section } from '../shared/section';
+import { select } from '../shared/select';
+import { table, type Cell, type Column } from '../shared/table';
+import { symbolOf, wordsOf } from '../shared/units';
+import type { ParameterSummary, Verdict } from './types';
+import { parametersOf, shownModel, shownParameter, type View } from './view';
+import { countText, ratioText, spreadText, valueTo } from './words';
+
+const kRemarks: Record<Verdict, Child> = {
+  agrees: null,
+  scatter_larger: 'error bars too small',
+  scatter_smaller: 'error bars too large',
+};
+
+/** "1.03" and its meaning in words. */
+function scatterCell({ repeatability }: ParameterSummary): Cell {
+  if (!repeatability) return '–';
+  const { verdict, scatter_ratio: ratio } = repeatability;
+  const remark = kRemarks[verdict];
+  return [
+    ratioText(ratio),
+    remark !== null && el('small', verdict === 'scatter_larger' ? { class: 'no' } : {}, remark),
+  ];
+}
+
+/** Name in words and symbol; below, the name in flags and JSON. */
+export function nameCell({ name, unit }: ParameterSummary): Child[] {
+  const symbol = symbolOf(name, unit);
+  const words = wordsOf(name);
+  return [
+    words,
+    symbol !== null && ' ',
+    symbol !== null && symbolElement(symbol),
+    words !== name && el('code', {}, name),
+  ];
+}
+
+function row(one: ParameterSummary): Cell[] {
+  const { median, std_dev: spread, median_std_error: error, unit } = one;
+  return [
+    nameCell(one),
+    countText(one.runs),
+    valueTo(median, error ?? spread, unit),
+    spreadText(spread),
+    spreadText(error),
+    scatterCell(one),
+    countText(one.outliers_total),
+    one.trend ? probabilityText(one.trend.p) : '–',
+  ];
+}
+
+/** Marks the row of the selected parameter. */
+function mark(box: HTMLElement, index: number): void {
+  box.querySelectorAll('tbody tr').forEach((row, i) => row.classList.toggle('marked', i === index));
+}
+
+function overview(view: View, all: ParameterSummary[]): HTMLElement {
+  const number = 'number' as const;
+  const columns: Column[] = [
+    { head: 'Parameter' },
+    { head: 'Runs', kind: number },
+    { head: 'Median', kind: number },
+    { head: 'Spread (standard deviation)', kind: number },
+    { head: 'Quoted error (median)', kind: number },
+    { head: 'Scatter of one rig ÷ error', kind: number },
+    { head: 'Outliers', kind: number },
+    { head: 'p of no trend', kind: number },
+  ];
+  const box = table(`Parameters of ${shownModel(view)?.model}, over its converged fits`, columns, all.map(row));
+  box.classList.add('tall', 'names');
+  mark(box, all.indexOf(shownParameter(view) as ParameterSummary));
+  return box;
+}
+
+const kMeaning =
+  'The spread is over all runs, of whatever rig. The scatter is that of runs of one rig about their mean, in units of the errors ' +
+  'they quote: 1 where error bars are true.';
+
+/** `changed` is called after another parameter was selected. */
+export function parametersSection(view: View, changed: () => void): HTMLElement {
+  const all = parametersOf(view);
+  const title = 'The parameters';
+  if (all.length === 0)
+    return section('parameters', title, absent('No fit of this model converged, so there are no values.'));
+  const options = all.map(({ name }) => ({ value: name, label: wordsOf(name) }));
+  const box = overview(view, all);
+  const chooser = select('Parameter shown', options, shownParameter(view)?.name ?? '', (name) => {
+    view.parameter = name;
+    mark(
+      box,
+      all.findIndex((one) => one.name === name),
+    );
+    changed();
+  });
+  chooser.classList.add('shown');
+  return section('parameters', title, box, text(kMeaning, 'quiet'), chooser);
+}

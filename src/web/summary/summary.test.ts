@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, test } from 'vitest';
+
+import { elided, visible } from '../shared/names';
+import { barsOf, rangeOf } from './distribution_section';
+import { headline, worst, judgedOf } from './headline';
+import { chiSquare95, disagrees, meanRows, rowsToDraw, scatterInterval, scatterRows } from './repeatability';
+import { groupCount, median, middle, nearest, trendGroups, within, xRange } from './trend';
+import { columnLabel } from './trend_plot';
+import { perText } from './trend_section';
+import type {
+  GroupRow,
+  ModelCounts,
+  ParameterSummary,
+  Repeatability,
+  Summary,
+  Trend,
+  TrendRun,
+  Verdict,
+} from './types';
+import { mainModel, parametersOf, shownParameter, type View } from './view';
+import { counted, countText, ratioText, shareText, spreadText, valueTo } from './words';
+
+const row = (group: string, runs: number, scatter_ratio: number | null, p: number | null = 0.5): GroupRow => ({
+  group,
+  runs,
+  weighted_mean: 2,
+  std_error: 0.1,
+  scatter_ratio,
+  p,
+});
+
+const repeats = (verdict: Verdict, scatter_ratio: number, dof = 100, rows: GroupRow[] = []): Repeatability => ({
+  groups: 3,
+  runs: dof + 3,
+  dof,
+  chi2: dof * scatter_ratio ** 2,
+  scatter_ratio,
+  p: 0.5,
+  between_std_dev: 0,
+  verdict,
+  text: '',
+  rows,
+});
+
+const parameter = (name: string, repeatability: Repeatability | null = null, model = 'coulomb'): ParameterSummary =>
+  ({
+    model,
+    name,
+    unit: 's',
+    runs: 100,
+    median: 2,
+    median_std_error: 0.25,
+    repeatability,
+    repeatability_reason: repeatability ? null : 'no rig has two runs to compare',
+    outliers: [],
+    outliers_total: 0,
+  }) as unknown as ParameterSummary;
+
+const ended = (model: string, fits: number, converged: number): ModelCounts => ({
+  model,
+  fits,
+  converged,
+  not_converged: 0,
+  not_identifiable: 0,
+  failed: fits - converged,
+});
+
+function summary(models: ModelCounts[], parameters: ParameterSummary[], more: Partial<Summary> = {}): Summary {
+  const fits = models.reduce((sum, model) => sum + model.fits, 0);
+  const store = {
+    path: 'a/results.sqlite',
+    runs: 100,
+    refitted: 100,
+    pending: 0,
+    fits,
+    versions: [],
+    cpus: [],
+    manifest_sha256: null,
+  };
+  return {
+    schema_version: 1,
+    tool: { name: 'refit_pendulums', version: '0.1.0' },
+    store,
+    group_by: null,
+    trend_by: null,
+    models,
+    recommendations: [],
+    failures: [],
+    parameters,
+    warnings: [],
+    ...more,
+  };
+}
+
+const view = (made: Summary, parameterName: string | null = null): View => ({
+  summary: made,
+  shown: mainModel(made),
+  parameter: parameterName,
+});
+
+describe('words', () => {
+  test('counts and shares', () => {
+    expect(countText(9999)).toBe('9999');
+    expect(countText(1234567)).toBe('1\u202f234\u202f567');
+    expect(counted(1, 'run')).toBe('1 run');
+    expect(counted(0, 'run')).toBe('0 runs');
+    expect(shareText(1, 0)).toBe('–');
+    expect(shareText(0, 10)).toBe('0 %');
+    expect(shareText(10, 10)).toBe('100 %');
+    expect(shareText(99_999, 100_000)).toBe('99.9 %'); // not all of them
+    expect(shareText(1, 100_000)).toBe('< 0.1 %'); // not none
+  });
+
+  test('values have the decimals of their error, ratios have two', () => {
+    expect(valueTo(0.07900123, 1.2e-6, 'kg m^2')).toBe('0.0790012\u00a0kg\u00a0m²');
+    expect(valueTo(0.07900123, null)).toBe('0.0790012');
+    expect(valueTo(null, 1)).toBe('–');
+    expect(spreadText(null)).toBe('–');
+    expect(spreadText(0.000101)).toBe('0.00010');
+    expect(ratioText(1)).toBe('1.00');
+    expect(ratioText(9.996)).toBe('10.0');
+    expect(ratioText(1234)).toBe('1230');
+    expect(ratioText(null)).toBe('–');
+  });
+
+  test('hidden characters of a name are made visible', () => {
+    expect(visible('a\nb\u202ec\u0000')).toBe('a\\nb\\u202ec\\u0000');
+    expect(visible('Größe <b>')).toBe('Größe <b>');
+    expect(elided('short', 18)).toBe('short');
+    expect(elided('0123456789', 7)).toBe('012…789');
+    expect([...elided('🙂'.repeat(30), 7)]).toHaveLength(7); // whole characters
+  });
+});
+
+describe('what is shown first', () => {
+  test('the model that was recommended most often', () => {
+    const models = [ended('viscous', 10, 10), ended('coulomb', 10, 9)];
+    const recommendations = [
+      { model: 'coulomb', runs: 8 },
+      { model: 'viscous', runs: 2 },
+    ];
+    expect(mainModel(summary(models, [], { recommendations }))).toBe(1);
+    expect(mainModel(summary(models, []))).toBe(0);
+    expect(mainModel(summary(models, [parameter('inertia')]))).toBe(1); // of coulomb
+    expect(mainModel(summary([], []))).toBe(0);
+  });
+
+  test('the first parameter with several runs of one rig', () => {
+    const all = [
+      parameter('release_angle'),
+      parameter('inertia', repeats('agrees', 1)),
+      parameter('inertia', null, 'viscous'),
+    ];
+    const made = summary([ended('coulomb', 10, 10)], all);
+    expect(parametersOf(view(made))).toHaveLength(2);
+    expect(shownParameter(view(made))?.name).toBe('inertia');
+    expect(shownParameter(view(made, 'release_angle'))?.name).toBe('release_angle');
+    expect(shownParameter(view(made, 'of another model'))?.name).toBe('inertia');
+    expect(shownParameter(view(summary([], [])))).toBeNull();
+  });
+});
+
+describe('the headline', () => {
+  const of = (parameters: ParameterSummary[], converged = 99, more: Partial<Summary> = {}) =>
+    headline(view(summary([ended('coulomb', 100, converged)], parameters, more)));
+
+  test('error bars that agree with the scatter, are too small, too large, or unknown', () => {
+    expect(of([parameter('inertia', repeats('agrees', 1.01))])).toMatchObject({
+      level: 'good',
+      title: '99 of 100 fits of coulomb converged, and their error bars are true',
+    });
+    const larger = of([
+      parameter('inertia', repeats('scatter_larger', 1.2)),
+      parameter('drag', repeats('scatter_larger', 2)),
+    ]);
+    expect(larger.level).toBe('caution');
+    expect(larger.title).toContain('up to 2.00 times');
+    expect(larger.sentence).toContain('moment of inertia and air drag (2 of 2 parameters');
+    expect(of([parameter('inertia', repeats('scatter_smaller', 0.7))])).toMatchObject({ level: 'good' });
+    expect(of([parameter('inertia')])).toMatchObject({ level: 'caution', sentence: 'No rig has two runs to compare.' });
+  });
+
+  test('few runs are weak evidence', () => {
+    expect(of([parameter('inertia', repeats('agrees', 1, 2))]).title).toContain('nothing is found against');
+  });
+
+  test('a model that few runs converged with does not represent them', () => {
+    const fine = [parameter('inertia', repeats('agrees', 1))];
+    expect(of(fine, 80).level).toBe('caution');
+    expect(of(fine, 40).level).toBe('bad');
+    expect(of(fine, 80, { store: { ...summary([], []).store, fits: 100, pending: 1 } }).sentence).toMatch(
+      /1 run has not been fitted yet\.$/,
+    );
+  });
+
+  test('no fit, and no converged fit', () => {
+    expect(headline(view(summary([], []))).title).toBe('Nothing has been fitted');
+    const failure = { status: 'failed', exit_code: 3, reason: 'no file', fits: 7, models: [], examples: [] };
+    expect(of([], 0, { failures: [{ ...failure, fits: 2, reason: 'other' }, failure] })).toMatchObject({
+      level: 'bad',
+      title: 'None of 100 fits converged: there is nothing to summarise',
+      sentence: 'Most often (7 fits): no file.',
+    });
+    expect(of([], 0).sentence).toBe('');
+  });
+
+  test('the parameter that scatters most', () => {
+    const made = view(
+      summary(
+        [ended('coulomb', 9, 9)],
+        [parameter('a', repeats('agrees', 0.9)), parameter('b', repeats('agrees', 1.1)), parameter('c')],
+      ),
+    );
+    expect(worst(judgedOf(made))?.name).toBe('b');
+    expect(worst([])).toBeNull();
+  });
+});
+
+describe('repeatability', () => {
+  // M. Abramowitz & I. A. Stegun, table 26.8.
+  test('quantiles of χ² are those of tables', () => {
+    for (const [dof, low, high] of [
+      [1, 0.000982069, 5.02389],
+      [10, 3.24697, 20.4831],
+      [11, 3.81575, 21.92],
+      [30, 16.7908, 46.9792],
+      [100, 74.2219, 129.561],
+    ]) {
+      const [from, to] = chiSquare95(dof);
+      expect(Math.abs(from / low - 1)).toBeLessThan(0.01);
+      expect(Math.abs(to / high - 1)).toBeLessThan(0.01);
+    }
+  });
+
+  test('the interval of a scatter contains the ratio', () => {
+    const [low, high] = scatterInterval(1.5, 10);
+    expect(low).toBeCloseTo(1.5 * Math.sqrt(10 / 20.483), 9);
+    expect(high).toBeCloseTo(1.5 * Math.sqrt(10 / 3.247), 9);
+  });
+
+  test('the last row is the expected ratio, and a single run has no scatter', () => {
+    const found = repeats('agrees', 1, 10, [row('a', 6, 1.1), row('b', 1, null), row('c'.repeat(300), 6, 3, 1e-9)]);
+    const rows = scatterRows(found);
+    expect(rows.map(({ estimate }) => estimate)).toEqual([1.1, null, 3, 1]);
+    expect(rows.map((one) => one.disagrees)).toEqual([false, false, true, false]);
+    expect(rows[2].label).toHaveLength(18);
+    expect(rows[3]).toMatchObject({ kind: 'joint', label: 'true error bars' });
+    expect(meanRows(found)[0].interval95).toEqual([2 - 1.96 * 0.1, 2 + 1.96 * 0.1]);
+  });
+
+  test('of many groups those with the smallest p are drawn, in order', () => {
+    const rows = Array.from({ length: 100 }, (_unused, i) => row(`g${i}`, 5, 1, i % 2 ? 1e-3 * i : 0.9));
+    const drawn = rowsToDraw(rows);
+    expect(drawn).toHaveLength(24);
+    expect(drawn[0].group).toBe('g1');
+    expect(drawn[23].group).toBe('g47');
+    expect(disagrees(rows[1], 100)).toBe(false); // p = 0.001 is expected among a hundred groups
+    expect(disagrees(rows[1], 3)).toBe(true);
+  });
+});
+
+test('the axis of a histogram has space for the error bar', () => {
+  const bars = { from: 1, to: 3, counts: [1, 0, 2, 1], below: 0, above: 0 };
+  expect(barsOf(bars)).toEqual({ left: [1, 1.5, 2, 2.5], width: 0.5 });
+  expect(rangeOf(parameter('a'), bars)).toEqual([1, 3]);
+  expect(rangeOf({ ...parameter('a'), median_std_error: 2 }, bars)).toEqual([0, 4]);
+  expect(rangeOf({ ...parameter('a'), median_std_error: 100 }, bars)).toEqual([-2, 6]);
+  expect(rangeOf({ ...parameter('a'), median: null }, bars)).toEqual([1, 3]);
+});
+
+describe('the trend', () => {
+  const run = (x: number, y: number | null, group: string | null, std_error: number | null = 0.1): TrendRun => ({
+    x,
+    y,
+    std_error,
+    id: `run_${x}`,
+    group,
+  });
+  const trend = (points: TrendRun[], more: Partial<Trend> = {}): Trend => ({
+    column: 'position',
+    unit: null,
+    slope: 0.5,
+    std_error: 0.1,
+    p: 0.1,
+    text: '',
+    points,
+    points_total: points.length,
+    ...more,
+  });
+
+  test('groups are in order of occurrence, their runs in order of x', () => {
+    const groups = trendGroups(trend([run(3, 13, 'b'), run(1, 1, 'a'), run(0, null, 'a'), run(2, 2, 'a', null)]));
+    expect(groups.map(({ name }) => name)).toEqual(['b', 'a']);
+    expect(groups[1]).toMatchObject({ x: [1, 2], y: [1, 2], error: [0.1, NaN], ids: ['run_1', 'run_2'] });
+    expect(xRange(groups)).toEqual([1 - 0.04, 3 + 0.04]);
+    expect(xRange([])).toEqual([-0.02, 1.02]);
+    expect(within(groups[1], 1.5, 9)).toEqual([1, 2]);
+    expect(within(groups[1], 5, 9)).toEqual([0, 0]);
+    expect(nearest(groups[1], 1.6)).toBe(1);
+  });
+
+  test('lines have the slope of the trend, and half of the runs are above them', () => {
+    const points = [0, 1, 2, 3, 4].flatMap((x) => [run(x, 10 + 0.5 * x, 'a'), run(x, 0.5 * x, 'b')]);
+    const made = trend(points);
+    expect(middle(made)).toBe(2);
+    expect(trendGroups(made).map(({ centre }) => centre[0])).toEqual([11, 1]);
+    expect(median([])).toBeNaN();
+    expect(median([3, 1, NaN, 2, 4])).toBe(2.5);
+  });
+
+  test('more groups than colours are drawn as one', () => {
+    const many = trend(Array.from({ length: 70 }, (_unused, i) => run(i, i % 7, `rig_${i % 7}`)));
+    expect(trendGroups(many)).toHaveLength(1);
+    expect(trendGroups(many)[0].groups[3]).toBe('rig_3');
+    expect(groupCount(many)).toBe(7);
+  });
+
+  test('the labels of the column and of the slope', () => {
+    expect(columnLabel(trend([]))).toBe('position in the manifest');
+    expect(perText(trend([]))).toBe('run');
+    const dated = trend([], { column: 'date', unit: 'days since 2026-01-01' });
+    expect(columnLabel(dated)).toBe('date [days since 2026-01-01]');
+    expect(perText(dated)).toBe('day');
+    expect(perText(trend([], { column: 'temperature', unit: 'K' }))).toBe('K');
+    expect(perText(trend([], { column: 'visit' }))).toBe('unit of visit');
+  });
+});

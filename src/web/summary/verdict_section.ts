@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The verdict: number of runs, share of converged fits, and whether the error bars agree with the scatter. */
+
+import { banner, warnings } from '../shared/banner';
+import { el } from '../shared/dom';
+import { keyFigure } from '../shared/key_figure';
+import { section } from '../shared/section';
+import { wordsOf } from '../shared/units';
+import { headline, judgedOf, worst } from './headline';
+import { parametersOf, shownModel, type View } from './view';
+import { countText, ratioText, shareText } from './words';
+
+function scatterFigure(view: View): HTMLElement | null {
+  const most = worst(judgedOf(view));
+  if (!most || most.repeatability.scatter_ratio === null) return null;
+  return keyFigure(['largest scatter'], `${ratioText(most.repeatability.scatter_ratio)} error bars`, [
+    `${wordsOf(most.name)}; 1: error bars are true`,
+  ]);
+}
+
+function figures(view: View): HTMLElement {
+  const { store } = view.summary;
+  const model = shownModel(view);
+  const outliers = parametersOf(view).reduce((sum, one) => sum + one.outliers_total, 0);
+  const box = el('div', { class: 'figures' });
+  const pending = store.pending === 0 ? 'none is pending' : `${countText(store.pending)} pending`;
+  box.append(keyFigure(['runs fitted'], `${countText(store.refitted)} of ${countText(store.runs)}`, [pending]));
+  if (model) {
+    const share = `${shareText(model.converged, model.fits)} of its fits`;
+    box.append(
+      keyFigure([`converged: ${model.model}`], `${countText(model.converged)} of ${countText(model.fits)}`, [share]),
+    );
+  }
+  const scatter = scatterFigure(view);
+  if (scatter) box.append(scatter);
+  if (model && model.converged > 0) {
+    box.append(keyFigure(['outlying values'], countText(outliers), ['over all parameters']));
+  }
+  return box;
+}
+
+export function verdictSection(view: View): HTMLElement {
+  return section('verdict', 'Verdict', banner(headline(view)), figures(view), warnings(view.summary));
+}
