@@ -47,6 +47,9 @@ std::string_view MethodOf(const HttpRequest& request) {
   return request.method == "HEAD" ? "GET" : std::string_view(request.method);
 }
 
+/// As ParseTarget. People add a slash to the address of the guide, as they do for folders elsewhere.
+Result<RequestTarget> TargetOf(std::string_view target) { return ParseTarget(target == "/docs/" ? "/docs" : target); }
+
 }  // namespace
 
 FittingService::FittingService(std::unique_ptr<ServiceState> state) : state_(std::move(state)) {}
@@ -67,14 +70,14 @@ Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptio
 }
 
 Lane FittingService::LaneOf(const HttpRequest& request) const {
-  const auto target = ParseTarget(request.target);
+  const auto target = TargetOf(request.target);
   if (!target) return Lane::kQuick;
   const Match match = FindRoute(MethodOf(request), target->path);
   return match.route == nullptr ? Lane::kQuick : match.route->lane;
 }
 
 std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& request) const {
-  const auto target = ParseTarget(request.target);
+  const auto target = TargetOf(request.target);
   const Match match = target ? FindRoute(MethodOf(request), target->path) : Match{};
   // Access is checked first, so an unauthorized client cannot find out which paths exist.
   const Audience audience = match.route == nullptr ? Audience::kTokenHolders : match.route->audience;
@@ -93,7 +96,7 @@ std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& reques
 
 HttpResponse FittingService::Handle(const HttpRequest& request) {
   if (auto refused = RefuseHead(request)) return *std::move(refused);
-  auto target = ParseTarget(request.target);
+  auto target = TargetOf(request.target);
   const Match match = FindRoute(MethodOf(request), target->path);
   return Guarded(match.route->answer(*state_, {request, *std::move(target), match.id}));
 }
@@ -105,7 +108,7 @@ HttpResponse FittingService::Refusal(int status, const std::string& detail) cons
 void FittingService::Count(const Answered& answered) {
   constexpr std::array<std::string_view, 4> kMethods = {"GET", "HEAD", "POST", "DELETE"};
   const bool is_known = std::ranges::find(kMethods, answered.method) != kMethods.end();
-  const auto target = ParseTarget(answered.target);
+  const auto target = TargetOf(answered.target);
   state_->metrics.CountAnswer(is_known ? answered.method : "other",
                               std::string(target ? PatternOf(target->path) : "other"), answered.status, answered.time);
 }

@@ -24,6 +24,7 @@
 #include "pendulum/service/fit_request.h"
 #include "pendulum/web/service_page.h"
 #include "service/answers.h"
+#include "service/guide_files.h"
 #include "service/service_files.h"
 
 namespace pendulum {
@@ -254,6 +255,19 @@ HttpResponse GetScript(ServiceState& /*state*/, const Call& call) {
 HttpResponse GetStyle(ServiceState& /*state*/, const Call& call) {
   static const std::string tag = TagOf(ServiceStyle());
   return PageFile(call, "text/css; charset=utf-8", ServiceStyle(), tag);
+}
+
+HttpResponse GetGuide(ServiceState& /*state*/, const Call& /*call*/) {
+  HttpResponse response;
+  response.status = 302;
+  response.fields.push_back({"Location", "/docs/index.html"});
+  return response;
+}
+
+HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
+  const auto file = ReadGuideFile(state.options.docs, call.id);
+  if (!file) return ProblemAnswer(file.error());
+  return PageFile(call, file->type, file->bytes, TagOf(file->bytes));
 }
 
 }  // namespace pendulum

@@ -4,7 +4,7 @@
 #include "service/service_state.h"
 
 /// Answers to all other requests (openapi.json), one function per method of a path: simulations, calibrations, models,
-/// examples, the live recording, the service itself and its page.
+/// examples, the live recording, the service itself, its page and the user guide.
 namespace pendulum {
 
 HttpResponse PostSimulation(ServiceState& state, const Call& call);
@@ -21,5 +21,7 @@ HttpResponse GetOpenApi(ServiceState& state, const Call& call);
 HttpResponse GetPage(ServiceState& state, const Call& call);
 HttpResponse GetScript(ServiceState& state, const Call& call);
 HttpResponse GetStyle(ServiceState& state, const Call& call);
+HttpResponse GetGuide(ServiceState& state, const Call& call);
+HttpResponse GetGuideFile(ServiceState& state, const Call& call);
 
 }  // namespace pendulum

@@ -52,11 +52,18 @@ constexpr std::array kRoutes = {
     Route{"GET", "/live", Lane::kQuick, kAll, QueryKind::kOwn, GetPage},
     Route{"GET", "/app.js", Lane::kQuick, kAll, QueryKind::kNone, GetScript},
     Route{"GET", "/app.css", Lane::kQuick, kAll, QueryKind::kNone, GetStyle},
+    Route{"GET", "/docs", Lane::kQuick, kAll, QueryKind::kNone, GetGuide},
+    Route{"GET", "/docs/{path}", Lane::kQuick, kAll, QueryKind::kNone, GetGuideFile},
 };
 
-/// The text in place of {id}, empty if the pattern has none; std::nullopt if the path does not match.
+/// The text that the path has for {id}, one segment, or for {path} at the end, any number of them. It is empty if the
+/// pattern has neither. Returns std::nullopt if the path is not an instance of the pattern.
 std::optional<std::string_view> MatchPath(std::string_view pattern, std::string_view path) {
-  constexpr std::string_view kId = "{id}";
+  constexpr std::string_view kId = "{id}", kRest = "{path}";
+  if (pattern.ends_with(kRest)) {
+    const std::string_view folder = pattern.substr(0, pattern.size() - kRest.size());
+    return path.starts_with(folder) ? std::optional(path.substr(folder.size())) : std::nullopt;
+  }
   const std::size_t open = pattern.find(kId);
   if (open == std::string_view::npos) return path == pattern ? std::optional(std::string_view()) : std::nullopt;
   const std::string_view before = pattern.substr(0, open), after = pattern.substr(open + kId.size());

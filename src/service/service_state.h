@@ -67,7 +67,7 @@ struct ServiceState {
 struct Call {
   const HttpRequest& http;
   RequestTarget target;
-  std::string id;  ///< The text in place of {id} or {name} in the path.
+  std::string id;  ///< The text in place of {id}, {name} or {path} in the path.
 };
 
 using Answer = HttpResponse (*)(ServiceState& state, const Call& call);

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -46,6 +48,8 @@ DEFINE_int32(request_seconds, 30, "Longest time for a request to come in, s; def
 DEFINE_int32(stop_seconds, 20, "How long fits that are under way may take when it is stopped, s; default 20.");
 DEFINE_string(live, "",
               "The file that a running record_pendulum --out writes, to be shown live on the page; default none.");
+DEFINE_string(docs, "",
+              "Folder of the user guide, shown at /docs; default the guide that was installed with this program.");
 
 namespace pendulum {
 namespace {
@@ -82,6 +86,7 @@ ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.request_seconds = FLAGS_request_seconds;
   flags.stop_seconds = FLAGS_stop_seconds;
   flags.live = FLAGS_live;
+  flags.docs = FLAGS_docs;
   flags.positional = positional;
   return flags;
 }
@@ -157,6 +162,10 @@ Result<int> Work(const std::vector<std::string>& positional) {
   auto options = MakeServePendulumOptions(flags, *token);
   if (!options) return tl::unexpected(options.error());
   options->service.say = SayAtTime;
+  if (options->service.docs.empty()) {
+    std::error_code fault;
+    options->service.docs = InstalledGuide(std::filesystem::read_symlink("/proc/self/exe", fault));
+  }
   const sigset_t signals = EndingSignals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread starts, so all threads inherit it
   auto store = FitStore::Open(options->store);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "pendulum/base/file.h"
@@ -85,6 +86,7 @@ ServiceOptions ServiceOptionsOf(const ServePendulumFlags& flags, const std::stri
   service.fit_time = std::chrono::seconds(flags.fit_seconds);
   service.threads = flags.threads;
   service.live = flags.live;
+  service.docs = flags.docs;
   return service;
 }
 
@@ -97,8 +99,16 @@ Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& 
   }
   if (const auto checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckHosts(flags); !checked) return tl::unexpected(checked.error());
+  std::error_code fault;
+  if (!flags.docs.empty() && !std::filesystem::is_directory(flags.docs, fault)) {
+    return BadFlag("--docs names '" + flags.docs + "'; there is no such folder");
+  }
   if (const auto checked = CheckAudience(flags, token); !checked) return tl::unexpected(checked.error());
   return ServePendulumOptions{flags.store, ServerOptionsOf(flags), ServiceOptionsOf(flags, token)};
+}
+
+std::string InstalledGuide(const std::filesystem::path& program) {
+  return program.parent_path().parent_path() / "share/doc/pendulum/html";
 }
 
 Result<std::string> ReadToken(const std::string& token_file, const char* from_environment) {

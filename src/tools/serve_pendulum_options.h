@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct ServePendulumFlags {
   int request_seconds = 30;
   int stop_seconds = 20;
   std::string live;
+  std::string docs;
   std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
@@ -38,8 +40,11 @@ struct ServePendulumOptions {
 };
 
 /// Converts flags to options. `token`: from the token file or the environment; empty: none. kInvalidArgument: a flag is
-/// missing or wrong, or other machines could use the service without a token.
+/// missing or wrong, the folder of the guide does not exist, or other machines could use the service without a token.
 Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& flags, const std::string& token);
+
+/// The folder in which an installation has the user guide: ../share/doc/pendulum/html beside the program's folder.
+std::string InstalledGuide(const std::filesystem::path& program);
 
 /// The token in the first line of a file; without a file PENDULUM_TOKEN from the environment; empty if neither is
 /// given. kInvalidArgument: shorter than 16 characters, or with characters other than visible ASCII. Errors as

@@ -25,7 +25,7 @@
 
 namespace pendulum {
 
-/// How a ScriptedLogger deviates from the behaviour in firmware/README.md.
+/// How a ScriptedLogger deviates from the behaviour in src/docs/hardware.md.
 struct LoggerScript {
   /// What happens after `frames` frames of data.
   enum class Then { kSilence, kUnplugged, kReset, kEnd };

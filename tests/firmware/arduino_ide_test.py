@@ -14,7 +14,7 @@ import unittest
 SKETCH = pathlib.Path(__file__).resolve().parents[2] / "firmware/pendulum_logger/pendulum_logger.ino"
 ARDUINO = pathlib.Path("/usr/share/arduino/hardware/arduino")
 BUILDER = pathlib.Path("/usr/share/arduino-builder")
-# Debian's core does not compile with Debian's compiler otherwise: firmware/README.md.
+# Debian's core does not compile with Debian's compiler otherwise: src/docs/hardware.md.
 DECIMAL_DIG = "compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__"
 
 

@@ -33,7 +33,7 @@ Result<Identification> Joined(const std::vector<std::string>& paths, const std::
   return IdentifyJointly(options, std::move(recordings));
 }
 
-// datasets/README.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
+// src/docs/examples.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
 TEST(IdentifyJointly, TellsTheRigOfSeveralRecordings) {
   const auto run = Joined({"datasets/runs_2.csv", "datasets/runs_3.csv"}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
@@ -96,7 +96,7 @@ TEST_F(DifferentRigs, GiveWayToTheOneOfTheCommandLine) {
   const auto run = Joined({first_, second_}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
   ASSERT_TRUE(run->rig);
-  EXPECT_NEAR(run->rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, datasets/README.md
+  EXPECT_NEAR(run->rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, src/docs/examples.md
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
   return options;
 }
 
-/// The textbook's rig, I_O = 0.079 kg m² (datasets/README.md), held until 1.9 s.
+/// The textbook's rig, I_O = 0.079 kg m² (src/docs/examples.md), held until 1.9 s.
 std::vector<Result<Identification>> FitTextbook(const IdentifyOptions& options) {
   auto one = PrepareFile("datasets/textbook_rig.csv", options, Must(ReadRig("datasets/textbook_rig.json")));
   return IdentifyEach(options, Must(std::move(one)));

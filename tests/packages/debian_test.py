@@ -61,9 +61,15 @@ class DebianTest(unittest.TestCase):
         self.check_fields(self.tools, Package="pendulum", Section="science")
         self.check_contents(self.tools, [r"\./usr/bin/[a-z_]+", r"\./usr/share/man/man1/[a-z_]+\.1\.gz", r"\./usr/share/pendulum/.*",
                                          r"\./usr/share/doc/pendulum/(?:changelog\.gz|copyright|examples/nginx\.conf|README\.md)",
+                                         r"\./usr/share/doc/pendulum/examples/datasets/\w+\.(?:csv|json|txt)",
+                                         r"\./usr/share/doc/pendulum/html/\w+\.(?:css|html|png)", r"\./usr/share/doc-base/pendulum",
                                          r"\./etc/default/serve_pendulum", r"\./lib/systemd/system/serve_pendulum\.service"])
         self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libprometheus-cpp-core1.0", "libssl3", "libstdc++6"})
         self.assertEqual({path.name for path in (self.root / "usr/bin").iterdir()}, tool_names())
+
+    def test_the_guide_goes_along_where_the_service_looks_for_it(self):
+        pages = {path.stem for path in (self.root / "usr/share/doc/pendulum/html").glob("*.html")}
+        self.assertLessEqual({path.stem for path in (empty_root.TOP / "src/docs").glob("*.md")}, pages)
 
     def test_configuration_is_the_administrators(self):
         self.assertEqual(output("dpkg-deb", "--info", self.tools, "conffiles"), "/etc/default/serve_pendulum\n")

@@ -93,6 +93,13 @@ class TarballTest(unittest.TestCase):
             for name in re.findall(r"/usr/share/common-licenses/([A-Za-z0-9]+(?:-\d+(?:\.\d+)*)?)", licence.read_text()):
                 self.assertTrue((documents / "common-licenses" / name).exists(), f"{licence} refers to {name}")
 
+    def test_the_guide_goes_along_with_its_recordings(self):
+        documents = self.prefix / "share/doc/pendulum"
+        self.assertLessEqual({path.stem for path in (empty_root.TOP / "src/docs").glob("*.md")},
+                             {path.stem for path in (documents / "html").glob("*.html")})
+        for path in (empty_root.TOP / "datasets").glob("*.csv"):
+            self.assertEqual((documents / "examples/datasets" / path.name).read_bytes(), path.read_bytes())
+
     def test_scripts_for_clusters_go_along_as_programs(self):
         scripts = empty_root.TOP / "scripts/cluster"
         for script in (path for path in scripts.rglob("*") if path.is_file() and "__pycache__" not in path.parts):

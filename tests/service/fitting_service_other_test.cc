@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole service but for its socket: all that is no fit and no batch.
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -87,7 +88,7 @@ TEST_F(FittingServiceOtherTest, RefusesSimulationsThatAreNone) {
 
 // ---- Calibrations --------------------------------------------------------------------------------------------------
 
-// The published line of the textbook's table: 0.1985 x - 49.6077 (datasets/README.md).
+// The published line of the textbook's table: 0.1985 x - 49.6077 (src/docs/examples.md).
 TEST_F(FittingServiceOtherTest, CalibratesTheTextbooksTable) {
   const std::string table = FileText("datasets/textbook_calibration.csv");
   const HttpResponse response = Post("/v1/calibrations?bits=10", "text/csv", table);
@@ -98,7 +99,7 @@ TEST_F(FittingServiceOtherTest, CalibratesTheTextbooksTable) {
   EXPECT_EQ(json["calibration"]["input_range"], Json::array({0, 1023}));
   EXPECT_EQ(json["order"], 1);
   ASSERT_EQ(json["points"].size(), 7U);
-  const Json& point = json["points"][3];  // README.md: 261 counts, 0 deg, curve 2.21, left-out error -2.58
+  const Json& point = json["points"][3];  // src/docs/rigs_and_calibration.md: 261 counts, 0 deg
   EXPECT_EQ(point["reading"], 261);
   EXPECT_EQ(point["angle"], 0);
   EXPECT_NEAR(point["fitted"].get<double>(), 2.21, 5e-3);
@@ -295,6 +296,47 @@ TEST_F(FittingServiceOtherTest, SendsThePageOnceUntilItChanges) {
   EXPECT_EQ(again.body, "");
   EXPECT_EQ(FieldOf(again, "ETag"), tag);
   EXPECT_EQ(Ask("GET", "/app.js", {{"If-None-Match", "\"other\""}}).status, 200);
+}
+
+// ---- The user guide ------------------------------------------------------------------------------------------------
+
+TEST_F(FittingServiceOtherTest, ServesTheGuide) {
+  options_.docs = folder_ / "html";
+  folder_.Write("html/index.html", "<p>Guide</p>");
+  folder_.Write("html/pictures/report.png", "\x89PNG");
+  for (const char* path : {"/docs", "/docs/"}) {
+    const HttpResponse home = Get(path);
+    EXPECT_EQ(home.status, 302) << path;
+    EXPECT_EQ(FieldOf(home, "Location"), "/docs/index.html") << path;
+  }
+  const HttpResponse page = Get("/docs/index.html");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.body, "<p>Guide</p>");
+  EXPECT_THAT(FieldOf(page, "Content-Type"), StartsWith("text/html"));
+  EXPECT_THAT(FieldOf(page, "Content-Security-Policy"), HasSubstr("script-src 'self'"));
+  EXPECT_EQ(FieldOf(Get("/docs/pictures/report.png"), "Content-Type"), "image/png");
+  const HttpResponse again = Ask("GET", "/docs/index.html", {{"If-None-Match", FieldOf(page, "ETag")}});
+  EXPECT_EQ(again.status, 304);
+  EXPECT_EQ(Ask("HEAD", "/docs/index.html").status, 200);
+  EXPECT_EQ(Ask("POST", "/docs/index.html").status, 405);
+}
+
+TEST_F(FittingServiceOtherTest, ServesNothingOutsideTheGuide) {
+  options_.docs = folder_ / "html";
+  folder_.Write("html/index.html", "<p>Guide</p>");
+  folder_.Write("secret.html", "secret");
+  std::filesystem::create_symlink(folder_ / "secret.html", folder_ / "html/link.html");
+  for (const char* path : {"/docs/../secret.html", "/docs/%2e%2e/secret.html", "/docs/..%2fsecret.html",
+                           "/docs//secret.html", "/docs/..%5csecret.html", "/docs/%2fetc%2fpasswd"}) {
+    EXPECT_THAT(AnswerOf(Get(path)), StartsWith("400 ")) << path;
+  }
+  for (const char* path : {"/docs/link.html", "/docs/none.html", "/docs/...", "/docs/index.html.bak"}) {
+    EXPECT_THAT(AnswerOf(Get(path)), StartsWith("404 the user guide has no file")) << path;
+  }
+}
+
+TEST_F(FittingServiceOtherTest, SaysThatTheGuideIsNotInstalled) {
+  EXPECT_THAT(AnswerOf(Get("/docs/index.html")), StartsWith("404 the user guide is not installed"));
 }
 
 // ---- The live recording --------------------------------------------------------------------------------------------

@@ -61,6 +61,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersThoseWhoKnowTheTokenAndNobodyElse) {
     EXPECT_THAT(Answer("GET", "/v1/fits", {{"Authorization", value}}), StartsWith("401 ")) << value;
   }
   for (const char* path : {"/healthz", "/", "/fits/abc", "/app.js", "/app.css"}) EXPECT_EQ(Answer("GET", path), "200");
+  EXPECT_EQ(Answer("GET", "/docs"), "302");
   // Without a token the service does not reveal which paths exist.
   for (const char* path : {"/metrics", "/openapi.json", "/v1/models", "/v1/none", "/none", "/v1//x"}) {
     EXPECT_THAT(Answer("GET", path), StartsWith("401 ")) << path;

@@ -51,7 +51,7 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
             "\n");
 }
 
-// The exit codes are those of the tools (README.md).
+// The exit codes are those that the tools give (src/docs/reference.md).
 TEST(ProblemOf, GivesEachStatusCodeItsHttpStatusAndExitCode) {
   const auto figures = [](StatusCode code) { return Figures(ProblemOf(Status{code, "why"})); };
   EXPECT_EQ(figures(StatusCode::kInvalidArgument), "400 wrong_request 2");

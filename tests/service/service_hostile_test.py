@@ -45,7 +45,7 @@ class Places(Hostile):
     def test_paths_lead_nowhere_else(self):
         up = ("..", "%2e%2e", "%252e%252e", "..%2f..", "%2e%2e%5c", "..\\..", "..%5c..", "%c0%ae%c0%ae", "..;", "....//", "%00",
               ".%00.")
-        for base in ("/", "/v1/fits/", "/v1/examples/", "/app.js/", "/fits/"):
+        for base in ("/", "/v1/fits/", "/v1/examples/", "/app.js/", "/fits/", "/docs/"):
             for step in up:
                 for file in ("etc/passwd", "fits.sqlite", "serve.log"):
                     target = f"{base}{step}/{step}/{step}/{file}".encode()

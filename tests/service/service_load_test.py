@@ -104,7 +104,7 @@ class Crowd(Load):
               f"{rate:.1f} fits a second; resident "
               f"{' -> '.join(f'{size / 2**20:.1f}' for size in resident)} MiB")
         self.check_outcome(outcome, CLIENTS)
-        self.assertLess(outcome.percentile(0.99), 2 * FIT_SECONDS)  # the limit in the README
+        self.assertLess(outcome.percentile(0.99), 2 * FIT_SECONDS)  # the limit in src/docs/service.md
         self.assertTrue(server.is_alive())
         if not IS_SANITIZED:  # the sanitizer keeps freed memory
             self.assertLess(resident[-1], 1.25 * resident[0] + (16 << 20))

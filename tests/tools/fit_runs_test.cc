@@ -94,7 +94,7 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
 
 // ---- Joint fits -----------------------------------------------------------------------------------------------------
 
-/// Options for recordings of datasets/README.md of one rig: I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
+/// Options for recordings of src/docs/examples.md of one rig: I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
 /// released at 0.2 and 0.45 rad.
 FitPendulumOptions TwoRunsOptions() {
   FitPendulumFlags flags;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A logger simulated in Python over a pseudo terminal, and a folder for its recordings.
 
-It follows the text of firmware/README.md, "Protocol", and shares no code with the C++ of firmware or host. A logger
+It follows the text of src/docs/hardware.md, "The protocol", and shares no code with the C++ of firmware or host. A logger
 stores for the tests: its samples of all runs (`taken`), the received commands (`commands`), and received bytes that
 were not a frame (`garbage`).
 """

@@ -41,6 +41,12 @@ TEST(MakeServePendulumOptions, ServeThisMachineAloneUnlessToldOtherwise) {
   EXPECT_EQ(options->service.access.token, "");
   EXPECT_THAT(options->service.access.allowed_hosts, IsEmpty());
   EXPECT_EQ(options->service.live, "");
+  EXPECT_EQ(options->service.docs, "");
+}
+
+TEST(InstalledGuide, IsBesideTheFolderOfTheProgram) {
+  EXPECT_EQ(InstalledGuide("/usr/bin/serve_pendulum"), "/usr/share/doc/pendulum/html");
+  EXPECT_EQ(InstalledGuide("/home/ada/pendulum/bin/serve_pendulum"), "/home/ada/pendulum/share/doc/pendulum/html");
 }
 
 TEST(MakeServePendulumOptions, TakeEachFlagToItsPlace) {
@@ -58,6 +64,7 @@ TEST(MakeServePendulumOptions, TakeEachFlagToItsPlace) {
   flags.request_seconds = 9;
   flags.stop_seconds = 0;
   flags.live = "run.csv";
+  flags.docs = "/tmp";
   const auto options = MakeServePendulumOptions(flags, kToken);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->server.port, 0);
@@ -77,6 +84,7 @@ TEST(MakeServePendulumOptions, TakeEachFlagToItsPlace) {
   EXPECT_EQ(options->service.access.token, kToken);
   EXPECT_THAT(options->service.access.allowed_hosts, ElementsAre("lab.example", "other.example:8443"));
   EXPECT_EQ(options->service.live, "run.csv");
+  EXPECT_EQ(options->service.docs, "/tmp");
 }
 
 struct Refusal {
@@ -88,6 +96,7 @@ TEST(MakeServePendulumOptions, RefuseWrongFlagsAndNameThem) {
   const std::vector<Refusal> refusals = {
       {"'stray' belongs to no flag", [](ServePendulumFlags& f) { f.positional = {"stray"}; }},
       {"--store is missing", [](ServePendulumFlags& f) { f.store.clear(); }},
+      {"--docs names '/none'; there is no such folder", [](ServePendulumFlags& f) { f.docs = "/none"; }},
       {"--port is -1; it must be 0 to 65535", [](ServePendulumFlags& f) { f.port = -1; }},
       {"--port is 65536; it must be 0 to 65535", [](ServePendulumFlags& f) { f.port = 65536; }},
       {"--threads is -1; it must be 0 to 256", [](ServePendulumFlags& f) { f.threads = -1; }},

@@ -18,7 +18,7 @@ struct OtherProtocol {
   int version;
 };
 
-/// A message from a logger (firmware/README.md, "Protocol").
+/// A message from a logger (src/docs/hardware.md, "The protocol").
 using LoggerMessage = std::variant<pendulum_logger::Info, pendulum_logger::Data, pendulum_logger::Ack,
                                    pendulum_logger::End, OtherProtocol>;
 

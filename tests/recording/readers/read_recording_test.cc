@@ -368,7 +368,7 @@ TEST(ReadRecording, RefusesADirectory) {
   EXPECT_THAT(recording.error().message, HasSubstr("this is a directory"));
 }
 
-/// Numbers of samples as in the README of the recordings.
+/// Numbers of samples as in src/docs/examples.md.
 TEST(ReadRecording, ReadsWhatPeopleRecorded) {
   const char* const folder = std::getenv("PENDULUM_RECORDINGS");
   if (folder == nullptr) GTEST_SKIP() << "PENDULUM_RECORDINGS names no folder";
