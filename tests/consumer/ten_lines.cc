@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
+#include <utility>
 
-#include <pendulum/fitting/fit_swing.h>
-#include <pendulum/recording/read_recording.h>
+#include <pendulum/identify/identify.h>
 
 int main() {
-  const auto recording = pendulum::ReadRecording("datasets/recorded.csv").value();
+  pendulum::IdentifyOptions options;
+  options.models = {"coulomb"};
   const auto rig = pendulum::ReadRig("datasets/recorded_rig.json").value();
-  const auto swings = pendulum::ChooseSwings(recording, {}).value();
-  const auto longest = swings.found.at(swings.chosen.front() - 1);
-  const auto fitted = pendulum::FitSwing(recording, longest, {.rig = rig}).value();
-  for (const auto& one : fitted.fit.parameters)
-    std::cout << one.info.name << ' ' << one.estimate << ' ' << one.unit << '\n';
+  auto recording = pendulum::PrepareFile("datasets/recorded.csv", options, rig).value();
+  const auto one = pendulum::IdentifyEach(options, std::move(recording)).front().value();
+  for (const auto& parameter : one.fits.front().parameters)
+    std::cout << parameter.info.name << ' ' << parameter.estimate << ' ' << parameter.unit << '\n';
 }

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include <pendulum/base/version.h>
+#include <pendulum/fitting/swing/choose_swings.h>
 #include <pendulum/fitting/swing/fit_swing.h>
 #include <pendulum/model/motion_model.h>
 #include <pendulum/report/text.h>
