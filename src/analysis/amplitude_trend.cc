@@ -9,6 +9,9 @@
 
 #include <Eigen/Cholesky>
 
+#include "pendulum/analysis/linear_fit.h"
+#include "pendulum/base/distributions.h"
+
 namespace pendulum {
 namespace {
 
@@ -75,8 +78,8 @@ Autocorrelation PooledMemory(const Recording& used, const Windows& windows, cons
         linear.jacobian(Eigen::all, linear.free);
     columns += linear.influence.cols();
   }
-  return MemoryOf(used.clock_scale * used.time.segment(first, count), used.value.segment(first, count),
-                  windows.noise.From(first), readings.segment(first, count), jacobian, stop);
+  return AutocorrelationOf(windows.noise.From(first), used.clock_scale * used.time.segment(first, count),
+                           used.value.segment(first, count), readings.segment(first, count), jacobian, stop);
 }
 
 /// Derivative of a window's estimate of parameter k with respect to the parameters held at the whole fit's estimates.
@@ -185,7 +188,7 @@ bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOpti
   windows.terms = TermsOf(windows.noise, used.value, readings);
   for (const PartFit& part : windows.parts) {
     std::optional<LinearFit> linear =
-        Linearize(part.part, part.fit, options.rig, windows.TermsIn(part), {}, false, options.stop);
+        LinearizeFit(part.part, part.fit, options.rig, windows.TermsIn(part), {}, false, options.stop);
     if (!linear) return false;
     windows.linear.push_back(*std::move(linear));
   }
@@ -256,7 +259,7 @@ std::string CompareWindows(const Recording& used, const Parts& parts, const std:
   if (std::string reason = FitWindows(parts, ends, fit, windows); !reason.empty()) return reason;
   if (!LinearizeWindows(used, fit, options, parts, windows)) return "a window does not tell inertia and friction";
   const std::optional<LinearFit> whole =
-      Linearize(used, fit, options.rig, windows.terms, options.priors, true, options.stop);
+      LinearizeFit(used, fit, options.rig, windows.terms, options.priors, true, options.stop);
   if (!whole) return "the errors of the whole fit cannot be followed";
   AddTrends(used, fit, *whole, windows, parts, result);
   return "";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pendulum/analysis/amplitude_trend.h"
+#include "pendulum/analysis/linear_fit.h"
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"

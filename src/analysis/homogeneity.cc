@@ -10,6 +10,7 @@
 
 #include "pendulum/analysis/amplitude_dependence.h"
 #include "pendulum/analysis/homogeneity_words.h"
+#include "pendulum/analysis/linear_fit.h"
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/base/distributions.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/base/distributions.h"
 
+#include <cmath>
+
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -44,5 +46,7 @@ double BinomialLowerLimit(int successes, int trials, double tail) {
 double BinomialUpperLimit(int successes, int trials, double tail) {
   return Binomial::find_upper_bound_on_p(trials, successes, tail);
 }
+
+double TwoSidedP(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
 }  // namespace pendulum

@@ -47,5 +47,12 @@ TEST(Distributions, ThrowOnWhatHasNone) {
   EXPECT_THROW(StudentQuantile(1, 5), std::overflow_error);
 }
 
+// Values from tables of the normal distribution.
+TEST(TwoSidedP, IsThatOfTheNormalDistribution) {
+  EXPECT_NEAR(TwoSidedP(1.959963985), 0.05, 1e-9);
+  EXPECT_NEAR(TwoSidedP(-3.290526731), 0.001, 1e-10);
+  EXPECT_EQ(TwoSidedP(0), 1);
+}
+
 }  // namespace
 }  // namespace pendulum::distributions_test

@@ -37,4 +37,7 @@ double FisherTail(double f, double numerator_freedom, double denominator_freedom
 double BinomialLowerLimit(int successes, int trials, double tail);
 double BinomialUpperLimit(int successes, int trials, double tail);
 
+/// Probability that a standard normal variable has a larger magnitude than z.
+double TwoSidedP(double z);
+
 }  // namespace pendulum

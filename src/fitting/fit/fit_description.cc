@@ -182,14 +182,12 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors&
   SetDerivedIntervals(problem.infos, solution.parameters, intervals, report.derived);
 }
 
-Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                         const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
-  constexpr double kDoubtful = 0.05;
-  if (optimum.free.empty() || (!correlated && LjungBoxP(z) > kDoubtful)) return {};
+Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                                  const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
+  if (optimum.free.empty() || !(correlated || MayBeCorrelated(z))) return {};
   const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
   if (jacobian.rows() == 0) return {};
-  const Eigen::VectorXd weight = solution.noise.Deviations(jacobian.rows()).cwiseInverse();
-  return EstimateAutocorrelation(problem.data.times(), z, weight.asDiagonal() * jacobian, problem.data.stop);
+  return EstimateAutocorrelation(solution.noise, problem.data.times(), z, jacobian, problem.data.stop);
 }
 
 }  // namespace pendulum

@@ -161,7 +161,7 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
                FitReport& report) {
   // Before the posterior moves σ, on which the optimum's information rests.
   SetSystematicErrors(problem, SystematicCovariance(recording, options, problem, cost, solution, optimum), report);
-  const Autocorrelation memory = MemoryOf(problem, cost, solution, optimum, z, correlated);
+  const Autocorrelation memory = AutocorrelationOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);
   report.noise.memory = memory;
   report.statistics.effective_samples = errors.runs[0].effective_samples;

@@ -304,8 +304,8 @@ void FindErrors(Work& work) {
     const Description& described = work.descriptions[k];
     work.memories.push_back(IsAsAlone(member, described.correlated)
                                 ? member.alone->noise.memory
-                                : MemoryOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
-                                           described.quantile_residuals, described.correlated));
+                                : AutocorrelationOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
+                                                    described.quantile_residuals, described.correlated));
   }
   work.errors = ErrorsAt(work, work.optimum);
   if (work.from_posteriors) work.errors.covariance = work.optimum.inverse.matrix;

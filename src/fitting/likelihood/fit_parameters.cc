@@ -22,4 +22,6 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
   return infos;
 }
 
+bool IsDrift(std::string_view name) { return name == kZeroDrift.name || name == kBiasDrift.name; }
+
 }  // namespace pendulum

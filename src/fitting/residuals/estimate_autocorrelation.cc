@@ -15,6 +15,7 @@
 
 #include "fitting/residuals/burg.h"
 #include "pendulum/base/median.h"
+#include "pendulum/fitting/residuals/residual_diagnostics.h"
 
 namespace pendulum {
 namespace {
@@ -384,6 +385,17 @@ Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen
   if (residual.size() < kFewest || !(residual.squaredNorm() > 0)) return {};
   const Clock clock = FindClock(time);
   return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
+}
+
+Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
+                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop) {
+  const Eigen::VectorXd weight = noise.Deviations(jacobian.rows()).cwiseInverse();
+  return EstimateAutocorrelation(time, z, weight.asDiagonal() * jacobian, stop);
+}
+
+bool MayBeCorrelated(const Eigen::VectorXd& z) {
+  constexpr double kDoubtful = 0.05;
+  return !(LjungBoxP(z) > kDoubtful);
 }
 
 }  // namespace pendulum

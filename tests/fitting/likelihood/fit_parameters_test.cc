@@ -36,5 +36,11 @@ TEST(FitParameters, EndWithTheMotionOfADirectSensorsZero) {
   EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kLags).back().name, "edge_lag");
 }
 
+TEST(IsDrift, NamesThoseOfAnglesAndRates) {
+  EXPECT_TRUE(IsDrift("zero_drift"));
+  EXPECT_TRUE(IsDrift("bias_drift"));
+  EXPECT_FALSE(IsDrift("zero_angle"));
+}
+
 }  // namespace
 }  // namespace pendulum::fit_parameters_test

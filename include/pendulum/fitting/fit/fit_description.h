@@ -31,8 +31,8 @@ Description Describe(const Recording& recording, const FitProblem& problem, cons
                      const Solution& solution, int free_parameters);
 
 /// The memory of the residuals, looked for where independence is in doubt; z are the quantile residuals, N.
-Autocorrelation MemoryOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                         const Optimum& optimum, const Eigen::VectorXd& z, bool correlated);
+Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                                  const Optimum& optimum, const Eigen::VectorXd& z, bool correlated);
 
 /// Estimates, units and flags, without errors.
 void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,

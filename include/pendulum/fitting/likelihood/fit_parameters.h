@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "pendulum/model/motion_model.h"
@@ -22,5 +23,8 @@ enum class ZeroMotion {
 /// initial_rate, then those of the sensor. A direct sensor has zero_angle or rate_bias, and the motion of its zero.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
                                          ZeroMotion zero = ZeroMotion::kNone, const SensorModel& sensor = {});
+
+/// Whether a parameter is a drift of the zero: zero_drift or bias_drift.
+bool IsDrift(std::string_view name);
 
 }  // namespace pendulum

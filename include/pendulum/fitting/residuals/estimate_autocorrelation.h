@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
 
 namespace pendulum {
@@ -18,5 +19,13 @@ namespace pendulum {
 /// requested it ends soon, with a memory that means nothing.
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
+
+/// The same for quantile residuals z of readings with that noise. jacobian N x K, the readings' derivatives by all
+/// fitted parameters.
+Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
+                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop = {});
+
+/// Whether residuals of unit variance may be correlated: the Ljung-Box test has p <= 0.05.
+bool MayBeCorrelated(const Eigen::VectorXd& z);
 
 }  // namespace pendulum

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/fit/fit_report.h"
+#include "pendulum/fitting/likelihood/noise.h"
+#include "pendulum/fitting/residuals/autocorrelation.h"
+#include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/model/parameter.h"
+#include "pendulum/model/rig.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// Derivatives of each of N readings' log-likelihood l by its modelled value m [rad or rad/s].
+struct ReadingTerms {
+  Eigen::VectorXd score;        ///< N, ∂l/∂m, 1 / unit of m
+  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; for a robust family the mean
+};
+
+/// Terms of N measured values and N modelled readings, rad or rad/s.
+ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings);
+
+/// The covariance of W'score for residuals with this noise and autocorrelation (MODEL.md eq. (29)). time N, weights N x
+/// K.
+Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
+                                const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
+
+/// The autocorrelation of N residuals. time: true s; jacobian: N x K, by all parameters fitted to them. White if the
+/// Ljung-Box test does not doubt it (p > 0.05).
+Autocorrelation AutocorrelationOf(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& value,
+                                  const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian,
+                                  const std::stop_token& stop = {});
+
+/// Correction factor for a variance from N residuals; the free parameters took `lost` of N variances.
+double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index free, double lost);
+
+/// A fit as a linear function of the readings' scores about its solution, over F parameters.
+struct LinearFit {
+  std::vector<Eigen::Index> free;  ///< F, neither fixed nor, if `with_bounds`, at a bound.
+  Eigen::MatrixXd jacobian;        ///< N x P, readings by the report's parameters.
+  Eigen::MatrixXd inverse;         ///< F x F, inverse of the information: products of the report's units.
+  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the change of the estimates [report's
+                                   ///< units].
+};
+
+/// std::nullopt: the trajectory cannot be computed, the readings do not determine the F parameters, or a stop was
+/// requested.
+std::optional<LinearFit> LinearizeFit(const Recording& recording, const FitReport& fit, const std::optional<Rig>& rig,
+                                      const ReadingTerms& terms, const ParameterPriors& priors, bool with_bounds,
+                                      const std::stop_token& stop = {});
+
+/// The noise of a fit whose readings are censored below `low` and above `high`.
+NoiseModel NoiseOfFit(const FitReport& fit, double low, double high);
+
+/// The noise of a fit, with the sensor's range.
+NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options);
+
+/// Inertia and friction estimated from the readings without bounds: K free parameters, in the report's units.
+struct UnboundedEstimate {
+  std::vector<std::string_view> names;  ///< K
+  Eigen::VectorXd value;                ///< K
+  Eigen::MatrixXd covariance;           ///< K x K
+};
+
+/// One step from the fit to the maximum of the likelihood without bounds. std::nullopt as LinearizeFit.
+std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
+                                                   const std::optional<Rig>& rig, const std::stop_token& stop = {});
+
+/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive definite.
+double SquaredLength(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
+
+}  // namespace pendulum
