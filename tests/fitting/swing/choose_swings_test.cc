@@ -13,6 +13,7 @@ namespace pendulum::choose_swings_test {
 namespace {
 
 using testing::AllOf;
+using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Ge;
 using testing::Le;

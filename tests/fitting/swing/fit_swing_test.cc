@@ -125,12 +125,12 @@ TEST(FitSwing, KeepsTheEndsThatTheUserChose) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
   const Recording recording = Guided(run, 0);
-  const SwingFit from = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, kOpen));
+  const SwingFit from = FitChosen(recording, ModelOptions("coulomb"), {.from = 0.5});
   EXPECT_EQ(from.used.time[0], 0.5);
   EXPECT_THAT(Codes(from.fit), AllOf(Contains("lack_of_fit"), Not(Contains("disturbed"))));
-  const SwingFit both = FitChosen(recording, ModelOptions("coulomb"), Between(0.5, 19));
+  const SwingFit both = FitChosen(recording, ModelOptions("coulomb"), {.from = 0.5, .to = 19});
   EXPECT_EQ(both.used.size(), 1851);
-  const SwingFit to = FitChosen(recording, ModelOptions("coulomb"), Between(kOpen, 19));
+  const SwingFit to = FitChosen(recording, ModelOptions("coulomb"), {.to = 19});
   EXPECT_EQ(to.used.time[to.used.size() - 1], 19);
   EXPECT_THAT(to.used.time[0], Ge(1.9));
 }
