@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What mkdocs does not do by itself: pages from other folders of the project, links to them, a site without a network."""
+import json
+import os
 import pathlib
 import posixpath
 import re
+import subprocess
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
@@ -12,6 +15,14 @@ GUIDE = "src/docs"
 OTHER_PAGES = ("MODEL.md", "datasets/ACTIVITY.md", "tests/analysis/COVERAGE.md", "tests/analysis/JOINT_COVERAGE.md",
                "tests/analysis/RECOMMENDATION.md", "tests/benchmarks/RESULTS.md")
 PLACES = {posixpath.basename(path): path for path in OTHER_PAGES}
+# Mathematics as GitHub has it: $$...$$ on lines of its own, $...$ in a line; not in code.
+MATHEMATICS = re.compile(r"```.*?```|`[^`\n]*`|\$\$(.+?)\$\$|\$([^$\n]+?)\$", re.DOTALL)
+RENDER = """
+const katex = require('katex');
+const formulas = JSON.parse(require('fs').readFileSync(0));
+const render = ([text, displayMode]) => katex.renderToString(text, {displayMode, output: 'mathml', strict: 'ignore'});
+console.log(JSON.stringify(formulas.map(render)));
+"""
 EXTERNAL = re.compile(r"""<(?:script|link|img|source|iframe|font)\b[^>]*(?:src|href)=["']?(?:https?:)?//|url\(["']?https?:""")
 
 
@@ -37,12 +48,37 @@ def on_page_markdown(markdown, page, config, files):
             return f"[{words}]({name}{'#' + place if place else ''})"
         return words if words.strip("`") == path else f"{words} (`{path}`)"
 
+    markdown, page.formulas = take_mathematics(markdown)
     markdown = markdown.replace("<details>", '<details markdown="1">')
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link_now, markdown)
 
 
+def take_mathematics(markdown):
+    """The text with a token for each formula, and the formulas: [LaTeX, whether it stands by itself]."""
+    formulas = []
+
+    def token(found):
+        if not (found[1] or found[2]):
+            return found[0]  # code
+        formulas.append([(found[1] or found[2]).strip(), bool(found[1])])
+        return f"FORMULA{len(formulas) - 1:04}END"
+
+    return MATHEMATICS.sub(token, markdown), formulas
+
+
+def as_mathml(formulas):
+    """MathML, which browsers show without a script or a font, by KaTeX (Debian package katex)."""
+    environment = {**os.environ, "NODE_PATH": "/usr/share/nodejs"}
+    done = subprocess.run(["node", "-e", RENDER], input=json.dumps(formulas), env=environment, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise PluginError(f"KaTeX cannot render the mathematics; is the package katex installed? {done.stderr.strip()[-500:]}")
+    return json.loads(done.stdout)
+
+
 def on_page_content(html, page, config, files):
-    """A line that continues a command looks like one. Pygments takes it for output unless a backslash precedes it."""
+    """The formulas in place of their tokens. A line that continues a command looks like one. Pygments takes it for output unless a backslash precedes it."""
+    rendered = as_mathml(page.formulas) if page.formulas else []
+    html = re.sub(r"FORMULA(\d{4})END", lambda found: rendered[int(found[1])], html)
     return re.sub(r'<span class="go">&gt; (.*?)</span>', r'<span class="gp">&gt; </span>\1', html)
 
 
