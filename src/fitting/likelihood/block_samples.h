@@ -53,8 +53,7 @@ class BlockSamples {
   bool is_complete() const { return next_ == time_.size(); }
 
  private:
-  static constexpr std::size_t kShare =
-      128;  ///< Blocks per thread that justify a thread: some hundred microseconds of work.
+  static constexpr std::size_t kShare = 128;  ///< Blocks that justify another thread: some hundred microseconds.
 
   /// A segment and the first sample it covers; it covers samples up to the first one of the next segment.
   struct Kept {

@@ -17,10 +17,8 @@ namespace pendulum {
 /// Samples are processed in blocks of consecutive samples. The columns of a block stay in the first-level cache, and
 /// sums over a block do not depend on the thread that computes them.
 inline constexpr std::size_t kBlock = 256;
-inline constexpr std::size_t kParts =
-    8;  ///< Partial sums of a product over a block: as many as the widest vector has lanes.
-inline constexpr std::size_t kBlockStride =
-    kBlock + kParts;  ///< Length of a row: vectors reach beyond the last sample.
+inline constexpr std::size_t kParts = 8;  ///< Partial sums of a product over a block: the lanes of the widest vector.
+inline constexpr std::size_t kBlockStride = kBlock + kParts;  ///< Of a row: vectors reach beyond the last sample.
 
 /// R rows of numbers, one column for each sample of a block.
 template <int R>

@@ -69,10 +69,9 @@ struct NoiseModel {
   double sigma = 1;       ///< rad or rad/s: standard deviation, or the scale of the robust families.
   double resolution = 0;  ///< q, same unit; used for kQuantized and kEdges.
   double low = -kInfinity, high = kInfinity;  ///< Same unit; readings at them or beyond are censored.
-  std::optional<double> edge =
-      std::nullopt;        ///< Same unit; for events, the position of one edge, as in Recording::edge.
-  double stamp_ratio = 0;  ///< Standard deviation of a time stamp over σ [s/rad]; for kEdges.
-  double lag = 0;          ///< Same unit, for kEdges: a silence extends this far beyond its count.
+  std::optional<double> edge = std::nullopt;  ///< Same unit; for events, one of the edges, as in Recording::edge.
+  double stamp_ratio = 0;                     ///< Standard deviation of a time stamp over σ [s/rad]; for kEdges.
+  double lag = 0;                             ///< Same unit, for kEdges: a silence extends this far beyond its count.
   /// N, for kEdges: the standard deviation of sample i is σ · spread[i], including the error of its time stamp. If
   /// null, every sample has σ.
   std::shared_ptr<const std::vector<double>> spread = nullptr;
