@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the commands of README.md's console blocks and compares what they print with what stands there.
+"""Runs the commands of README.md's console blocks and compares their output with the text in README.md.
 
-A line that begins with "$ " is a command, lines that begin with "> " continue it, the rest is its output. Commands run in the
-top folder; build/release/bin, where README's readers have the tools, stands for the folder given as the argument.
+A line that begins with "$ " is a command, lines that begin with "> " continue it, the rest is its output. Commands run in
+the top folder. build/release/bin, where README's readers have the tools, is replaced by the folder given as the argument.
 Usage: check_readme.py BIN_DIR [--update]. --update writes the output into README.md instead.
 """
 import difflib
@@ -17,7 +17,7 @@ BLOCK = re.compile(r"```console\n(.*?)```", re.DOTALL)
 
 
 def run(command, bin_dir):
-    """What the command prints on stdout; a failing command is an error."""
+    """The command's output on stdout; a failing command is an error."""
     done = subprocess.run(
         ["bash", "-euc", command.replace("build/release/bin", bin_dir)], cwd=TOP, capture_output=True, text=True)
     if done.returncode != 0:
@@ -26,7 +26,7 @@ def run(command, bin_dir):
 
 
 def executed(block, bin_dir):
-    """The block with the output of its commands as it is now."""
+    """The block with the present output of its commands."""
     commands = re.findall(r"^\$ .*(?:\n> .*)*", block, re.MULTILINE)
     return "".join(c + "\n" + run(re.sub(r"^(\$|>) ", "", c, flags=re.MULTILINE), bin_dir) for c in commands)
 
