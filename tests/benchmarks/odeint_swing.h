@@ -172,7 +172,7 @@ class OdeintSwing {
   Ratios<Number> ratios_;
   T angle_;               // rad
   T elapsed_{0.0};        // s, since the release
-  T start_{0.0};          // s, of this half swing; its partials say how the instant moves
+  T start_{0.0};          // s, start of this half swing, with its derivatives
   double direction_ = 0;  // of this half swing
   double reversal_ = 0;   // s, start of this half swing, with its derivatives
   Stepper stepper_{Controlled(ErrorOfValues<kCarried>{kTolerance})};

@@ -68,7 +68,7 @@ class SimulatedBoard {
   std::vector<LineByte> TakeBytes();
 
   double time() const;
-  const std::optional<double>& start() const { return start_; }  ///< Of the present run, when it was first sampled [s].
+  const std::optional<double>& start() const { return start_; }  ///< Time of the present run's first sample [s].
   double ClockHz() const { return 16e6 * (1 + options_.clock_error); }
   /// Conversions triggered by the timer.
   const std::vector<Conversion>& conversions() const { return conversions_; }

@@ -18,7 +18,7 @@ using Eigen::Index;
 /// `stamps` times the variance of a time stamp.
 struct Differences {
   Eigen::ArrayXd square;
-  Eigen::ArrayXd edges;   // 2
+  Eigen::ArrayXd edges;   // always 2
   Eigen::ArrayXd stamps;  // sum of the squared rates
 };
 

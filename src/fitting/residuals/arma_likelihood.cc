@@ -163,7 +163,7 @@ class Climb {
   const std::stop_token& stop_;
 };
 
-// ---- Where to begin ------------------------------------------------------------------------------------------------
+// ---- Start places --------------------------------------------------------------------------------------------------
 
 using Places = std::vector<Eigen::VectorXd>;
 
@@ -268,7 +268,7 @@ Eigen::VectorXd ShiftUnder(const FilteredProcess& process, const CorrelatedResid
   return BoxLeastSquares(white.leftCols(size), white.col(size), data.lowest, data.highest);
 }
 
-// ---- Both ----------------------------------------------------------------------------------------------------------
+// ---- Shift and autocorrelation -------------------------------------------------------------------------------------
 
 bool IsSound(const CorrelatedResiduals& data, const Autocorrelation& like) {
   const Index size = data.jacobian.cols();

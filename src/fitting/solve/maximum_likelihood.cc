@@ -140,7 +140,7 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
 /// If the residuals are smaller than one resolution, rounding errors are not white noise (Widrow & Kollár, Quantization
 /// Noise, Cambridge 2008, section 5.1).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
-  constexpr double kDrowned = 1;  // resolutions
+  constexpr double kDrowned = 1;  // in resolutions
   if (options.noise) return {*options.noise, IsRobust(options.noise) ? "asked for by --loss" : "asked for by --noise"};
   if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
   const double ratio = residual_std_dev / resolution;

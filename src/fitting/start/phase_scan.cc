@@ -51,7 +51,7 @@ struct Candidate {
   Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Of A cos φ, A sin φ and 1; A = 1 at the first sample.
   double rss = kUnbounded;
 
-  /// Of the reading, at the first sample.
+  /// Amplitude of the reading at the first sample.
   double amplitude() const { return std::hypot(coefficients[0], coefficients[1]); }
 };
 

@@ -109,8 +109,8 @@ class Pursuit {
 
  private:
   static constexpr double kSure = 36;     // in -2 log L
-  static constexpr double kClearly = 10;  // likewise
-  static constexpr double kPerStep = 20;  // likewise
+  static constexpr double kClearly = 10;  // in -2 log L
+  static constexpr double kPerStep = 20;  // in -2 log L
 
   struct Trial {
     Index place = 0;

@@ -57,7 +57,7 @@ class Profile {
   /// The points of the profile, with points added until they are even between the ends, `down` and `up` from the
   /// estimate. Points far beyond the ends, left by the search, are removed.
   std::vector<ProfilePoint> SpreadPoints(double down, double up) {
-    constexpr double kFarBeyond = 4;  // thresholds
+    constexpr double kFarBeyond = 4;  // in thresholds
     last_trace_ = cost_.traces() + Budget();
     SpreadOver(-down);
     SpreadOver(up);
@@ -111,7 +111,7 @@ class Profile {
   /// Adds points on one side up to a signed distance from the estimate, except near existing points.
   void SpreadOver(double farthest) {
     constexpr int kParts = 4;
-    constexpr double kNear = 0.25;  // parts
+    constexpr double kNear = 0.25;  // in parts
     if (farthest == 0) return;
     const double part = farthest / kParts;
     for (int i = 1; i <= kParts; ++i) {

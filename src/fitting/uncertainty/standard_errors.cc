@@ -223,8 +223,8 @@ NoiseErrors NoiseErrorsOf(const FittedRun& run) {
           MethodOf(run.solution.noise, run.correlation)};
 }
 
-/// The sandwich of the information and the scores' covariance of all recordings. Each recording contributes its share
-/// of the parameters to the effects of an estimated σ and of autocorrelation.
+/// The sandwich of the information and the scores' covariance of all recordings. Each recording's scores are scaled up
+/// for the degrees of freedom that its share of the parameters takes from σ and from the autocorrelation.
 void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& parts, const Eigen::MatrixXd& prior,
                    Errors& errors) {
   Eigen::MatrixXd information = prior;

@@ -37,7 +37,8 @@ TEST_P(Datasets, TruthIsRecoveredWithinFourStandardErrors) {
         parameter.at_bound ? parameter.upper95.value() - parameter.estimate : 4 * parameter.std_error.value();
     EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, tolerance)) << parameter.info.name;
   }
-  EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));  // + q²/12
+  // Rounding adds q²/12 to the variance.
+  EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));
 }
 
 /// From the logger, with calibration, clock and rig of limited accuracy: statistical and systematic errors both count.

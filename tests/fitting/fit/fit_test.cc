@@ -194,7 +194,7 @@ TEST(FitRecording, ARigWithoutAStandardDeviationGivesNoSystematicError) {
   }
 }
 
-// ---- What the report holds -----------------------------------------------------------------------------------------
+// ---- Contents of the report ----------------------------------------------------------------------------------------
 
 TEST(FitRecording, ReportsSeriesAndStatisticsOfTheSameResiduals) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));

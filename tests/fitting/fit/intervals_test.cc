@@ -123,7 +123,7 @@ TEST(UsePosterior, IsNotForCountsThatScatterNorWhereAnotherMethodIsAskedFor) {
   EXPECT_EQ(report.interval_method, "profile likelihood");
 }
 
-// ---- What a recording can tell -------------------------------------------------------------------------------------
+// ---- Identifiability -----------------------------------------------------------------------------------------------
 
 TEST(SetIdentifiability, OfTwentySecondsOfTheTextbookRigIsThatOfAll) {
   SyntheticOptions run = TextbookRun("coulomb");

@@ -137,7 +137,7 @@ TEST(Judge, TheIntervalAtABoundEndsWhereTheProfileHasRisenByChiSquare) {
   EXPECT_GT(at_bound, 3);
 }
 
-// ---- What the data cannot tell -------------------------------------------------------------------------------------
+// ---- Not identifiable ----------------------------------------------------------------------------------------------
 
 /// A cost whose data depend on the parameters only through `seen` * p, as in an experiment with too little information.
 class BlindCost final : public TrajectoryCost {

@@ -342,7 +342,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
   EXPECT_LE(at_bound, 5);
 }
 
-// ---- What cannot be fitted -----------------------------------------------------------------------------------------
+// ---- Recordings that cannot be fitted ------------------------------------------------------------------------------
 
 TEST(FitJointly, OfRigsOfDifferentInertiaDoesNotConvergeAndSaysSo) {
   SyntheticOptions heavy = Released(0.5, 2);

@@ -148,7 +148,7 @@ TEST(JointSystematic, OfOneClockOfAngleAndRateIsThatOfFitsByFasterAndSlowerClock
     const JointFit fast = FitAllJointly(AngleAndRate(1.0005, rate_first), RigOptions());
     const JointFit slow = FitAllJointly(AngleAndRate(0.9995, rate_first), RigOptions());
     for (const std::string& name : kPhysical) {
-      // For a change of 1e-3.
+      // Change of the estimate for a relative change of the clock by 1e-3.
       const double moved = std::abs(fast.whole.Find(name)->estimate - slow.whole.Find(name)->estimate);
       const ParameterEstimate& parameter = *fit.whole.Find(name);
       EXPECT_THAT(parameter.systematic_std_error.value_or(0),

@@ -89,7 +89,7 @@ TEST(EdgeNoise, LeavesASlowMisfitToTheEdges) {
   NoiseModel noise = Edges(1);
   noise.edge.reset();
   const Wave wave(1e-4, 0);
-  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // by 2 ms
+  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // late by 2 ms
   EXPECT_LT(LikeliestStampRatio(noise, wave.value, late, RatesOf(wave.time, late)), 0.5);
 }
 

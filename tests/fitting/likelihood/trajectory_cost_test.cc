@@ -163,7 +163,7 @@ TEST(Evaluate, GivesADirectionThatTheDataDoNotSeeARowOfZeros) {
   for (int i = 1; i <= 30; ++i) ExpectRank(0.003 * i, 2);
 }
 
-// ---- What is refused ---------------------------------------------------------------------------------------------
+// ---- Refused trials ----------------------------------------------------------------------------------------------
 
 /// The number of evaluation methods that accept the trial: all five or none.
 int Acceptances(const TrajectoryCost& cost, const std::vector<double>& p) {
@@ -221,7 +221,7 @@ TEST(TrajectoryCost, RefusesNumbersThatAreNotFinite) {
   }
 }
 
-// ---- Which samples -----------------------------------------------------------------------------------------------
+// ---- Samples in use ----------------------------------------------------------------------------------------------
 
 TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
   Example example(FindMotionModel("coulomb").value(), StartKind::kRelease, Quantity::kAngle);

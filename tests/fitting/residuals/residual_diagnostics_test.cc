@@ -150,7 +150,7 @@ TEST(RunsP, AgreesWithSequencesReckonedByHand) {
   EXPECT_THAT(RunsP(halves), DoubleNear(3.546e-5, 1e-8));
   Eigen::VectorXd alternating = Eigen::VectorXd::Ones(20);
   for (Eigen::Index i = 1; i < 20; i += 2) alternating[i] = -1;
-  EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, as far above
+  EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, equally far above the mean
 }
 
 TEST(RunsP, IsOneWhenAllHaveOneSign) {
@@ -310,7 +310,8 @@ struct SwingExample {
   static constexpr double kPeriod = 2 * kPi / 5;
   Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(2000, 0, 19.99);
   Eigen::VectorXd fitted = (0.4 * (-0.02 * time.array()).exp() * (5 * time.array()).cos()).matrix();
-  /// Of the readings, divided by its norm over one period: an error of one standard error per period for a noise of 1.
+  /// Rate of the readings, divided by its norm over one period: added to white noise of 1, it is a phase error of one
+  /// standard error per period.
   Eigen::VectorXd rate = (-(5 * time.array()).sin() / std::sqrt(0.5 * 100 * kPeriod)).matrix();
 };
 

@@ -23,7 +23,7 @@ using testing::DoubleNear;
 using testing::IsEmpty;
 using testing::Not;
 
-// ---- Which noise ---------------------------------------------------------------------------------------------------
+// ---- Choice of the noise family ------------------------------------------------------------------------------------
 
 void ExpectChoice(const FitOptions& options, double resolution, double residual_std_dev, NoiseFamily family,
                   const std::string& why) {

@@ -189,7 +189,7 @@ TEST(FitUndersampled, RefusesAConstant) {
   EXPECT_THAT(refused.error().message, HasSubstr("constant"));
 }
 
-// ---- Without it ----------------------------------------------------------------------------------------------------
+// ---- Without the rig's geometry ------------------------------------------------------------------------------------
 
 TEST(FitUndersampled, GivesNoConfidentAnswerWithoutARig) {
   for (const double rate : {0.6, 1.0, 1.267, 2.0, 3.5}) {
@@ -233,7 +233,7 @@ TEST(FitUndersampled, TakesBoundsForARig) {
   EXPECT_NEAR(InertiaOf(result), kInertiaTruth / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
 }
 
-// ---- Which recordings ----------------------------------------------------------------------------------------------
+// ---- IsUndersampled ------------------------------------------------------------------------------------------------
 
 TEST(IsUndersampled, BelowSevenSamplesInAPeriodFifteenPercentShorter) {
   const double limit = 7 * 1.15 * std::sqrt(kTextbookTorque / kGeometric) / (2 * kPi);

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 double TwoSided95(double freedom) { return boost::math::quantile(boost::math::students_t(freedom), 0.975); }
 
-// ---- A straight line in disguise -----------------------------------------------------------------------------------
+// ---- A reparametrized straight line --------------------------------------------------------------------------------
 
 /// A reparametrization of a line's slope: the slope as a function of the parameter, its derivative, and its inverse.
 struct Disguise {

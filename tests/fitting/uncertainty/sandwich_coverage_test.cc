@@ -63,7 +63,8 @@ TEST(SandwichIntervals, CoverUnderAMemoryOfTenSamplesInWhiteNoise) {
   ExpectWithin(Coverage(2000, 0.9, 0.5), 0.93, 0.97);
 }
 
-// These recordings are only 40 and 10 autocorrelation times long, and as many readings determine the zero angle.
+// These recordings are only 40 and 10 autocorrelation times long, so the zero angle has only that many effective
+// readings.
 TEST(SandwichIntervals, NearlyCoverUnderAMemoryOfFiftySamples) { ExpectWithin(Coverage(2000, 0.98, 0), 0.91, 0.97); }
 
 TEST(SandwichIntervals, NearlyCoverInFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }

@@ -45,7 +45,7 @@ struct ParameterEstimate {
   std::optional<double> lower95, upper95;      ///< 95 % confidence interval; if at_bound, one end is the bound.
   std::optional<double> t95;                   ///< Student's t of its samples: half the interval over std_error.
   std::string open_interval;                   ///< Reason for a missing end of the interval; empty if both ends exist.
-  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent without.
+  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent if there are none.
   std::optional<double> closed_form;           ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;

@@ -13,7 +13,7 @@ namespace pendulum {
 // is a standard deviation about the nominal value: 0 for bias and level, 1 for the scale, the intended axis for the
 // axis.
 inline constexpr double kAccelerometerBiasStdDev = 0.3;    ///< m/s^2
-inline constexpr double kAccelerometerScaleStdDev = 0.02;  ///< Of 1.
+inline constexpr double kAccelerometerScaleStdDev = 0.02;  ///< Relative.
 inline constexpr double kAccelerometerAxisStdDev = 0.05;   ///< rad
 inline constexpr double kCameraLevelStdDev = 0.02;         ///< rad
 
