@@ -15,8 +15,8 @@ inline Eigen::VectorXd EvenTimes(Eigen::Index count) {
   return Eigen::VectorXd::LinSpaced(count, 0, 0.01 * static_cast<double>(count - 1));
 }
 
-/// Noise of variance 1 with correlation exp(-Δt / τ), plus independent noise with the share white_share; exact at any
-/// time stamps. τ = 0: white.
+/// Noise of total variance 1: a part with correlation exp(-Δt / τ), and an independent part with the share
+/// white_share. Exact at any time stamps. τ = 0: white.
 inline Eigen::VectorXd CorrelatedNoise(const Eigen::VectorXd& time, double decay_time, double white_share,
                                        std::uint64_t seed) {
   std::mt19937_64 generator(seed);

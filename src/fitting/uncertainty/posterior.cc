@@ -107,7 +107,7 @@ struct Point {
   double x, log;
 };
 
-/// One step of slice sampling. density(x, floor) may return any value below `floor` if it is below `floor`.
+/// One step of slice sampling. For a density below `floor`, density(x, floor) may return any value below `floor`.
 template <typename LogDensity>
 Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDensity density) {
   constexpr int kMostSteps = 40;

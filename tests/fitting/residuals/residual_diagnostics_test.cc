@@ -159,7 +159,7 @@ TEST(RunsP, IsOneWhenAllHaveOneSign) {
 }
 
 TEST(RunsP, RejectsWhiteNoiseAsOftenAsItsLevelSays) {
-  // The number of runs is an integer, so the level is met only to the 0.009 that one number at its edge weighs.
+  // The number of runs is an integer, so the level is met only to 0.009, the probability of one number at its edge.
   EXPECT_THAT(RejectedShare(RunsP), DoubleNear(0.05, 0.015));
 }
 

@@ -23,7 +23,7 @@ namespace pendulum {
 enum class IntervalMethod {
   kAuto,        ///< From the covariance, unless one of the next two is needed.
   kCovariance,  ///< Estimate plus or minus Student's t times the standard error.
-  kProfile,     ///< Of the profile likelihood; used by kAuto within three standard errors of a bound.
+  kProfile,     ///< From the profile likelihood; kAuto uses it within three standard errors of a bound.
   kBootstrap,   ///< From refits of recordings with simulated or resampled noise.
   kNone,        ///< For trial fits: no errors, intervals, identifiability, alternative sensors or autocorrelation.
 };
