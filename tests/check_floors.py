@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Proves the architecture: who may include whom, and what stays out of the libraries.
+"""Checks the architecture: which floor may include which, and what the libraries may not contain.
 
-  check_floors.py [ROOT]       prints one line for each offence, "path:line: what is wrong"; exit code 1 if there is one
-  check_floors.py --self_test  shows on a small tree that each rule complains when it is broken
+  check_floors.py [ROOT]       prints one line for each violation, "path:line: what is wrong"; exit code 1 if there is one
+  check_floors.py --self_test  shows on a small tree that each rule reports its violation
 """
 
 import pathlib
@@ -14,7 +14,7 @@ import tempfile
 import check_main
 import cpp_text
 
-# The floors and what each stands on. A file may include its own floor and all those below.
+# The floors, and those that each may use. A file may include its own floor and all those below.
 STANDS_ON = {
     "base": [],
     "recording": ["base"],
@@ -33,8 +33,8 @@ STANDS_ON = {
     "tools": ["acquisition", "service"],
 }
 
-# The rooms of a floor that has several: subfolders, lowest first; "" is the floor's own folder. A file may include its own
-# room and those before it.
+# The rooms of a floor that has several: subfolders, lowest first; "" is the floor's own folder. A file may include its
+# own room and those listed before it.
 ROOMS = {
     "recording": ["", "readers/columns", "readers/text", "readers/mat", "readers", "calibration"],
     "fitting": ["likelihood", "start", "residuals", "solve", "uncertainty", "fit", "swing", "joint"],
@@ -58,20 +58,21 @@ LIBRARY_FLOORS = {
     "zlib.h": {"recording"},
     "SQLiteCpp": {"batch"},
 }
-# Tests may in addition: judge an implementation by an independent one, and differentiate trajectories as the fit does.
+# Additional headers for tests: they check an implementation against an independent one, and differentiate trajectories
+# as the fit does.
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
 FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages"}
 
-# What only the floors that talk to people may do.
+# Words that only the floors with a user interface may use.
 TALKING_FLOORS = {"tools"}
 FORBIDDEN_BELOW = {
     "a stream of the process": r"\b(?:cout|cerr|clog)\b",
     "printf": r"\b(?:f|v|vf)?printf\s*\(",
     "exit": r"\b(?:_|_E|quick_)?exit\s*\(",
     "throw": r"\bthrow\b",
-    "a naked new": r"\bnew\b(?!>)",  # but for #include <new>
+    "a naked new": r"\bnew\b(?!>)",  # except #include <new>
     "logging": r"\b[DPSV]*LOG(?:_[A-Z_]+)?\s*\(",
     "a flag": r"\bDEFINE_\w+",
 }
@@ -89,13 +90,13 @@ def floor_of(path):
 
 
 def room_of(floor, inner):
-    """Rank of the room of a file, given by its path within the floor; None where the room is unknown."""
+    """Rank of the room of a file, given by its path within the floor; None if the room is unknown."""
     room = str(pathlib.PurePath(inner).parent).removeprefix(".")
     return ROOMS[floor].index(room) if room in ROOMS[floor] else None
 
 
 def check_room(path, header):
-    """What is wrong with this file including this header of its own floor, or None."""
+    """The error if this file includes this header of its own floor, or None."""
     floor = floor_of(path)
     top = "include/pendulum" if path.parts[0] == "include" else path.parts[0]
     if floor not in ROOMS or top == "tests":
@@ -108,7 +109,7 @@ def check_room(path, header):
 
 
 def check_include(root, path, header, quoted):
-    """What is wrong with this file including this header, or None."""
+    """The error if this file includes this header, or None."""
     floor = floor_of(path)
     in_tests = path.parts[0] == "tests"
     if in_tests and floor in FREE_TEST_FOLDERS:
@@ -136,7 +137,7 @@ def check_include(root, path, header, quoted):
 
 
 def check_includes(root, path):
-    """Each file is of a known floor, and includes its own or lower ones."""
+    """Each file belongs to a known floor, and includes its own or lower ones."""
     floor = floor_of(path)
     if floor not in STANDS_ON and not (path.parts[0] == "tests" and floor in FREE_TEST_FOLDERS):
         yield f"{path}:1: there is no floor {floor}"
@@ -149,7 +150,7 @@ def check_includes(root, path):
 
 
 def check_words(root, path):
-    """Below the tools nothing prints, logs, exits, throws or owns by hand."""
+    """Below the tools, no code prints, logs, exits, throws or uses a naked new."""
     if path.parts[0] == "tests" or floor_of(path) in TALKING_FLOORS:
         return
     for number, line in enumerate(cpp_text.code_only((root / path).read_text()).splitlines(), 1):
@@ -159,9 +160,9 @@ def check_words(root, path):
 
 
 def check_companions(root, path):
-    """src/F/x.cc has include/pendulum/F/x.h, or src/F/x.h where it is private, which it includes before all others so
-    that it is known to compile on its own. What is public, or a tool's, has tests/F/x_test.cc; what else is private is
-    tested through that. src/F/x_part.cc has src/F/x.h, whose templates it makes the compiler emit."""
+    """src/F/x.cc has include/pendulum/F/x.h, or a private src/F/x.h, and includes it first, which shows that the header
+    compiles on its own. Public files and tools have tests/F/x_test.cc; other private files are tested through these.
+    src/F/x_part.cc has src/F/x.h, whose templates it instantiates."""
     if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
         return
     inner = path.relative_to("src").with_suffix("")
@@ -196,7 +197,7 @@ def check_links(root):
 
 
 def check_listed(root, path):
-    """A file that nobody compiles proves nothing: each is named in a CMakeLists.txt, private headers apart."""
+    """Each file is named in a CMakeLists.txt, except private headers: a file that is not compiled is not checked."""
     floor = floor_of(path)
     if path.parent == pathlib.Path("tests/packages") and path.stem.endswith("_test"):
         if [path.stem.removesuffix("_test")] not in cmake_calls(root, path.parent, "pendulum_add_package_test"):
@@ -222,7 +223,7 @@ def check_listed(root, path):
 
 
 def complaints(root):
-    """Every offence in the tree, as "path:line: what is wrong"."""
+    """All violations in the tree, as "path:line: what is wrong"."""
     paths = [path.relative_to(root) for top in ("include", "src", "tests") for path in cpp_text.sources(root / top)]
     paths += [path.relative_to(root) for path in sorted((root / "tests").rglob("*_test.py"))]
     found = list(check_links(root))
@@ -232,7 +233,7 @@ def complaints(root):
     return found
 
 
-# A tree in which each rule is broken, and kept where that is tempting: file -> (content, the complaint that must come).
+# A tree that breaks each rule, and keeps it in tempting cases: file -> (content, the expected complaint).
 BAD_TREE = {
     "include/pendulum/base/good.h": ("// cout << new\n#include <string>\n", None),
     "src/base/good.cc": ('#include "pendulum/base/good.h"\nconst char* k = "throw"; int n = 2\'000; char c[9]; '
@@ -293,7 +294,7 @@ BAD_TREE = {
 
 
 def self_test():
-    """What the rules fail to say of BAD_TREE, or say without cause."""
+    """Complaints about BAD_TREE that are missing or wrong."""
     failures = []
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Finds source files that do not include what they use, themselves or through the project's headers that they include.
+"""Finds source files that do not include what they use, either directly or through the project's headers.
 
   check_includes.py [ROOT]       prints one line for each name without its header, "path:line: name needs <header>"; exit 1 if any
   check_includes.py --self_test  shows on a small tree that a missing header is found
 
-Files are compiled several in one unit, where the includes of one serve the next: the compiler does not see what is
-missing. Looked at are names of the project, of the standard library and, by their namespaces or macros, of some others.
+Several files are compiled in one unit, where one file's includes serve the next, so the compiler does not find a missing
+include. The check covers names of the project, of the standard library and, by namespace or macro, of some others.
 """
 
 import functools
@@ -18,7 +18,7 @@ import tempfile
 import check_main
 import cpp_text
 
-# Headers of the standard library, and names that need one of them. A name that stands in several needs any one.
+# Headers of the standard library, and the names they provide. For a name with several headers, any one suffices.
 STANDARD = {
     "algorithm": "adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill "
                  "fill_n find find_if find_if_not for_each generate inplace_merge is_sorted lower_bound max max_element merge "
@@ -94,7 +94,7 @@ STANDARD = {
     "variant": "get get_if holds_alternative monostate variant visit",
     "vector": "erase erase_if size ssize vector",
 }
-# Names of other libraries, and the beginning of the headers that have them.
+# Names of other libraries, and the beginnings of the headers that provide them.
 LIBRARIES = [(re.compile(name), header) for name, header in (
     (r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(", "gtest/ gmock/"), (r"\b(?:EXPECT|ASSERT)_THAT\(", "gmock/"),
     (r"\bboost::", "boost/"), (r"\bbenchmark::", "benchmark/"), (r"\bDEFINE_(?:bool|double|int32|string)\(", "gflags/"),
@@ -102,7 +102,7 @@ LIBRARIES = [(re.compile(name), header) for name, header in (
     (r"\bEigen::LD?LT\b|\.ld?lt\(", "Eigen/Cholesky"), (r"\bEigen::\w*EigenSolver\b", "Eigen/Eigenvalues"),
     (r"\bEigen::\w*QR\b|\.\w*[hH]ouseholderQr\(|\.completeOrthogonalDecomposition\(", "Eigen/QR"),
     (r"\bEigen::\w+SVD\b|\.(?:bdc|jacobi)Svd\(", "Eigen/SVD"))]
-# What a header brings as the standard or the library of g++ and clang has it, or because it stands for another.
+# Headers that a header includes, by the standard or in the libraries of g++ and clang, or that it stands for.
 BRINGS = {
     "algorithm": {"utility"}, "charconv": {"system_error"}, "cstring": {"string.h"}, "ios": {"string"}, "iostream": {"ios", "istream", "ostream"},
     "map": {"utility"}, "string": {"string_view"}, "thread": {"stop_token"}, "tuple": {"utility"}, "unordered_map": {"utility"},
@@ -117,15 +117,15 @@ for _header, _names in STANDARD.items():
         HEADERS_OF.setdefault(_name, set()).add(_header)
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)', re.MULTILINE)
-_EVERYWHERE = {"ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library have them
+_EVERYWHERE = {"ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library provide them
 _STD_NAME = re.compile(r"(?<![\w:])std::(?:ranges::)?(\w+)")
-# Types, aliases, constants and functions that a header declares outside of classes, that is at the left edge.
+# Types, aliases, constants and functions that a header declares outside of classes: at the left edge of a line.
 _DECLARED = re.compile(
     r"^(?:(?:template <[^\n]*>\n)?(?:struct|class|enum class) (?:\[\[[^\]]*\]\] )?([A-Z]\w+)(?= (?:final )?[{:]|$)"
     r"|(?:template <[^\n]*>\n)?using ([A-Z]\w+) ="
     r"|(?:inline |extern )?const(?:expr)? [^\n=({]*?\b(k[A-Z]\w+)(?: =|\{|;)"
     r"|(?!(?:return|using|namespace|template|static|TEST|struct|class|enum)\b)[\w:<>,&*\[\] ]*?[\w>&*] ([A-Z]\w+)\()", re.MULTILINE)
-# Whatever looks like a declaration, members, locals and enumerators too: such a name needs no header.
+# Everything that looks like a declaration, including members, locals and enumerators: such a name needs no header.
 _ANY_DECLARED = re.compile(
     r"\b(?:struct|class|enum class|using|typename|concept) (?:\[\[[^\]]*\]\] )?(\w+)|(?<!\breturn)(?<!\bco_return)[\w>&*\]] [&*]?([A-Z]\w+)\("
     r"|\b(k[A-Z]\w+)(?= =|\{|,|;|\))|^  (k[A-Z]\w+)$|\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+), \w+|[\w>&*] (k?[A-Z]\w+)(?:;|\[|\{| =)", re.MULTILINE)
@@ -134,7 +134,7 @@ _USED = re.compile(r"(?<![\w.:>~])(?:pendulum::)?(k?[A-Z]\w+)\b")
 
 
 def own_header(root, path, name):
-    """The file that an include of this name in `path` means, or None when it is not the project's."""
+    """The file that this include name means in `path`, or None if it does not belong to the project."""
     for folder in (path.parent, root / "include", root / "src", root, root / "firmware"):
         if (folder / name).is_file():
             return (folder / name).resolve()
@@ -156,7 +156,7 @@ class Tree:
                     self.declaring.setdefault(name, set()).add(path)
 
     def stands_alone(self, path):
-        """Not a header that is a part of another, which includes it in the middle."""
+        """Whether a file is not a fragment that another file includes in its middle."""
         return path.suffix == ".cc" or "#pragma once" in self.text(path)
 
     def declared(self, path):
@@ -177,7 +177,7 @@ class Tree:
         return own, others
 
     def reached(self, path):
-        """What a file includes, through own headers: (own, others)."""
+        """All files that a file includes, through own headers: (own, others)."""
         own, others, waiting = {path}, set(), [path]
         while waiting:
             more, named = self.includes(waiting.pop())
@@ -187,7 +187,7 @@ class Tree:
         return own, others.union(*(BRINGS.get(header, set()) for header in others))
 
     def complaints(self, path):
-        """The first use of each name whose header is not reached."""
+        """The first use of each name whose header is not included."""
         own, others = self.reached(path)
         code, seen = self.code(path), set(_EVERYWHERE)
         for match in _STD_NAME.finditer(code):
@@ -221,7 +221,7 @@ def complaints(root):
 
 
 def self_test():
-    """What is found wrongly in a small tree."""
+    """The wrong results for a small tree."""
     files = {
         "include/pendulum/a/x.h": "#pragma once\n#include <vector>\nstruct Point {\n  std::vector<double> at;\n};\nPoint MakePoint(int n);\n",
         "src/a/good.cc": '#include <cmath>\n#include "pendulum/a/x.h"\nstd::vector<double> F() { return MakePoint(1).at; }\n'

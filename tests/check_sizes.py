@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Reports the sizes of functions and files, the share of comments in public headers and the lines of tests a line of code.
+"""Reports the sizes of functions and files, the share of comments in public headers, and the lines of tests per line of code.
 
-  check_sizes.py [ROOT]       prints the figures and the largest functions and files: does each read like the method?
+  check_sizes.py [ROOT]       prints the figures and the largest functions and files, for a reader to judge
   check_sizes.py --self_test  shows on small texts that functions are found and measured; exit code 1 if not
 
-It refuses nothing: a limit makes people split what is one thought, and delete sentences that a reader needs.
+It rejects nothing: a limit makes people split a single thought, and delete sentences that a reader needs.
 
-A function's length is that from its opening to its closing brace, in lines.
+A function's length is the number of lines from its opening to its closing brace.
 """
 
 import math
@@ -35,7 +35,7 @@ def is_function(head):
 
 
 def brace_kind(head):
-    """What a brace after this text, outside of functions, opens."""
+    """The kind of block that a brace after this text opens, outside of functions."""
     if is_function(head):
         return "function"
     return "type" if _TYPE.search(head) else "initializer"
@@ -69,7 +69,7 @@ def functions(text):
 
 
 def comment_share(texts):
-    """Lines that carry a comment over lines that are not blank; the licence line counts as neither."""
+    """Share of lines with a comment among nonblank lines; the licence line is not counted at all."""
     with_comment = not_blank = 0
     for text in texts:
         for line, code in zip(text.splitlines(), cpp_text.without_comments(text).splitlines()):
@@ -85,7 +85,7 @@ def quantile(values, share):
 
 
 def lines_not_blank(texts):
-    """Over all the texts."""
+    """Number of nonblank lines in all texts."""
     return sum(bool(line.strip()) for text in texts for line in text.splitlines())
 
 
@@ -126,7 +126,7 @@ SELF_TEST = [
 
 
 def self_test():
-    """What is measured wrongly in SELF_TEST."""
+    """The wrong results for SELF_TEST."""
     wrong = [f"expected {expected}, got {functions(text)} in\n{text}"
              for text, expected in SELF_TEST if functions(text) != expected]
     share = comment_share(["// SPDX-License-Identifier: x\n\n/// a\nint b;  // c\nint d;\nconst char* e = \"//\";\n"])

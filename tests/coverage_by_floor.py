@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""From `llvm-cov export --summary-only` on stdin: lines and branches that were run, by floor, then the ten files with the
-smallest share of lines."""
+"""Reads `llvm-cov export --summary-only` from stdin. Prints the covered lines and branches by floor, then the ten files
+with the smallest share of covered lines."""
 
 import collections
 import json
@@ -13,7 +13,7 @@ WORST = 10
 
 
 def floor_of(name):
-    """src/F/x.cc and include/pendulum/F/x.h are of floor F."""
+    """The floor F of src/F/x.cc and include/pendulum/F/x.h."""
     parts = pathlib.Path(name).parts
     return parts[2] if parts[0] == "include" else parts[1]
 
@@ -25,7 +25,7 @@ def share(counts):
 def main():
     files = {}
     for file in json.load(sys.stdin)["data"][0]["files"]:
-        # Of a header "build/coverage/../../src/F/x.h", of a source in a unity unit "build/coverage/src/F/x.cc".
+        # A header is "build/coverage/../../src/F/x.h", a source in a unity unit "build/coverage/src/F/x.cc".
         name = os.path.normpath(file["filename"]).removeprefix("build/coverage/")
         if name.startswith(("src/", "include/")):
             files[name] = file["summary"]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C++ sources as text, for the checks of the house."""
+"""C++ sources as text, for the project's checks."""
 
 import re
 
 SUFFIXES = {".h", ".cc"}
 
-# Numbers come before character literals for the sake of 2'000'000.
+# Numbers come before character literals, because of 2'000'000.
 _TOKENS = re.compile(
     r"""(?P<number>\b\d(?:'?[\w.])*)
       | (?P<comment>//[^\n]*|/\*.*?\*/)
@@ -20,12 +20,12 @@ def sources(folder):
 
 
 def without_comments(text):
-    """The text with comments blanked out; no character moves to another line."""
+    """The text with comments blanked out; every character stays on its line."""
     return _TOKENS.sub(lambda token: _blank(token.group()) if token["comment"] else token.group(), text)
 
 
 def code_only(text):
-    """The text with comments and literals blanked out; no character moves to another line."""
+    """The text with comments and literals blanked out; every character stays on its line."""
     return _TOKENS.sub(lambda token: token.group() if token["number"] else _blank(token.group()), text)
 
 

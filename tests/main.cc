@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a floor's tests: all, or those of the source file whose path ends as the argument does.
+// Runs a floor's tests: all, or those of the source file whose path ends with the argument.
 
 #include <iostream>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// As --gtest_filter takes it; empty when there are no tests in the file.
+/// The tests of a file as a pattern for --gtest_filter; empty if the file has none.
 std::string TestsIn(std::string_view file) {
   const testing::UnitTest& all = *testing::UnitTest::GetInstance();
   std::string filter;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Where the time of builds and tests goes: times.py BUILD_FOLDER... [--most 20]
+"""Lists the time of builds and tests: times.py BUILD_FOLDER... [--most 20]
 
-Of each folder: what ninja built since the folder was made (.ninja_log) and what ctest ran last (tests.xml, which
-scripts/test has it write), the longest first. Times are wall clock; several jobs run at once, so their sum is more than
-what one waits for.
+For each folder: what ninja built since the folder was created (.ninja_log) and what ctest ran last (tests.xml, which
+scripts/test requests), the longest first. Times are wall clock; several jobs run at once, so their sum exceeds the
+waiting time.
 """
 
 import argparse
@@ -13,10 +13,10 @@ import xml.etree.ElementTree
 
 
 def built(folder):
-    """(seconds, output) of each edge in ninja's log; the last build of an output counts."""
+    """(seconds, output) of each edge in ninja's log; only the last build of an output counts."""
     seconds = {}
     for line in (folder / ".ninja_log").read_text().splitlines():
-        if line.count("\t") == 4:  # neither the head nor what a killed ninja left of a line
+        if line.count("\t") == 4:  # neither the header nor the incomplete line of a killed ninja
             start, end, _, output, _ = line.split("\t")
             seconds[output] = (int(end) - int(start)) / 1000
     return [(time, output) for output, time in seconds.items()]

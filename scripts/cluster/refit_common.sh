@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
 #
-# What refit_slurm, refit_parallel and refit_task have in common; they source it.
+# Shared by refit_slurm, refit_parallel and refit_task, which source it.
 
-# What the user chooses, and the defaults; refit_slurm and refit_parallel add what is theirs.
+# The user's options with their defaults; refit_slurm and refit_parallel add their own.
 declare -A option=(["manifest"]='' ["models"]='' ["store"]='' ["shards"]='' ["dir"]='' ["all"]=false)
 
 # refuse CODE SENTENCE
@@ -12,8 +12,8 @@ refuse() {
   exit "$1"
 }
 
-# Reads --name value, --name=value and --all into option[name], which has the default of every name there is, and what
-# stands behind -- into tool_flags: parse_options "$@"
+# Reads --name value, --name=value and --all into option[name], which must have a default for every valid name. The
+# arguments after -- go into tool_flags: parse_options "$@"
 parse_options() {
   local name
   tool_flags=()
@@ -45,7 +45,7 @@ parse_options() {
   done
 }
 
-# require_counts NAME...: these options are whole numbers from 1.
+# require_counts NAME...: checks that these options are whole numbers from 1.
 require_counts() {
   local name
   for name in "$@"; do
@@ -53,7 +53,7 @@ require_counts() {
   done
 }
 
-# What can be wrong with the request itself; the paths in it become absolute ones.
+# Checks the request itself, and makes its paths absolute.
 check_request() {
   local name flag
   for name in manifest models store shards; do
@@ -63,7 +63,7 @@ check_request() {
   require_counts shards cpus
   for flag in "${tool_flags[@]}"; do
     [[ $flag == -* ]] || continue
-    name=${flag#-}  # gflags takes one dash too
+    name=${flag#-}  # gflags accepts a single dash too
     case ${name#-} in
       data | data=* | force* | manifest* | model* | scratch* | shard* | store* | threads*)
         refuse 2 "$flag stands behind --, but is not for you to give there"
@@ -72,7 +72,7 @@ check_request() {
   done
   option["dir"]=${option[dir]:-${option[store]}.shards}
   for name in manifest store dir; do
-    # Not realpath: another node may have the same folder behind another link.
+    # Not realpath: another node may reach the same folder through another link.
     [[ ${option[$name]} == /* ]] || option["$name"]=$PWD/${option[$name]}
   done
   [[ -f ${option[manifest]} && -r ${option[manifest]} ]] || refuse 3 "${option[manifest]} cannot be read; check the path"
@@ -80,8 +80,8 @@ check_request() {
   mkdir -p -- "${option[dir]}/logs" 2> /dev/null || refuse 73 "${option[dir]} cannot be made; check the path and its permissions"
 }
 
-# Sets tool to refit_pendulums: what REFIT_PENDULUMS says, what these scripts came with or stand beside the build of, or
-# that of PATH.
+# Sets tool to refit_pendulums: $REFIT_PENDULUMS, or the one delivered with these scripts or built next to them, or the
+# one in PATH.
 find_tool() {
   local here candidate
   here=$(dirname -- "${BASH_SOURCE[0]}")
@@ -96,8 +96,9 @@ find_tool() {
   refuse 69 "there is no refit_pendulums beside this script nor on PATH; let REFIT_PENDULUMS name it"
 }
 
-# What was fitted for another request, or is to be looked at again (--all), is no result any more, but a task begins with
-# it and keeps what is as it should be. Not for shards of another number: missing refuses these before.
+# Renames shards that were fitted for another request, or that are to be checked again (--all), to *.part. A task starts
+# from such a file and keeps its valid results. Shards of another shard count do not get here: `missing` rejects these
+# before.
 set_aside_other_shards() {
   local file=${option[dir]}/request request shard
   request=$("$tool" --version && sha256sum < "${option[manifest]}" && printf '%q ' "${option[models]}" "${tool_flags[@]}")
@@ -109,7 +110,7 @@ set_aside_other_shards() {
   printf '%s\n' "$request" > "$file"
 }
 
-# Sets missing to the shards that are not there yet, as in 3,17-20; nothing when all are.
+# Sets missing to the shards that do not exist yet, as in 3,17-20; empty if all exist.
 find_missing() {
   local list
   list=$("$tool" missing --shard_dir "${option[dir]}" --shard_count "${option[shards]}")
@@ -125,15 +126,15 @@ find_missing() {
     END { flush() }' <<< "$list")
 }
 
-# Sets missing to the shards that this request has to be given a task for.
+# Sets missing to the shards for which this request needs a task.
 find_work() {
   find_missing
   set_aside_other_shards
   find_missing
 }
 
-# run_to_end COMMAND...: runs it, hands SIGTERM and Ctrl-C on to it and waits for it all the same. The exit code is the
-# command's, or 75, try again, when the signal found it before it could heed it.
+# run_to_end COMMAND...: runs it, forwards SIGTERM and Ctrl-C, and still waits for its end. The exit code is the
+# command's, or 75 (try again) if the signal came before the command could handle it.
 run_to_end() {
   local process='' stopped=false code=0
   trap 'stopped=true; if [[ -n $process ]]; then kill -TERM "$process" 2> /dev/null || true; fi' TERM INT

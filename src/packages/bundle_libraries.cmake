@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# Completes an installed folder so that it runs from anywhere: lib/ gets every shared library that the tools need, but for
-# glibc's own, share/doc/ the licences of these and of what is in the tools. pendulum_tools are the tools as they were
-# built, pendulum_strip is strip, pendulum_packages this folder.
+# Completes an installed folder so that it runs from any place. lib/ gets every shared library that the tools need,
+# except glibc's; share/doc/ gets their licences and those of code in the tools. pendulum_tools are the built tools,
+# pendulum_strip is strip, pendulum_packages this folder.
 include(${pendulum_packages}/licences.cmake)
 set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
 set(glibc "^(ld-linux.*|libc|libm|libmvec|libpthread|libdl|librt|libresolv|libutil)\\.so")
 
-# The Debian package that a file is of, without the architecture; "" if there is none.
+# The Debian package that owns a file, without the architecture; "" if there is none.
 function(find_debian_package file result)
-  # Where /lib is a link to /usr/lib, dpkg knows the file by the name that its package has for it.
+  # If /lib is a link to /usr/lib, dpkg knows the file only by the name in its package.
   string(REGEX REPLACE "^/usr/" "/" short ${file})
   foreach(name ${file} ${short})
     execute_process(COMMAND dpkg-query --search ${name} OUTPUT_VARIABLE found ERROR_QUIET RESULT_VARIABLE code)
@@ -45,7 +45,7 @@ foreach(library ${libraries})
     message(FATAL_ERROR "The tarball needs ${file}, whose licence is not known: it is of no Debian package.")
   endif()
   copy_licence(${package})
-  # By the name that it is loaded by, and without a RUNPATH, which would shut out the tools' RPATH.
+  # With the name used for loading, and without a RUNPATH, which would disable the tools' RPATH.
   file(COPY_FILE ${file} ${prefix}/lib/${name})
   file(CHMOD ${prefix}/lib/${name} PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
   file(RPATH_REMOVE FILE ${prefix}/lib/${name})
@@ -53,6 +53,6 @@ endforeach()
 foreach(tool ${pendulum_tools})
   cmake_path(GET tool FILENAME name)
   execute_process(COMMAND ${pendulum_strip} ${prefix}/bin/${name} COMMAND_ERROR_IS_FATAL ANY)
-  # CMake ends the RPATH of what it builds with an empty element, which means the folder that one happens to be in.
+  # CMake ends the RPATH with an empty element, which would mean the current folder.
   file(RPATH_CHANGE FILE ${prefix}/bin/${name} OLD_RPATH "$ORIGIN/../lib:" NEW_RPATH "$ORIGIN/../lib")
 endforeach()

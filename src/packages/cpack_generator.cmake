@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Read by cpack once for each generator: what goes into its packages.
+# cpack reads this once for each generator: it selects the components of its packages.
 if(CPACK_GENERATOR STREQUAL "TGZ")
   set(CPACK_COMPONENTS_ALL relocatable)
   set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What Debian wants to be in share/doc of a package, of which pendulum_package is the name and pendulum_packages this folder.
+# The files that Debian requires in share/doc of a package. pendulum_package is its name, pendulum_packages this folder.
 include(${pendulum_packages}/licences.cmake)
 set(folder $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/doc/${pendulum_package})
 write_copyright(${folder}/copyright)

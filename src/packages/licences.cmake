@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# The licences of what is in the tools and libraries besides their own code. pendulum_packages is this folder.
+# The licences of third-party code in the tools and libraries. pendulum_packages is this folder.
 
-# What is compiled in or linked, but for the compiler's own libraries: these are Debian's packages, each with its copyright
-# in /usr/share/doc. licences/ has those that are not to be found there: of the pages' uPlot; of Boost, whose licence Debian
-# has among those of thousands of files that are not in use here.
+# Third-party code that is compiled in or linked, except the compiler's own libraries. These are Debian packages, each
+# with its copyright in /usr/share/doc. licences/ has those that are missing there: for uPlot in the pages, and for
+# Boost, whose licence in Debian is one among those of thousands of unused files.
 set(pendulum_third_parties
   libceres-dev
   libcsv-dev
@@ -21,7 +21,7 @@ set(pendulum_third_parties
   prometheus-cpp-dev
   zlib1g-dev)
 
-# The text of a file with a heading, appended to another file.
+# Appends the text of a file, with a heading, to another file.
 function(append_licence file name licence)
   if(NOT EXISTS ${licence})
     message(FATAL_ERROR "The packages need the licence of ${name}: there is no ${licence}.")
@@ -31,7 +31,7 @@ function(append_licence file name licence)
   file(APPEND ${file} "\n${line}\n${name}\n${line}\n\n${text}")
 endfunction()
 
-# Writes the copyright file of a package: ours, then all others'.
+# Writes the copyright file of a package: our licence, then all others.
 function(write_copyright file)
   configure_file(${pendulum_packages}/copyright.in ${file} COPYONLY)
   file(GLOB texts ${pendulum_packages}/licences/*)
@@ -44,7 +44,7 @@ function(write_copyright file)
   endforeach()
 endfunction()
 
-# Puts the texts that a copyright file refers to into a folder, for systems that are not Debian.
+# Copies the texts that a copyright file refers to into a folder, for systems other than Debian.
 function(copy_common_licences copyright folder)
   file(READ ${copyright} text)
   string(REGEX MATCHALL "/usr/share/common-licenses/[A-Za-z0-9]+(-[0-9]+(\\.[0-9]+)*)?" paths "${text}")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Puts a manual page of each tool into share/man/man1 of an installed folder: what it says of itself by --help, and the
-# sections in man/NAME.h2m. pendulum_tools are the tools as they were built, pendulum_packages is this folder.
+# Writes a manual page for each tool into share/man/man1 of an installed folder, from its --help and the sections in
+# man/NAME.h2m. pendulum_tools are the built tools, pendulum_packages is this folder.
 set(folder $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/man/man1)
 
-# Its path, or an error that names the Debian package that has it: find_packaging_program(NAME PACKAGE RESULT)
+# Finds a program, or fails with the name of its Debian package: find_packaging_program(NAME PACKAGE RESULT)
 function(find_packaging_program name package result)
   find_program(program ${name} NO_CACHE)
   if(NOT program)
@@ -17,7 +17,7 @@ find_packaging_program(help2man help2man help2man)
 find_packaging_program(dpkg-parsechangelog dpkg-dev dpkg_parsechangelog)
 find_packaging_program(gzip gzip gzip)
 
-# The date of the version, not of the build, so that the same sources give the same pages.
+# The date of the version, not of the build, so the same sources give the same pages.
 execute_process(
   COMMAND ${dpkg_parsechangelog} --file ${pendulum_packages}/debian/changelog --show-field Timestamp
   OUTPUT_VARIABLE date

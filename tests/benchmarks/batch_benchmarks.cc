@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// A folder with so many copies of the reference run and a manifest of them, which goes at the end.
+/// A folder with `count` copies of the reference run and their manifest, deleted with this object.
 class BatchFolder {
  public:
   explicit BatchFolder(int count)
@@ -45,7 +45,7 @@ class BatchFolder {
 
   Source source() const { return Expect(OpenSource(folder_ / "runs.csv")); }
 
-  /// A store that is not there yet.
+  /// The path of a store that does not exist yet.
   std::filesystem::path NewStore() const {
     std::filesystem::remove(folder_ / "results.sqlite");
     return folder_ / "results.sqlite";
@@ -55,7 +55,7 @@ class BatchFolder {
   std::filesystem::path folder_;
 };
 
-/// Runs of a batch from their files to their JSON, one after the other on one thread; s.
+/// Time [s] to process the runs of a batch from their files to their JSON, in sequence on one thread.
 double FilesToJson(const Source& source, const RefitOptions& options) {
   const Clock::time_point begin = Clock::now();
   const auto fitted = source.for_each([&](const ManifestEntry& entry) -> Result<void> {
@@ -66,8 +66,8 @@ double FilesToJson(const Source& source, const RefitOptions& options) {
   return SecondsSince(begin);
 }
 
-/// A batch into a new store on all cores, beside the same runs from file to JSON on one thread: the counter
-/// share_of_cores is the throughput of the one over that of the other times the number of cores.
+/// Refits a batch into a new store on all cores, and the same runs from file to JSON on one thread. The counter
+/// share_of_cores is the throughput of the batch divided by that of one thread times the number of cores.
 void RefitBatch(benchmark::State& state) {
   constexpr int kRuns = 100;
   const BatchFolder folder(kRuns);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/benchmark and scipy_users.py refuse before they measure anything."""
+"""Errors that scripts/benchmark and scipy_users.py report before they measure anything."""
 
 import pathlib
 import subprocess

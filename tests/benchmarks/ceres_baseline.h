@@ -7,17 +7,17 @@
 
 #include "reference_run.h"
 
-/// How baselines that hand N residuals to Ceres are timed and judged, whatever their trajectory. Their cost functions
-/// are those of the reference run, measured - modelled [rad], with one block of six parameters.
+/// Timing and accuracy of baselines that pass N residuals to Ceres, for any trajectory. Their cost functions describe
+/// the reference run, measured - modelled [rad], with one block of six parameters.
 namespace pendulum::benchmarks {
 
-/// A start as a user would guess it from the rig's geometry and the plot.
+/// A start that a user could guess from the rig's geometry and the plot.
 inline constexpr Parameters kGuess = {0.0762, 0.0036, 0.001, 0.41, 1.93, 0.002};
 
-/// The start values that this library finds in the reference run.
+/// The start values that this library estimates from the reference run.
 Parameters OurStartValues();
 
-/// Where Ceres arrives from a start with DENSE_QR and its default tolerances, and what it counts on the way.
+/// Ceres' solution from a start with DENSE_QR and default tolerances, and its counters.
 struct CeresSolution {
   Parameters parameters;
   ceres::Solver::Summary summary;
@@ -28,11 +28,11 @@ CeresSolution SolveByCeres(ceres::CostFunction& cost, const Parameters& start);
 /// Largest error of the trajectory at these parameters [rad].
 double MaxTrajectoryError(const ceres::CostFunction& cost, const Parameters& parameters);
 
-/// Residuals, and derivatives if asked for, at the truth. Counters: max_error_rad, max_jacobian_error (as
-/// MaxJacobianError), samples.
+/// Times residuals, and derivatives if requested, at the true parameters. Counters: max_error_rad, max_jacobian_error
+/// (as MaxJacobianError), samples.
 void TimeEvaluation(benchmark::State& state, const ceres::CostFunction& cost, bool with_jacobian);
 
-/// A solve. Counters: std_errors_from_optimum, max_error_rad, iterations, samples.
+/// Times a solve. Counters: std_errors_from_optimum, max_error_rad, iterations, samples.
 void TimeSolve(benchmark::State& state, ceres::CostFunction& cost, const Parameters& start);
 
 }  // namespace pendulum::benchmarks

@@ -12,8 +12,8 @@
 #include "pendulum/model/series.h"
 #include "reference_run.h"
 
-/// What Ceres' users write without this library: a trajectory that is moved on from sample to sample (here by one
-/// Runge-Kutta step, in odeint_swing.h by steps that are controlled), differentiated automatically, six parameters in
+/// Code that users of Ceres write without this library. A trajectory advances from sample to sample (here by one
+/// Runge-Kutta step, in odeint_swing.h with step size control). It is differentiated automatically by six parameters in
 /// one block of fixed size.
 namespace pendulum::benchmarks {
 
@@ -28,7 +28,7 @@ struct Ratios {
       : gravity(gravity_torque / p[0]), viscous(p[1] / p[0]), coulomb(p[2] / p[0]) {}
 };
 
-/// One step of the classical Runge-Kutta method for θ'' = f(θ, θ'), the sums over θ' written out. `step` [s] is a
+/// One step of the classical Runge-Kutta method for θ'' = f(θ, θ'), with the sums for θ' written out. `step` [s] is a
 /// double or a T.
 template <typename T, typename Step, typename Acceleration>
 void RungeKuttaStep(const Step& step, const Acceleration& f, T& angle, T& rate) {
@@ -43,13 +43,13 @@ void RungeKuttaStep(const Step& step, const Acceleration& f, T& angle, T& rate) 
   rate += step * (k1 + 2.0 * (k2 + k3) + k4) * (1.0 / 6.0);
 }
 
-/// Friction's sign smoothed to tanh(ω / 0.01 rad/s): the straightforward way.
+/// Friction's sign smoothed to tanh(ω / 0.01 rad/s): the simple method.
 template <typename T>
 class SmoothedSwing {
  public:
   SmoothedSwing(double gravity_torque, const T* p) : ratios_(gravity_torque, p), angle_(p[3]), rate_(0.0) {}
 
-  /// Moves on by a step [s], a double or a T.
+  /// Advances by a step [s], a double or a T.
   template <typename Step>
   void Advance(const Step& step) {
     RungeKuttaStep(
@@ -69,14 +69,14 @@ class SmoothedSwing {
   T rate_;
 };
 
-/// Reversals located within their step, their instants differentiated by the implicit function theorem: the careful
-/// way, and of about the accuracy that the steps allow.
+/// Reversals are located within their step and their instants differentiated by the implicit function theorem. This is
+/// the careful method, nearly as accurate as the steps allow.
 template <typename T>
 class LocatedSwing {
  public:
   LocatedSwing(double gravity_torque, const T* p) : ratios_(gravity_torque, p), angle_(p[3]), rate_(0.0) { Turn(); }
 
-  /// Moves on by a step [s], a double or a T.
+  /// Advances by a step [s], a double or a T.
   template <typename Step>
   void Advance(const Step& step) {
     if (direction_ == 0) return;
@@ -114,7 +114,7 @@ class LocatedSwing {
     Advance(T(step - reversal));
   }
 
-  /// Newton's method on the rate at the end of a shortened step, in doubles, from the chord.
+  /// Newton's method for the rate at the end of a shortened step, in doubles, starting from the chord.
   double TimeToReversal(double step) const {
     const auto law = [&](double angle, double rate) {
       return -(Value(ratios_.gravity) * std::sin(angle) + Value(ratios_.viscous) * rate +
@@ -138,7 +138,7 @@ class LocatedSwing {
   double direction_ = 0;
 };
 
-/// Residuals of a recording, measured - modelled, for ceres::AutoDiffCostFunction, as an ordinary user writes them.
+/// Residuals of a recording, measured - modelled, for ceres::AutoDiffCostFunction, as a typical user writes them.
 template <template <typename> typename Swing>
 class UsersResiduals {
  public:
@@ -169,8 +169,8 @@ class UsersResiduals {
   double gravity_torque_;
 };
 
-/// The same with every call inlined, which no ordinary user asks for. Left to itself, g++ 12 gives up before: a sixth
-/// more time for a Jacobian in a file of its own, up to three times as much beside other templates.
+/// The same with every call inlined, which a typical user does not request. Otherwise g++ 12 stops inlining early. That
+/// costs a sixth more time for a Jacobian in a separate file, and up to three times as much next to other templates.
 template <template <typename> typename Swing>
 class FlattenedResiduals : public UsersResiduals<Swing> {
  public:
@@ -182,8 +182,8 @@ class FlattenedResiduals : public UsersResiduals<Swing> {
   }
 };
 
-/// The cost function over a recording, which must outlive it. To be called once in a file that holds nothing else and
-/// is compiled apart, or its time is that of its neighbours too.
+/// The cost function over a recording, which must outlive it. Call it once in a file that contains nothing else and is
+/// compiled separately. Otherwise other code in the file affects the time.
 template <typename Residuals>
 std::unique_ptr<ceres::CostFunction> MakeUsersCost(const Recording& recording) {
   return std::make_unique<ceres::AutoDiffCostFunction<Residuals, ceres::DYNAMIC, 6>>(

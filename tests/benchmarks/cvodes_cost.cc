@@ -35,7 +35,7 @@ struct SmoothedPendulum {
     rates[1] = -(gravity_torque * std::sin(y[0]) + viscous * y[1] + coulomb * std::tanh(y[1] / kSmoothing)) / inertia;
   }
 
-  /// Rates of the derivatives s[i] of y, in the order of kSensitivities.
+  /// Time derivatives of the sensitivities s[i] of y, in the order of kSensitivities.
   void SensitivityRates(const double* y, N_Vector* s, N_Vector* s_rates) const {
     const double sign = std::tanh(y[1] / kSmoothing);
     const double acceleration = -(gravity_torque * std::sin(y[0]) + viscous * y[1] + coulomb * sign) / inertia;
@@ -56,14 +56,14 @@ int RatesOf(double /*time*/, N_Vector y, N_Vector rates, void* pendulum) {
   return 0;
 }
 
-/// The rates that CVODES hands over are not used: within the simultaneous corrector they are not those at y.
+/// The rates passed by CVODES are not used: within the simultaneous corrector they do not belong to y.
 int SensitivityRatesOf(int /*count*/, double /*time*/, N_Vector y, N_Vector /*rates*/, N_Vector* s, N_Vector* s_rates,
                        void* pendulum, N_Vector /*scratch*/, N_Vector /*scratch*/) {
   static_cast<const SmoothedPendulum*>(pendulum)->SensitivityRates(N_VGetArrayPointer(y), s, s_rates);
   return 0;
 }
 
-/// Ends the program when SUNDIALS refuses, which would be a bug of the benchmark.
+/// Ends the program if SUNDIALS reports an error, which would be a bug of the benchmark.
 void Check(int flag) {
   if (flag < 0) throw std::runtime_error("CVODES: flag " + std::to_string(flag));
 }
@@ -95,7 +95,7 @@ Context MakeContext() {
   return Context(context);
 }
 
-/// A swing from rest at time 0, with or without its sensitivities. Its memory is used again from swing to swing.
+/// A swing from rest at time 0, with or without its sensitivities. Its memory is reused for every swing.
 class CvodesSwing {
  public:
   CvodesSwing(double gravity_torque, double relative_tolerance, bool with_sensitivities)
@@ -127,7 +127,7 @@ class CvodesSwing {
     Check(CVodeSensReInit(integrator_.get(), CV_SIMULTANEOUS, s_.get()));
   }
 
-  /// Moves y, and the sensitivities, to a later time [s]; false when CVODES gives up.
+  /// Moves y, and the sensitivities, to a later time [s]. Returns false if CVODES fails.
   bool MoveTo(double time) {
     double reached = 0;
     if (CVode(integrator_.get(), time, y_.get(), &reached, CV_NORMAL) < 0) return false;
@@ -138,11 +138,11 @@ class CvodesSwing {
   double* s(int i) { return N_VGetArrayPointer(s_.get()[i]); }
 
  private:
-  static constexpr double kAbsolute = 0.1;  // rad, rad/s: what counts as small
+  static constexpr double kAbsolute = 0.1;  // rad, rad/s: small values
 
-  /// Tolerances of the sensitivities follow from those of the state and the parameters' sizes. Steps are controlled by
-  /// the state alone, as is CVODES' default: with the sensitivities they took a third to a half longer, and a
-  /// solve came out alike.
+  /// Tolerances of the sensitivities follow from those of the state and the parameters' sizes. Only the state controls
+  /// the steps, as is CVODES' default. Control by the sensitivities too took a third to a half longer, with the same
+  /// solution.
   void InitSensitivities() {
     s_.reset(N_VCloneVectorArray(kSensitivities, y_.get()));
     for (int i = 0; i < kSensitivities; ++i) N_VConst(0.0, s_.get()[i]);
@@ -160,7 +160,7 @@ class CvodesSwing {
   Vector y_{N_VNew_Serial(kState, context_.get())};
   Vectors s_;
   Corrector corrector_{SUNNonlinSol_FixedPoint(y_.get(), 0, context_.get())};
-  Corrector joint_corrector_;  // of the state and its sensitivities
+  Corrector joint_corrector_;  // for the state and its sensitivities
   Integrator integrator_{CVodeCreate(CV_ADAMS, context_.get())};
 };
 
@@ -191,7 +191,7 @@ class CvodesCost final : public ceres::CostFunction {
  private:
   static constexpr int kParameters = 6;
 
-  /// Derivatives of one residual. The release moves the whole swing: its derivative is minus the rate.
+  /// Derivatives of one residual. The release shifts the whole swing in time: its derivative is minus the rate.
   static void FillRow(CvodesSwing& swing, double* row) {
     for (int j = 0; j < kSensitivities; ++j) row[j] = -swing.s(j)[0];
     row[4] = swing.y()[1];

@@ -18,7 +18,7 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// The reference run after its fit and before it is judged. The cost looks into the problem.
+/// The reference run after its fit and before it is judged. The cost refers to the problem.
 struct SolvedRun {
   std::unique_ptr<FitProblem> problem;
   std::unique_ptr<TrajectoryCost> cost;
@@ -40,12 +40,12 @@ SolvedRun SolveReferenceRun() {
   return run;
 }
 
-/// Information and its inverse at the optimum, residuals without memory: one pass over the samples and some algebra.
+/// Information and its inverse at the optimum, for white residuals: one pass over the samples and some algebra.
 void FindCovariance(benchmark::State& state) {
   SolvedRun run = SolveReferenceRun();
   for (auto _ : state) {
     double& last = run.solution.parameters.back();
-    last = std::nextafter(last, 1.0);  // the cost remembers the sums of the last point
+    last = std::nextafter(last, 1.0);  // the cost caches the sums of the last point
     const std::optional<Optimum> optimum = Linearize(run.problem->solve, *run.cost, run.solution);
     if (!optimum || !optimum->inverse.identifiable) return state.SkipWithError("not identifiable");
     Errors errors = ComputeErrors(*run.problem, *run.cost, run.solution, *optimum, {});
@@ -71,7 +71,7 @@ void FindProfiles(benchmark::State& state) {
   state.counters["samples"] = kSamples;
 }
 
-/// A fit whose intervals are those of refits, on one thread.
+/// A fit with bootstrap intervals, on one thread.
 void FitWithBootstrap(benchmark::State& state) {
   FitOptions options;
   options.rig = ReferenceRig();

@@ -25,7 +25,7 @@ namespace {
 FitOptions ReferenceOptions() {
   FitOptions options;
   options.rig = ReferenceRig();
-  options.threads = 1;  // unless it is what is asked
+  options.threads = 1;  // except in benchmarks of threads
   return options;
 }
 
@@ -48,7 +48,7 @@ void FindStartValues(benchmark::State& state) {
   }
 }
 
-/// Repairs of values, and the free swing.
+/// Repairs the values and finds the free swing.
 void FindWindow(benchmark::State& state) {
   const Recording recording = ReferenceRecording();
   for (auto _ : state) {
@@ -73,11 +73,11 @@ void FitAgain(benchmark::State& state, const Recording& recording, const FitOpti
 
 void Fit(benchmark::State& state, int samples) {
   FitAgain(state, ReferenceRecording(samples), ReferenceOptions());
-  // The optimum is that of the reference run.
+  // Only the reference run's optimum is known.
   if (samples != kSamples) state.counters.erase("std_errors_from_optimum");
 }
 
-/// The same readings with noise of so many counts, taken as numbers or as levels.
+/// The same readings with noise of `counts` counts, treated as continuous or as quantized.
 void FitCounts(benchmark::State& state, double counts, std::optional<NoiseFamily> noise) {
   FitOptions options = ReferenceOptions();
   options.noise = noise;
@@ -95,7 +95,7 @@ void ParseCsv(benchmark::State& state) {
   state.counters["samples"] = kSamples;
 }
 
-/// A file that is deleted with this object.
+/// A temporary file, deleted with this object.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& text)
@@ -117,7 +117,7 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// Reading, repairs, window and fit of fit_pendulum, without closed forms, checks and constancy.
+/// Reads, repairs, selects the window and fits as fit_pendulum does, without closed forms, checks and constancy.
 Result<Identification> FitFile(const std::filesystem::path& path, const FitOptions& options) {
   Result<Recording> recording = ReadRecording(path);
   if (!recording) return tl::unexpected(recording.error());
@@ -149,7 +149,7 @@ void FileToJson(benchmark::State& state) {
   Report(state, report->fits.front());
 }
 
-/// The whole result that fit_pendulum makes of a file by default, from reading to JSON.
+/// The complete default result of fit_pendulum for a file, from reading to JSON.
 void FileToResult(benchmark::State& state, const std::vector<std::string>& models) {
   const TemporaryFile file(ReferenceCsv());
   IdentifyOptions options;
@@ -166,7 +166,7 @@ void FileToResult(benchmark::State& state, const std::vector<std::string>& model
   }
 }
 
-/// The report alone.
+/// Writes the report only.
 void WriteJson(benchmark::State& state) {
   const TemporaryFile file(ReferenceCsv());
   const Identification report = Expect(FitFile(file.path(), ReferenceOptions()));

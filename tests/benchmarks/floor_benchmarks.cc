@@ -21,11 +21,11 @@ namespace {
 
 using Dual = pendulum::Dual<4>;  // by inertia, viscous, coulomb, release_angle
 
-/// All that is known before the samples are looked at, taken down once, and the samples.
+/// The samples, and all quantities that can be computed once before they are evaluated.
 struct FloorRun {
   EvaluationPoint point;
   double tolerance = 0;        // rad, local
-  std::vector<double> values;  // N, rad, the zero taken out
+  std::vector<double> values;  // N, rad, without the zero
   std::vector<FloorSegment> segments;
 
   FloorSamples samples() const { return {point.problem.data.time.data(), values.data()}; }
@@ -66,7 +66,7 @@ FloorRun MakeFloorRun(int samples) {
   return run;
 }
 
-/// Largest difference to TrajectoryCost's sums, where a product of two columns is as large as their norms.
+/// Largest difference from TrajectoryCost's sums; a product of two columns is measured relative to their norms.
 double FloorDisagreement(const FloorRun& run, const NormalMatrix& floor) {
   const FitProblem& problem = run.point.problem;
   const auto cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
@@ -76,7 +76,7 @@ double FloorDisagreement(const FloorRun& run, const NormalMatrix& floor) {
   double difference = 0;
   for (int i = 0; i < kNormalSize; ++i) {
     for (int j = 0; j < kNormalSize; ++j) {
-      // Residuals fall where readings rise.
+      // Residuals decrease where readings increase.
       const double sign = (i == kNormalSize - 1) == (j == kNormalSize - 1) ? 1 : -1;
       const double scaled = sign * floor[i][j] / (problem.data.scale * problem.data.scale);
       difference = std::max(difference, std::abs(scaled - sums(i, j)) / std::sqrt(sums(i, i) * sums(j, j)));
@@ -85,7 +85,7 @@ double FloorDisagreement(const FloorRun& run, const NormalMatrix& floor) {
   return difference;
 }
 
-/// Checks what a kernel gave: sums that are wrong are fast.
+/// Checks the kernel's sums, so that a fast kernel with wrong sums is not accepted.
 void ReportFloor(benchmark::State& state, const FloorRun& run, const NormalMatrix& matrix, FloorTarget target) {
   constexpr double kLargest = 1e-6;
   if (!(FloorDisagreement(run, matrix) <= kLargest)) return state.SkipWithError("sums are not those of TrajectoryCost");

@@ -9,8 +9,9 @@
 namespace pendulum::benchmarks {
 namespace {
 
-// Written once over vectors of samples and compiled for each target: inlined into functions for AVX-512, for AVX2 and
-// FMA, and for what every CPU has. Nothing is passed or returned by value, for how that is done depends on the target.
+// Written once over vectors of samples and compiled for each target. It is inlined into functions for AVX-512, for AVX2
+// with FMA, and for every CPU. Nothing is passed or returned by value, because the calling convention depends on the
+// target.
 #define PENDULUM_INLINE [[gnu::always_inline]] inline
 
 /// One register of samples.
@@ -24,7 +25,7 @@ struct Portable {
   using Vector [[gnu::vector_size(16)]] = double;
 };
 
-/// A stretch of samples whose columns fit into the first-level cache, with room for lanes beyond a segment's end.
+/// A block of samples whose columns fit into the first-level cache, with room for lanes beyond a segment's end.
 constexpr int kBlock = 256;
 constexpr int kRoom = 32;  // four vectors
 
@@ -47,8 +48,8 @@ PENDULUM_INLINE void Store(const Vector& from, double* to) {
   std::memcpy(to, &from, sizeof from);
 }
 
-/// W polynomials at V vectors of samples, W V Horner chains side by side; column 0 becomes the residual. Lanes beyond
-/// the segment hold nothing of use; the next segment overwrites them.
+/// W polynomials at V vectors of samples, in W V parallel Horner chains; column 0 becomes the residual. Lanes beyond
+/// the segment hold undefined values; the next segment overwrites them.
 template <typename R, int W, int V>
 PENDULUM_INLINE void Evaluate(const FloorSegment& segment, const double* time, const double* value,
                               ColumnBlock<W>& block) {
@@ -84,7 +85,7 @@ PENDULUM_INLINE void Evaluate(const FloorSegment& segment, const double* time, c
   }
 }
 
-/// Sums over all samples: of products of columns and of columns.
+/// Sums over all samples: of products of two columns, and of columns.
 template <typename R, int W>
 struct Totals {
   typename R::Vector products[W][W] = {};
@@ -116,7 +117,7 @@ PENDULUM_INLINE void AddProducts(const ColumnBlock<W>& block, Totals<R, W>& tota
   }
 }
 
-/// Adds the squares of the one column, in four sums that do not wait for each other.
+/// Adds the squares of the only column, in four independent sums.
 template <typename R>
 PENDULUM_INLINE void AddSquares(const ColumnBlock<1>& block, Totals<R, 1>& totals) {
   constexpr int kParts = 4;
@@ -133,22 +134,22 @@ PENDULUM_INLINE void AddSquares(const ColumnBlock<1>& block, Totals<R, 1>& total
   totals.products[0][0] += (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-/// Adds what is in the block and empties it.
+/// Adds the block's sums and empties the block.
 template <typename R, int W>
 PENDULUM_INLINE void AddBlock(ColumnBlock<W>& block, Totals<R, W>& totals) {
-  // The last vectors' lanes beyond the count are none.
+  // Clears the lanes beyond the count.
   for (int w = 0; w < W; ++w) std::fill_n(&block.column[w][block.count], kRoom, 0.0);
   if constexpr (W == 1) {
     AddSquares(block, totals);
   } else {
-    AddProducts<0, 1>(block, totals);  // 7, 11 and 9 sums: no more than there are registers
+    AddProducts<0, 1>(block, totals);  // 7, 11 and 9 sums fit into the registers
     AddProducts<1, 3>(block, totals);
     AddProducts<3, W>(block, totals);
   }
   block.count = 0;
 }
 
-/// One vector next to the last sample, beyond which nothing may be read: from copies.
+/// Evaluates one vector at the last sample. Uses copies, because nothing may be read beyond the last sample.
 template <typename R, int W>
 PENDULUM_INLINE void EvaluateLast(const FloorSegment& segment, const double* time, const double* value, int count,
                                   ColumnBlock<W>& block) {
@@ -200,7 +201,7 @@ PENDULUM_INLINE void SumOfSquares(const std::vector<FloorSegment>& segments, con
   result = Sum(totals.products[0][0]);
 }
 
-/// From residual first and no ones to the order of NormalMatrix.
+/// Converts from residual first, without the column of ones, to the order of NormalMatrix.
 template <typename R>
 PENDULUM_INLINE void FillNormalMatrix(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
                                       NormalMatrix& matrix) {
@@ -219,7 +220,7 @@ PENDULUM_INLINE void FillNormalMatrix(const std::vector<FloorSegment>& segments,
   matrix[kOnes][kOnes] = segments.back().last - segments.front().first;
 }
 
-// Elsewhere the portable target is the only one.
+// On other processors the portable target is the only one.
 #ifdef PENDULUM_HAS_AVX
 [[PENDULUM_AVX512]] void SumOfSquaresAvx512(const std::vector<FloorSegment>& segments, const FloorSamples& samples,
                                             double& result) {

@@ -4,15 +4,16 @@
 #include <array>
 #include <vector>
 
-/// The arithmetic that remains when nothing but the samples is left to do: polynomials at every sample and sums of
-/// their products. Independent of the library's own kernels.
+/// The minimum arithmetic that the samples require: polynomials at every sample and sums of their products. Independent
+/// of the library's own kernels.
 namespace pendulum::benchmarks {
 
-/// Angle [rad] and its derivatives by inertia, viscous, coulomb, release_angle and release_time; that by the zero is 1.
+/// Angle [rad] and its derivatives by inertia, viscous, coulomb, release_angle and release_time. The derivative by the
+/// zero is 1.
 inline constexpr int kFloorColumns = 6;
 inline constexpr int kFloorMaxOrder = 25;
 
-/// Taylor polynomials of a stretch of the trajectory and the samples they hold for.
+/// Taylor polynomials of a part of the trajectory, and the samples for which they are valid.
 struct FloorSegment {
   double start = 0;         ///< s
   int order = 0;            ///< At most kFloorMaxOrder.
@@ -20,7 +21,7 @@ struct FloorSegment {
   std::array<std::array<double, kFloorColumns>, kFloorMaxOrder + 1> coefficient;
 };
 
-/// The samples, N each: s and rad, the zero taken out of the value. They must outlive what uses them.
+/// N samples each: s, and rad without the zero. They must outlive their users.
 struct FloorSamples {
   const double* time = nullptr;
   const double* value = nullptr;
@@ -30,10 +31,10 @@ struct FloorSamples {
 inline constexpr int kNormalSize = kFloorColumns + 1;
 using NormalMatrix = std::array<std::array<double, kNormalSize>, kNormalSize>;
 
-/// What the kernels are compiled for: what every CPU of the kind has, AVX2 with FMA, AVX-512.
+/// Instruction sets of the kernels: the baseline of every CPU, AVX2 with FMA, AVX-512.
 enum class FloorTarget { kPortable, kAvx2, kAvx512 };
 
-/// The widest that runs.
+/// The widest target that this processor supports.
 FloorTarget BestFloorTarget();
 
 /// Σ (value - angle)^2 over all samples of the segments.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// hot_paths WHAT N does what the benchmark of that name times, N times and nothing else that depends on N. The
-// difference of two runs under valgrind --tool=callgrind is then what N more of them execute; see scripts/benchmark.
+// hot_paths WHAT N runs the work of the benchmark WHAT N times; nothing else depends on N. Under valgrind
+// --tool=callgrind, the difference between two runs is the instruction count of the additional repetitions; see
+// scripts/benchmark.
 #include <charconv>
 #include <cmath>
 #include <exception>
@@ -25,7 +26,7 @@ void EvaluateSums(int count) {
   std::vector<double> parameters = point.parameters;
   Eigen::MatrixXd sums;
   for (int i = 0; i < count; ++i) {
-    parameters.back() = std::nextafter(parameters.back(), 1.0);  // the cost remembers the sums of the last point
+    parameters.back() = std::nextafter(parameters.back(), 1.0);  // the cost caches the sums of the last point
     if (!cost->Sums(parameters, &sums)) throw std::runtime_error("no trajectory");
   }
 }
@@ -41,7 +42,7 @@ void FitAgain(int count, double counts_of_noise, std::optional<NoiseFamily> nois
   }
 }
 
-/// By the names of the benchmarks that time the same.
+/// By the name of the benchmark that times the same work.
 const std::map<std::string, std::function<void(int)>>& HotPaths() {
   static const std::map<std::string, std::function<void(int)>> paths = {
       {"sensitivities/coulomb/release", EvaluateSums},

@@ -17,7 +17,7 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// Of this thread's work, s: other programs on the machine have no part in it.
+/// Processor time of this thread [s], which other programs on the machine do not affect.
 double CpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -35,8 +35,8 @@ std::vector<Recording> RecordingsOf(const CoverageScenario& scenario, int count)
   return recordings;
 }
 
-/// All fits alone and the joint one, on one thread, beside the mean of the fits alone: the counter times_one is the
-/// ratio in processor time.
+/// All separate fits and the joint fit, on one thread. The counter times_one is their processor time divided by the
+/// mean time of a separate fit.
 void FitTogether(benchmark::State& state, const std::string& name, int count) {
   const CoverageScenario scenario = Expect(FindCoverageScenarios(name)).front();
   const std::vector<Recording> recordings = RecordingsOf(scenario, count);

@@ -5,7 +5,7 @@
 
 namespace pendulum::benchmarks {
 
-/// Always flattened: the integrator off the shelf at its best.
+/// Always flattened, so that the ready-made integrator shows its best time.
 std::unique_ptr<ceres::CostFunction> MakeLocatedOdeintCost(const Recording& recording) {
   return MakeUsersCost<FlattenedResiduals<OdeintSwing>>(recording);
 }

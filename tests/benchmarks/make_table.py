@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes RESULTS.json and RESULTS.md of what scripts/benchmark measured.
+"""Makes RESULTS.json and RESULTS.md from the measurements of scripts/benchmark.
 
   make_table.py --filter                the benchmarks the table needs, for --benchmark_filter
   make_table.py --benchmarks JSON --scipy JSON --instructions TSV --binary FILE --command TEXT --out FOLDER
 
---benchmarks is Google Benchmark's output, --scipy that of scipy_users.py, --instructions has a line for each run of
-hot_paths: what, how often, instructions of the whole program. A time is the median of the repetitions' CPU times, a
-ratio that of two medians. Its spread is the middle half of the ratios of all pairs of a repetition of the one and a
-repetition of the other: repetitions run in random order, and no two belong together. Exit code 1, and a sentence for
-each, if something is missing or failed; the table then says so in its place. A ratio out of its bounds is no error.
+--benchmarks is Google Benchmark's output, --scipy that of scipy_users.py. --instructions has a line for each run of
+hot_paths: its name, the number of repetitions, and the instructions of the whole program. A time is the median of the
+repetitions' CPU times, a ratio that of two medians. Its spread is the middle half of the ratios of all pairs of a
+repetition of the one and a repetition of the other, because repetitions run in random order and are not paired. If
+something is missing or failed, the exit code is 1, each failure has a sentence, and the table shows the gap. A ratio
+outside its bounds is not an error.
 """
 
 import argparse
@@ -24,7 +25,7 @@ import sys
 
 Row = collections.namedtuple("Row", "name reference floor", defaults=(None, None))
 Group = collections.namedtuple("Group", "title text rows")
-# Without a sign and a bound it is for information.
+# Without a sign and a bound, a ratio is only for information.
 Ratio = collections.namedtuple("Ratio", "what numerator denominator sign bound stretch offset scale",
                                defaults=(None, None, None, 0, 1))
 Limit = collections.namedtuple("Limit", "what name counter sign bound")
@@ -32,14 +33,15 @@ Limit = collections.namedtuple("Limit", "what name counter sign bound")
 REFERENCE = "smoothed_rk4"
 TRAJECTORY = (f"{REFERENCE}/trajectory", "floor/trajectory")
 COUNTERS = ("max_error_rad", "max_jacobian_error", "std_errors_from_optimum", "bytes_per_sample", "share_of_cores")
-WITHIN_1E8 = "sensitivities/max_trace_error:5e-7"  # rad: what is promised anywhere, so that here it is below 1e-8
+# Rad: the permitted error in any case, for which this one is below 1e-8.
+WITHIN_1E8 = "sensitivities/max_trace_error:5e-7"
 SENSITIVITIES = (f"{REFERENCE}/sensitivities", "floor/sensitivities")
 FIT = (f"{REFERENCE}/solve", None)
 SOLVERS = (REFERENCE, "smoothed_rk4_flattened", "located_rk4", "located_rk4_flattened", "located_odeint")
 SIZES = (1000, 10000, 100000, 1000000)
-LEGEND = pathlib.Path(__file__).with_name("legend.md")  # the recording, the columns, and who is who
+LEGEND = pathlib.Path(__file__).with_name("legend.md")  # the recording, the columns, and the programs compared
 
-# In the order of the tables; * is any number.
+# In the order of the tables; * stands for any number.
 TABLE = [
     Group("One trajectory, 2000 samples",
           "The sum of the residuals' squares at given parameters; the residuals themselves for those who use Ceres.", [
@@ -117,7 +119,7 @@ REQUIRED = [
 
 HOT_PATHS = ("sensitivities/coulomb/release", "fit", "fit/counts:0.5/gaussian", "fit/counts:0.5/quantized")
 MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
-SUFFIX = r"(/(iterations:[0-9]+|process_time|real_time))?"  # what Google Benchmark adds to a name
+SUFFIX = r"(/(iterations:[0-9]+|process_time|real_time))?"  # added by Google Benchmark to a name
 
 
 def rows():
@@ -125,7 +127,7 @@ def rows():
 
 
 def regex(name):
-    """An expression that Python and Google Benchmark understand."""
+    """A regular expression for both Python and Google Benchmark."""
     return name.replace(".", r"\.").replace("*", r"[0-9.]+(e[-+]?[0-9]+)?")
 
 
@@ -135,7 +137,7 @@ def benchmark_filter():
 
 
 def benchmark_times(output):
-    """Of each benchmark {times: CPU times [us], counters...}, and a sentence for each that failed."""
+    """For each benchmark {times: CPU times [us], counters...}, and a sentence for each that failed."""
     measured, counters, failures = {}, collections.defaultdict(list), []
     for run in output["benchmarks"]:
         name = re.sub(SUFFIX + "$", "", run["run_name"])
@@ -155,14 +157,14 @@ def benchmark_times(output):
 
 
 def python_times(output):
-    """The same of scipy_users.py."""
+    """The same for scipy_users.py."""
     return {name: {"times": [1e6 * seconds for seconds in fit["seconds"]],
                    **{key: fit[key] for key in ("version", "evaluations", "estimates", "relative_errors")}}
             for name, fit in output.items()}
 
 
 def instructions_each(lines):
-    """Of each hot path, the instructions of one more: the slope between its first and its last run."""
+    """For each hot path, the instructions of one more call: the slope between its first and its last run."""
     runs = collections.defaultdict(list)
     for line in lines:
         what, count, instructions = line.split("\t")
@@ -171,7 +173,7 @@ def instructions_each(lines):
 
 
 def quartiles(values):
-    """The first and the third."""
+    """The first and third quartile."""
     if len(values) == 1:
         return [values[0], values[0]]
     first, _, third = statistics.quantiles(values, n=4, method="inclusive")
@@ -185,19 +187,19 @@ def ratio(numerator, denominator):
 
 
 def last_number(name):
-    """By which benchmarks of one row are ordered: they come in random order."""
+    """Sort key for the benchmarks of one row, which come in random order."""
     return float(re.search(r"[0-9.]+(e[-+]?[0-9]+)?$", name)[0])
 
 
 def expand(row, measured):
-    """A row for each benchmark that was measured of a row that ends in *, else the row."""
+    """A row for each benchmark measured for a row that ends in *, otherwise the row itself."""
     names = sorted((name for name in measured if "*" in row.name and re.fullmatch(regex(row.name), name)),
                    key=last_number)
     return [row._replace(name=name) for name in names] or [row]
 
 
 def row_result(row, measured):
-    """What RESULTS.json has of a row; without a median if it was not measured."""
+    """The entry of a row in RESULTS.json; without a median if it was not measured."""
     result = {"name": row.name}
     entry = measured.get(row.name)
     if entry is None:
@@ -217,7 +219,7 @@ def holds(value, sign, bound):
 
 
 def target(required):
-    """What RESULTS.json has of a ratio or a limit before it was measured."""
+    """The entry of a ratio or a limit in RESULTS.json, before its measurement."""
     return {"what": required.what, "target": f"{required.sign} {required.bound:g}" if required.sign else None}
 
 
@@ -234,7 +236,7 @@ def judged(required, value, spread):
 
 
 def requirement_result(required, measured):
-    """A ratio or a limit of the issue, and whether it holds; without a value if it was not measured."""
+    """A required ratio or limit, and whether it holds; without a value if it was not measured."""
     if isinstance(required, Limit):
         if required.counter in measured.get(required.name, {}):
             return judged(required, measured[required.name][required.counter], None)
@@ -246,7 +248,7 @@ def requirement_result(required, measured):
 
 
 def compiler_of(binary):
-    """What compilers leave in their object files."""
+    """The compiler's name, which compilers leave in their object files."""
     found = re.search(rb"[^\0]*clang version [^\0]+|GCC: [^\0]+", binary.read_bytes())
     return found[0].decode() if found else "unknown"
 
@@ -258,7 +260,7 @@ def machine(output, binary):
 
 
 def number(value):
-    """Three digits, all those before the point."""
+    """Three digits; more only before the decimal point."""
     if value == 0 or not 1e-3 <= abs(value) < 1e7:
         return f"{value:.2g}"
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:#.3g}"
@@ -276,7 +278,7 @@ def spread_text(spread):
 
 
 def accuracy_text(result):
-    """Of a trajectory or of estimates."""
+    """The accuracy of a trajectory or of estimates."""
     parts = []
     if "max_error_rad" in result:
         parts.append(f"{result['max_error_rad']:.1e} rad")
@@ -318,7 +320,7 @@ def requirement_text(result):
 
 
 def markdown(results):
-    """RESULTS.md."""
+    """The text of RESULTS.md."""
     at = results["machine"]
     lines = [
         "# Benchmarks", "",
@@ -340,7 +342,7 @@ def markdown(results):
 
 
 def collect(measured, instructions):
-    """The parts of RESULTS.json that were measured."""
+    """The measured parts of RESULTS.json."""
     return {
         "required": [requirement_result(required, measured) for required in REQUIRED],
         "table": {group.title: [row_result(one, measured) for row in group.rows for one in expand(row, measured)]
@@ -350,7 +352,7 @@ def collect(measured, instructions):
 
 
 def missing(results):
-    """A sentence for each hole in the table."""
+    """A sentence for each gap in the table."""
     sentences = [f"the benchmark {row['name']} is missing" for group in results["table"].values() for row in group
                  if "median_us" not in row]
     sentences += [f"'{one['what']}' could not be measured" for one in results["required"] if "value" not in one]
@@ -359,7 +361,7 @@ def missing(results):
 
 
 def make(options):
-    """Writes both files; sentences of what is missing."""
+    """Writes both files; returns sentences about missing parts."""
     output = json.loads(options.benchmarks.read_text())
     measured, failures = benchmark_times(output)
     measured.update(python_times(json.loads(options.scipy.read_text())))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of benchmarks, made of figures whose ratios were worked out by hand."""
+"""Makes the table of benchmarks from numbers whose ratios were calculated by hand."""
 
 import json
 import pathlib
@@ -17,7 +17,7 @@ OURS, THEIRS, FLOOR = "sensitivities/coulomb/release", "smoothed_rk4/sensitiviti
 
 
 def runs(name, times, unit="us", **counters):
-    """A benchmark's repetitions as Google Benchmark prints them, with the aggregates that follow."""
+    """A benchmark's repetitions as Google Benchmark prints them, followed by their aggregates."""
     return [
         *({"name": name, "run_name": name, "run_type": "iteration", "cpu_time": time, "real_time": 7 * time,
            "time_unit": unit, **counters} for time in times),
@@ -31,7 +31,7 @@ def fit(*seconds):
 
 
 def everything():
-    """Each benchmark that the table has, at 10 us."""
+    """All benchmarks of the table, at 10 us each."""
     names = {row.name for row in make_table.rows()} - {"scipy", "lmfit"}
     names = [name.replace("error:*", "error:5e-7").replace("*", "1") for name in sorted(names)]
     return [run for name in names for run in runs(name, [10.0], max_error_rad=1e-9, bytes_per_sample=48.0,
@@ -44,8 +44,8 @@ def measured(benchmarks):
 
 class RatioTest(unittest.TestCase):
     def test_ratio_of_medians_and_quartiles_of_all_pairs(self):
-        # 660 / 110; the pairs are 5, 5.45, 5.5, 6, 6, 6.6, 10, 10.9, 12, of which the third and the seventh bound the
-        # middle half.
+        # 660 / 110; the pairs are 5, 5.45, 5.5, 6, 6, 6.6, 10, 10.9, 12. The third and the seventh bound the middle
+        # half.
         found = measured(runs(OURS, [100, 120, 110]) + runs(THEIRS, [1.2, 0.6, 0.66], "ms"))
         value, spread = make_table.ratio(found[THEIRS], found[OURS])
         self.assertAlmostEqual(value, 6)

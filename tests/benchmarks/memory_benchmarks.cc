@@ -11,7 +11,7 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// A field of /proc/self/status, such as VmRSS [bytes]; 0 when there is none.
+/// A field of /proc/self/status, such as VmRSS [bytes]; 0 if it does not exist.
 double StatusBytes(const std::string& field) {
   std::ifstream status("/proc/self/status");
   std::string name;
@@ -22,13 +22,13 @@ double StatusBytes(const std::string& field) {
   return 0;
 }
 
-/// Makes the highest resident memory (VmHWM) the present one; false where the kernel does not allow it.
+/// Resets the peak of resident memory (VmHWM) to the present value. Returns false if the kernel does not allow it.
 bool ResetPeak() {
   malloc_trim(0);
   return static_cast<bool>(std::ofstream("/proc/self/clear_refs") << "5" << std::flush);
 }
 
-/// Resident memory, not allocations: it counts what Eigen and Ceres take too, and only pages that are touched.
+/// Measures resident memory, not allocations: it includes the memory of Eigen and Ceres, and only pages in use.
 void FitMemory(benchmark::State& state, int samples) {
   const Recording recording = ReferenceRecording(samples);
   FitOptions options;

@@ -17,11 +17,11 @@
 
 namespace pendulum::benchmarks {
 
-/// A state as odeint steps it fastest, flat: angle [rad] and K partial derivatives of it, then the same of the rate.
+/// A flat state, which odeint steps fastest: the angle [rad] and its K partial derivatives, then the same for the rate.
 template <int K>
 using FlatState = std::array<double, 2 * (1 + K)>;
 
-/// Error control by the values alone: what they are good for is known, derivatives follow at the same steps.
+/// Error control by the values only: their accuracy is known, and the derivatives use the same steps.
 template <int K>
 struct ErrorOfValues {
   double tolerance = 0;  // of a step: rad, rad/s
@@ -33,9 +33,10 @@ struct ErrorOfValues {
   }
 };
 
-/// The careful way with an integrator off the shelf: Dormand & Prince 5(4) with error control and dense output from
-/// Boost.odeint. Reversals are roots of the dense output's rate, their instants differentiated by the implicit function
-/// theorem, and each half swing is begun anew: dry friction's sign is constant within. Moves as LocatedSwing does.
+/// The careful method with a ready-made integrator: Dormand & Prince 5(4) with error control and dense output from
+/// Boost.odeint. Reversals are roots of the dense output's rate, and their instants are differentiated by the implicit
+/// function theorem. Each half swing starts anew, so dry friction's sign is constant within it. Same interface as
+/// LocatedSwing.
 template <typename T>
 class OdeintSwing {
  public:
@@ -44,7 +45,7 @@ class OdeintSwing {
     Turn(Carry(p[3]));
   }
 
-  /// Moves on by a step [s], a double or a T.
+  /// Advances by a step [s], a double or a T.
   template <typename Step>
   void Advance(const Step& step) {
     elapsed_ += step;
@@ -57,7 +58,8 @@ class OdeintSwing {
   const T& angle() const { return angle_; }
 
  private:
-  /// Release time and zero are not in the equation: partial derivatives by the other four parameters are carried.
+  /// Release time and zero are not in the equation, so only partial derivatives by the other four parameters are
+  /// carried.
   static constexpr int kCarried = DualNumber<T> ? 4 : 0;
   using Number = std::conditional_t<DualNumber<T>, ceres::Jet<double, 4>, double>;
   using Flat = FlatState<kCarried>;
@@ -67,7 +69,7 @@ class OdeintSwing {
   using Stepper = boost::numeric::odeint::dense_output_runge_kutta<Controlled>;
 
   static constexpr int kRate = 1 + kCarried;
-  /// Leaves the trajectory within 1e-6 rad of the truth over the reference run.
+  /// Keeps the trajectory within 1e-6 rad of the truth over the reference run.
   static constexpr double kTolerance = 1e-7;
   static constexpr double kFirstStep = 0.05;  // s
 
@@ -92,7 +94,8 @@ class OdeintSwing {
     if constexpr (DualNumber<T>) Eigen::Map<Eigen::Matrix<double, kCarried, 1>>(flat + 1) = x.v;
   }
 
-  /// The integrator's time is a double: what moves this instant or the last reversal moves the angle along.
+  /// The integrator's time is a double. The derivatives of this instant and of the last reversal are therefore added to
+  /// the angle here.
   void SetAngle(const Flat& state) {
     angle_ = T(state[0]);
     if constexpr (DualNumber<T>) {
@@ -106,7 +109,7 @@ class OdeintSwing {
     return -(ratios_.gravity * sin(angle) + ratios_.viscous * rate + direction_ * ratios_.coulomb);
   }
 
-  /// Integrates until the dense output covers this time [s]; false at rest.
+  /// Integrates until the dense output covers this time [s]. Returns false at rest.
   bool Reach(double time) {
     while (direction_ != 0 && (time >= reversal_ || time > stepper_.current_time())) {
       if (time >= reversal_) {
@@ -126,7 +129,7 @@ class OdeintSwing {
     if (direction_ * stepper_.current_state()[kRate] <= 0) LocateReversal();
   }
 
-  /// Newton's method on the dense output's rate, from the chord.
+  /// Newton's method for the dense output's rate, starting from the chord.
   void LocateReversal() {
     const double before = stepper_.previous_time();
     const double after = stepper_.current_time();
@@ -169,9 +172,9 @@ class OdeintSwing {
   Ratios<Number> ratios_;
   T angle_;               // rad
   T elapsed_{0.0};        // s, since the release
-  T start_{0.0};          // s, of this half swing; its partials say how the instant moves
+  T start_{0.0};          // s, start of this half swing, with its derivatives
   double direction_ = 0;  // of this half swing
-  double reversal_ = 0;   // s, infinite until it is known
+  double reversal_ = 0;   // s, start of this half swing, with its derivatives
   Stepper stepper_{Controlled(ErrorOfValues<kCarried>{kTolerance})};
 };
 

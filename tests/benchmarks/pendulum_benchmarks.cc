@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a trajectory and a fit take, beside what a user of Ceres would write by hand, what other libraries take and
-// the floor below all of them. README has the table from it. --reference_csv=FILE writes the data and times nothing.
+// Times a trajectory and a fit, and compares them with code that a user of Ceres would write, with other libraries, and
+// with the minimum arithmetic. README shows the table. --reference_csv=FILE writes the data and times nothing.
 #include "pendulum_benchmarks.h"
 
 #include <fstream>
@@ -30,7 +30,7 @@ void RegisterAll() {
   RegisterMemoryBenchmarks();
 }
 
-/// Writes the reference run for other programs to be timed with; the exit code.
+/// Writes the reference run for the timing of other programs; returns the exit code.
 int WriteReferenceCsv(const std::string& path) {
   std::ofstream file(path);
   file << ReferenceCsv() << std::flush;
@@ -39,7 +39,7 @@ int WriteReferenceCsv(const std::string& path) {
   return 1;
 }
 
-/// As main, but for `--reference_csv=FILE`: then nothing is timed.
+/// As main. With `--reference_csv=FILE` nothing is timed.
 int Run(int argc, char** argv) {
   constexpr std::string_view kReferenceCsv = "--reference_csv=";
   for (int i = 1; i < argc; ++i) {

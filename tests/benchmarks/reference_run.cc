@@ -33,7 +33,7 @@ struct Optimum {
   Parameters std_errors;
 };
 
-/// Gauss-Newton steps at the finest tolerance from where FitRecording ends.
+/// Gauss-Newton steps at the finest tolerance, from the result of FitRecording.
 Optimum FindOptimum() {
   FitOptions options = OptionsFor("coulomb", StartKind::kRelease);
   const FitReport report = Expect(FitRecording(ReferenceRecording(), options));

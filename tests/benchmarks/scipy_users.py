@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What users of SciPy and of lmfit write today for the reference run, timed: scipy_users.py CSV [--repetitions N].
+"""Times the code that users of SciPy and lmfit would write for the reference run: scipy_users.py CSV [--repetitions N].
 
-The trajectory comes from solve_ivp (LSODA), dry friction smoothed to tanh(omega / 0.01 rad/s), and the derivatives from
-finite differences; scipy.optimize.least_squares and lmfit.minimize fit six parameters. rtol is 1e-8 and parameters
-change by 1e-3 of themselves, as for somebody who has seen finite differences drown in the integrator's noise: with this
-rtol and the default change neither finds the optimum, and of rtol 1e-6 to 1e-10 and changes of 1e-6 to 1e-3 no pair with
-which both do is much faster. Prints one JSON object; seconds are CPU time of the fit alone, of each repetition. Exit
-codes: 1 a package or the file is missing or not such a recording, 2 wrong flags.
+The trajectory comes from solve_ivp (LSODA), with dry friction smoothed to tanh(omega / 0.01 rad/s) and derivatives by
+finite differences. scipy.optimize.least_squares and lmfit.minimize fit six parameters. rtol is 1e-8 and the relative
+step of the differences 1e-3, as chosen by a user who knows that smaller steps are lost in the integrator's noise. With
+this rtol and the default step, neither finds the optimum. For rtol from 1e-6 to 1e-10 and steps from 1e-6 to 1e-3, no
+combination with which both find it is much faster. Prints one JSON object; seconds are the CPU time of each repetition
+of the fit alone. Exit codes: 1 a package or the file is missing or the file is not such a recording, 2 wrong flags.
 """
 
 import argparse
@@ -21,23 +21,23 @@ NAMES = ["inertia", "viscous", "coulomb", "release_angle", "release_time", "zero
 TRUTH = [0.079, 0.003, 0.001, 0.423, 1.9, 0.012]  # as in reference_run.h
 START = [0.0762, 0.0036, 0.001, 0.41, 1.93, 0.002]  # from the rig's geometry and the plot, as in ceres_baseline.h
 SCALE = [0.1, 0.003, 0.001, 0.4, 2.0, 0.01]  # orders of magnitude
-NEVER_NEGATIVE = 3  # the first so many
+NEVER_NEGATIVE = 3  # number of leading parameters that are never negative
 RELATIVE_STEP = 1e-3  # of finite differences
 RIG = pathlib.Path(__file__).resolve().parents[2] / "datasets" / "textbook_rig.json"
 
 
 class Refusal(Exception):
-    """Something the user can put right."""
+    """An error that the user can correct."""
 
 
 def gravity_torque():
-    """Of the rod and the bob at its end [N m]."""
+    """Gravity torque of the rod and the bob at its end [N m]."""
     rig = json.loads(RIG.read_text())
     return (rig["bob_mass"] + rig["rod_mass"] / 2) * rig["rod_length"] * rig["gravity"]
 
 
 def read_recording(path):
-    """Times [s] and angles [rad] of a CSV file; without any package, so that its refusals need none."""
+    """Times [s] and angles [rad] of a CSV file. Uses no package, so its errors can be reported without any."""
     try:
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
         if len(lines) < 2 or lines[0] != "time_s,angle_deg":
@@ -50,7 +50,7 @@ def read_recording(path):
 
 
 class Residuals:
-    """Measured - modelled [rad] of six parameters, and how often they were asked for."""
+    """Measured - modelled [rad] for six parameters, and the number of evaluations."""
 
     def __init__(self, times, angles):
         import numpy
@@ -64,7 +64,7 @@ class Residuals:
         return self.angles - self.trajectory(*parameters)
 
     def trajectory(self, inertia, viscous, coulomb, release_angle, release_time, zero_angle):
-        """What the sensor shows at the samples [rad]."""
+        """The sensor's readings at the samples [rad]."""
         import numpy
         from scipy.integrate import solve_ivp
 
@@ -104,7 +104,7 @@ def fit_by_lmfit(residuals):
 
 
 def report(fit, version, recording, repetitions):
-    """The fit's part of the output."""
+    """The fit's entry in the output."""
     seconds = []
     for _ in range(repetitions):
         residuals = Residuals(*recording)
@@ -121,7 +121,7 @@ def report(fit, version, recording, repetitions):
 
 
 def run(options):
-    """What is printed."""
+    """The printed object."""
     recording = read_recording(options.csv)
     try:
         import lmfit

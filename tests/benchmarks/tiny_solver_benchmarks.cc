@@ -12,8 +12,8 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// All samples' residuals, (measured - modelled) / noise, by this library's trajectory and its Jacobian, as
-/// ceres::TinySolver wants them; parameters in units of G.
+/// Residuals of all samples, (measured - modelled) / noise, and their Jacobian by this library's trajectory, in the
+/// form that ceres::TinySolver needs. Parameters in units of G.
 class TinyResiduals {
  public:
   using Scalar = double;

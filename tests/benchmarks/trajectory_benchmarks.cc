@@ -14,7 +14,7 @@
 namespace pendulum::benchmarks {
 namespace {
 
-/// The cost function of a point at the tolerance a fit of it begins with that allows this error [rad].
+/// The cost function of a point, at the tolerance with which a fit begins for this permitted error [rad].
 std::unique_ptr<TrajectoryCost> CostAt(const EvaluationPoint& point, double max_trace_error) {
   auto cost = MakeTrajectoryCost(point.problem.model, point.problem.start.start, point.problem.data);
   cost->set_tolerance(TraceTolerance(max_trace_error, point.problem.start.amplitude));
@@ -33,7 +33,7 @@ void Report(benchmark::State& state, const EvaluationPoint& point, const Traject
   state.counters["samples"] = static_cast<double>(readings.size());
 }
 
-/// Sum of squares alone.
+/// Sum of squares only.
 void EvaluateCost(benchmark::State& state, const EvaluationPoint& point) {
   const auto cost = CostAt(point, FitOptions().search.max_trace_error);
   double sum = 0;
@@ -44,13 +44,13 @@ void EvaluateCost(benchmark::State& state, const EvaluationPoint& point) {
   Report(state, point, *cost, false);
 }
 
-/// Sums of products of residuals and all derivatives: what an iteration of a fit needs.
+/// Sums of products of residuals and all derivatives, as an iteration of a fit needs them.
 void EvaluateSumsTo(benchmark::State& state, const EvaluationPoint& point, double max_trace_error) {
   const auto cost = CostAt(point, max_trace_error);
   Eigen::MatrixXd sums;
   std::vector<double> parameters = point.parameters;
   for (auto _ : state) {
-    parameters.back() = std::nextafter(parameters.back(), 1.0);  // the cost remembers the sums of the last point
+    parameters.back() = std::nextafter(parameters.back(), 1.0);  // the cost caches the sums of the last point
     if (!cost->Sums(parameters, &sums)) return state.SkipWithError("no trajectory");
     benchmark::DoNotOptimize(sums.data());
   }

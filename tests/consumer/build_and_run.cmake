@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs BUILD below WORK, then configures, builds and runs the project beside this file against what was installed.
+# Installs BUILD below WORK, then configures, builds and runs the project in this folder against the installation.
 # GENERATOR, COMPILER, FLAGS and BUILD_TYPE are those of BUILD.
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)

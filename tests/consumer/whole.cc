@@ -9,7 +9,7 @@
 #include <pendulum/report/text.h>
 #include <pendulum/trajectory/synthetic.h>
 
-// Simulates a swing whose truth is known, fits it and prints the report: every floor and every library takes part.
+// Simulates a swing with known parameters, fits it and prints the report. Uses every floor and every library.
 int main() {
   const auto model = pendulum::FindMotionModel("coulomb");
   if (!model || pendulum::kVersion != PENDULUM_VERSION) return 1;

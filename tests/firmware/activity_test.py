@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The lab guide datasets/ACTIVITY.md, command by command, on a simulated board in real time.
+"""Runs the lab guide datasets/ACTIVITY.md, command by command, on a simulated board in real time.
 
-activity_test.py BUILD_FOLDER            runs the guide; what is printed must be what it shows, numbers within 5 % and three of the last digit, what
-                                         is recorded the files in datasets/, and what is fitted the truth
-activity_test.py BUILD_FOLDER --update   writes what is printed into the guide, and what is recorded into datasets/
+activity_test.py BUILD_FOLDER            runs the guide. The output must match the guide, numbers within 5 % and three of the
+                                         last digit; the recordings must match datasets/, and the fits the true values
+activity_test.py BUILD_FOLDER --update   writes the output into the guide, and the recordings into datasets/
 """
 
 import json
@@ -21,7 +21,7 @@ import simulated_lab
 TOP = pathlib.Path(__file__).resolve().parents[2]
 GUIDE = TOP / "datasets" / "ACTIVITY.md"
 BLOCK = re.compile(r"```console\n(.*?)```", re.DOTALL)
-# What depends on how well the computer that runs this keeps time.
+# Output that depends on how accurately this computer keeps time.
 OF_THE_HOST = re.compile(r"clock  .*?(?:clock_scale|resonator)\n|chi-square [\d.]+|\bp [\d.]+", re.DOTALL)
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 TRUTH = {"inertia": 0.079, "viscous": 0.002, "coulomb": 0.005}
@@ -39,7 +39,7 @@ def commands_of(block):
 
 
 def run(command, folder, port, build):
-    """What a command prints on stdout; a failing one is an error. Someone presses Enter whenever asked."""
+    """A command's output on stdout; a failing command is an error. Answers every prompt with Enter."""
     environment = os.environ | {"PORT": str(port), "PATH": f"{build}/bin:{os.environ['PATH']}"}
     done = subprocess.run(["bash", "-euc", command], cwd=folder, env=environment, input="\n" * 50, capture_output=True,
                           text=True, timeout=300)
@@ -49,7 +49,7 @@ def run(command, folder, port, build):
 
 
 def executed(block, *place):
-    """The block with the output of its commands as it is now."""
+    """The block with the present output of its commands."""
     shown = ""
     for shell, command in zip(re.findall(r"^\$ .*(?:\n>.*)*", block, re.MULTILINE), commands_of(block)):
         shown += shell + "\n" + run(command, *place)
@@ -57,7 +57,7 @@ def executed(block, *place):
 
 
 def digit_of(number):
-    """What one in the last digit of a number is worth: 0.01 of 3.14."""
+    """The value of one unit in the last digit of a number: 0.01 for 3.14."""
     mantissa, _, exponent = number.partition("e")
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
@@ -67,7 +67,7 @@ def is_near(a, b, digit):
 
 
 def differences(shown, now):
-    """Where two outputs differ by more than digits of their numbers, which may by 5 %."""
+    """Differences between two outputs; numbers may differ by 5 %."""
     shown, now = (OF_THE_HOST.sub("", text) for text in (shown, now))
     words = [re.sub(r"\s+", " ", NUMBER.sub("#", text)) for text in (shown, now)]
     if words[0] != words[1]:
@@ -81,7 +81,7 @@ def rows_of(path):
 
 
 def check_fit(folder, build):
-    """Estimates of both runs together within four standard errors of the truth, systematic ones included."""
+    """Expects joint estimates of both runs within four standard errors of the truth, including systematic errors."""
     run("fit_pendulum --data run_1.csv,run_2.csv --rig rig.json --model coulomb --json fit.json", folder, "none", build)
     parameters = json.loads((folder / "fit.json").read_text())["fits"][0]["parameters"]
     for name, true in TRUTH.items():
@@ -94,7 +94,7 @@ def check_fit(folder, build):
 
 
 def check_files(folder, is_update):
-    """What was recorded is what lies in datasets/, row by row: the simulated board gives the same each time."""
+    """Compares the recordings with datasets/, row by row: the simulated board gives the same each time."""
     for made, kept in (("run_1.csv", "recorded.csv"), ("run_2.csv", "recorded_2.csv"), ("calibration.csv", "recorded_calibration.csv"),
                        ("rig.json", "recorded_rig.json"), ("truth.json", "recorded_truth.json")):
         if is_update:

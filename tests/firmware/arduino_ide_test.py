@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The sketch is built by the engine of the Arduino IDE, for both boards: arduino_ide_test.py. Debian's package
-arduino-builder has that engine; where it is missing the test is skipped with 77, or fails with PENDULUM_CI set."""
+"""Builds the sketch with the engine of the Arduino IDE, for both boards: arduino_ide_test.py. The engine is in Debian's
+package arduino-builder; without it the test is skipped with 77, or fails if PENDULUM_CI is set."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ import unittest
 SKETCH = pathlib.Path(__file__).resolve().parents[2] / "firmware/pendulum_logger/pendulum_logger.ino"
 ARDUINO = pathlib.Path("/usr/share/arduino/hardware/arduino")
 BUILDER = pathlib.Path("/usr/share/arduino-builder")
-# Debian's core does not compile with Debian's compiler otherwise: src/docs/hardware.md.
+# Without this, Debian's core does not compile with Debian's compiler: src/docs/hardware.md.
 DECIMAL_DIG = "compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__"
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three mistakes that simavr lets pass and a board does not; the simulated board must see them. Compiled with one of
-// SLEEPS, FLOODS and FORGETS, for an ATmega328P.
+// Three mistakes that simavr tolerates and a real board does not; the simulated board must detect them. Compiled with
+// one of SLEEPS, FLOODS and FORGETS, for an ATmega328P.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -32,7 +32,7 @@ int main() {
 #elif defined(FLOODS)
     UDR0 = 'x';  // without waiting for UDRE0
 #elif defined(FORGETS)
-    OCR1B = TCNT1 + 100;  // nobody clears OCF1B
+    OCR1B = TCNT1 + 100;  // OCF1B is never cleared
 #endif
     logger_idle();
   }

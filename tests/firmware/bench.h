@@ -15,17 +15,17 @@
 
 namespace pendulum {
 
-/// A simulated board and, at the other end of its line, what the recorder has: decoder and run.
+/// A simulated board, with the recorder's decoder and run at the other end of its line.
 class Bench {
  public:
-  /// What a line does to a byte: gives what arrives, nothing where it is lost.
+  /// The effect of a line on a byte: returns the byte that arrives, or std::nullopt if it is lost.
   using Line = std::function<std::optional<std::uint8_t>(std::uint8_t)>;
 
   explicit Bench(BoardOptions options) : board_(std::move(options)) { RunFor(0.1); }
 
   void set_line(Line line) { line_ = std::move(line); }
 
-  /// Sends a command and gives what comes back within a fifth of a second.
+  /// Sends a command and returns the messages received within a fifth of a second.
   template <class Command>
   std::vector<LoggerMessage> Ask(const Command& command) {
     board_.Send(CommandBytes(command));
@@ -34,7 +34,7 @@ class Bench {
     return messages_;
   }
 
-  /// The answer of that type to a command; none where there was none.
+  /// The answer of that type to a command; std::nullopt without an answer.
   template <class Answer, class Command>
   std::optional<Answer> Answered(const Command& command) {
     for (const LoggerMessage& message : Ask(command)) {
@@ -43,14 +43,14 @@ class Bench {
     return std::nullopt;
   }
 
-  /// The status of a command's Ack; -1 where there was none.
+  /// The status of a command's Ack; -1 without one.
   template <class Command>
   int Status(const Command& command) {
     const auto ack = Answered<pendulum_logger::Ack>(command);
     return ack && ack->command == Command::kKind ? ack->status : -1;
   }
 
-  /// Records so many seconds at that rate, from start to stop; `midway` happens in the middle.
+  /// Records for `seconds` at that rate, from start to stop; calls `midway` in the middle.
   ReceivedRun& Record(const SamplingRate& rate, double seconds, const std::function<void()>& midway = {}) {
     Status(pendulum_logger::SetRate{rate.period, rate.oversample});
     run_.emplace(rate);
@@ -75,14 +75,14 @@ class Bench {
     }
   }
 
-  /// The conversions of the run, as the hardware made them.
+  /// The conversions of the run as made by the hardware.
   std::vector<Conversion> Conversions() const {
     return {board_.conversions().begin() + static_cast<std::ptrdiff_t>(first_), board_.conversions().end()};
   }
 
   SimulatedBoard& board() { return board_; }
   double load() const { return load_; }
-  const std::string& text() const { return text_; }  ///< Everything that came, as characters.
+  const std::string& text() const { return text_; }  ///< All received bytes as characters.
 
  private:
   void Listen() {

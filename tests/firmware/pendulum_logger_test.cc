@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The firmware as it is flashed, on a simulated board, against what the simulated hardware did: no expected value comes
-// from the firmware. PENDULUM_FIRMWARE is the folder of the ELF files.
+// Tests the firmware as flashed, on a simulated board, against the events of the simulated hardware. No expected value
+// comes from the firmware. PENDULUM_FIRMWARE is the folder of the ELF files.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace wire = pendulum_logger;
 
 constexpr double kCyclesPerTick = 8;
 
-/// A decaying oscillation through potentiometer and converter.
+/// A decaying oscillation measured by potentiometer and converter.
 struct Swing {
   Potentiometer potentiometer{PotentiometerOptions{.noise = 0.6, .nonlinearity = 0.5, .seed = 7}};
 
@@ -49,7 +49,7 @@ void ExpectNoFaults(const SimulatedBoard& board) {
   EXPECT_EQ(board.faults().overrun_bytes, 0);
 }
 
-/// Of the samples of a run, those that are not the mean of the conversions that the hardware made at their times.
+/// Number of samples of a run that are not the mean of the hardware's conversions at their times.
 int WrongSamples(const ReceivedRun& run, const std::vector<Conversion>& conversions) {
   constexpr std::uint64_t kLeeway = 16;  // cycles
   const double cycles_per_second = kCyclesPerTick * wire::kTickHz;
@@ -69,7 +69,7 @@ int WrongSamples(const ReceivedRun& run, const std::vector<Conversion>& conversi
   return wrong;
 }
 
-/// The largest distance of a conversion from the schedule that the first one and the period make, cycles.
+/// The largest distance in cycles between a conversion and the schedule given by the first conversion and the period.
 double LargestOffset(const std::vector<Conversion>& conversions, int period) {
   double largest = 0;
   for (std::size_t k = 0; k < conversions.size(); ++k) {
@@ -89,7 +89,7 @@ TEST_P(AtRate, EveryCodeOfAMinuteComesAtItsTime) {
   EXPECT_GE(run.size(), static_cast<std::size_t>(60 * hz));
   EXPECT_EQ(run.size(), conversions.size() / oversample);
   EXPECT_EQ(WrongSamples(run, conversions), 0);
-  // simavr acts after the instruction under way, which may be that many cycles long: nothing adds up.
+  // simavr acts after the current instruction, which may take up to 8 cycles; the delays do not add up.
   EXPECT_LE(LargestOffset(conversions, run.rate().period), 8);
   const RunLosses losses = run.Losses();
   EXPECT_EQ(losses.samples, 0);
@@ -114,7 +114,7 @@ TEST(PendulumLogger, OverloadIsCountedAndTheRestIsRight) {
   const RunLosses losses = run.Losses();
   EXPECT_GT(losses.dropped, 1000U);
   EXPECT_EQ(losses.on_line, 0);
-  // Every conversion is a sample that came or one that is counted; the one at the stop may be neither.
+  // Every conversion is either a received sample or a counted loss, except possibly the one during the stop.
   EXPECT_NEAR(static_cast<double>(run.size() + losses.dropped), static_cast<double>(conversions.size()), 1);
   EXPECT_EQ(losses.samples, losses.dropped);
   EXPECT_EQ(WrongSamples(run, conversions), 0);
@@ -248,7 +248,7 @@ TEST(PendulumLogger, AnswersAQuestionMarkInWords) {
   bench.RunFor(0.2);
   // 0.1985 · 437 - 49.6077 = 37.1368
   EXPECT_THAT(bench.text(), testing::HasSubstr("A0 = 437 of 1023 counts, 37.14 deg; 200.00 Hz, runs so far: 0\r\n"));
-  EXPECT_EQ(bench.Status(wire::Command<wire::kStop>{}), wire::kDone);  // and is not confused by what it was asked
+  EXPECT_EQ(bench.Status(wire::Command<wire::kStop>{}), wire::kDone);  // the question has not confused it
 }
 
 TEST(SimulatedBoard, SeesWhatABoardWouldNotForgive) {
@@ -261,7 +261,7 @@ TEST(SimulatedBoard, SeesWhatABoardWouldNotForgive) {
   };
   EXPECT_GT(faults("SLEEPS").first.sleeps_with_converter_on, 0);
   EXPECT_GT(faults("FLOODS").first.overrun_bytes, 0);
-  EXPECT_EQ(faults("FORGETS").second, 1U);  // the flag that is never cleared never rises again
+  EXPECT_EQ(faults("FORGETS").second, 1U);  // the flag is never cleared, so it never rises again
 }
 
 TEST(SimulatedBoard, RatiometricReadingsDoNotSeeTheSupply) {

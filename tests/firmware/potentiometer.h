@@ -11,22 +11,22 @@
 
 namespace pendulum {
 
-/// A potentiometer on a converter that is not ideal.
+/// A potentiometer connected to a non-ideal converter.
 struct PotentiometerOptions {
   AdcSensor sensor{};
   double noise = 0;            ///< Standard deviation at the converter's input, counts.
-  double nonlinearity = 0;     ///< Integral nonlinearity: a bow of so many counts at half scale.
+  double nonlinearity = 0;     ///< Integral nonlinearity: the maximum of a bow, at half scale, in counts.
   double supply_ripple = 0;    ///< Of the supply, relative, at 50 Hz.
-  bool is_ratiometric = true;  ///< The reference is the supply, so that its ripple cancels.
+  bool is_ratiometric = true;  ///< The reference is the supply, so its ripple cancels.
   std::uint64_t seed = 1;
 };
 
-/// What the converter shows of an angle: the sensor's own formula with noise, nonlinearity and ripple before rounding.
+/// The converter's reading of an angle: the sensor's own formula with noise, nonlinearity and ripple before rounding.
 class Potentiometer {
  public:
   explicit Potentiometer(const PotentiometerOptions& options) : options_(options), random_(options.seed) {}
 
-  /// Begins the noise anew.
+  /// Restarts the noise.
   void Reseed(std::uint64_t seed) {
     random_.seed(seed);
     normal_.reset();

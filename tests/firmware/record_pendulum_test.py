@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""From the simulated potentiometer to the fit, in real time: firmware, line, record_pendulum, fit_pendulum, and the
-truth comes back. record_pendulum_test.py BUILD_FOLDER. All recordings run at the same time, for they mostly wait."""
+"""Tests the whole chain in real time: simulated potentiometer, firmware, line, record_pendulum and fit_pendulum must
+recover the true values. record_pendulum_test.py BUILD_FOLDER. All recordings run in parallel, because they mostly wait."""
 
 import concurrent.futures
 import json
@@ -23,7 +23,8 @@ SWING = ["--rig", RIG, "--set", "inertia=0.079,viscous=0.002,coulomb=0.004,relea
 DEG_PER_COUNT = 270 / 1024
 CALIBRATION = {"input": "counts", "angle_unit": "deg", "input_range": [0, 1023],
                "coefficients": [0.5 * DEG_PER_COUNT - 135, DEG_PER_COUNT]}
-# Board, samples a second, conversions in each, how much too fast its clock is [ppm], counts of noise, of nonlinearity.
+# Board, samples per second, conversions per sample, clock error [ppm, positive: too fast], counts of noise, of
+# nonlinearity.
 BENCHES = {
     "uno_200": ("uno", 200, 1, 3000, 0.5, 0.5),
     "uno_1000": ("uno", 1000, 1, -1500, 0.5, 0.25),
@@ -57,7 +58,7 @@ class RecordPendulumTest(unittest.TestCase):
 
     @classmethod
     def is_quiet(cls):
-        """Whether no recorder saw its computer stall: the clocks are then known ten times as well as this."""
+        """Whether no recorder saw its computer stall: the clocks are then known ten times better than this."""
         errors = [metadata(cls.folder / f"{name}.csv").get("clock_scale_std_dev", "1") for name in BENCHES]
         return max(map(float, errors)) < 300e-6
 
@@ -123,7 +124,7 @@ class RecordPendulumTest(unittest.TestCase):
                 done = tool("fit_pendulum", "--data", self.folder / f"{name}.csv", "--rig", RIG, "--json", "-")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 parameters = json.loads(done.stdout)["fits"][0]["parameters"]
-                self.assertGreater(parameters["inertia"]["systematic_std_error"], 0)  # the clock's
+                self.assertGreater(parameters["inertia"]["systematic_std_error"], 0)  # from the clock
                 for parameter, true in TRUTH.items():
                     found = parameters[parameter]
                     error = math.hypot(found["std_error"], found["systematic_std_error"] or 0)
@@ -136,7 +137,7 @@ class RecordPendulumTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("was the cable pulled?", done.stdout)
         rows = self.values("unplugged")
-        # Pulled after 8 s of sampling; a frame of 8 samples may have been on its way.
+        # Unplugged after 8 s of sampling; a frame of 8 samples may have been in transit.
         self.assertGreaterEqual(len(rows), 1600 - 2 * 8)
         self.assertFalse((self.folder / "unplugged.csv.part").exists())
 
@@ -148,7 +149,7 @@ class RecordPendulumTest(unittest.TestCase):
         self.assertGreater(lost, 0)
         self.assertEqual(len(rows) + sum(round((b[0] - a[0]) * 1000) - 1 for a, b in zip(rows, rows[1:])),
                          round(rows[-1][0] * 1000) + 1)
-        # Without noise the codes of a smooth motion never jump: one that is wrong would.
+        # Without noise, the codes of a smooth motion never jump; a wrong code would.
         steepest = 0.5 * 4.8 / math.radians(DEG_PER_COUNT) / 1000  # counts per sample: amplitude times frequency
         for (before, a), (after, b) in zip(rows, rows[1:]):
             self.assertLessEqual(abs(b - a), steepest * (after - before) * 1000 + 2)

@@ -25,15 +25,15 @@ constexpr int kStackPointer = 0x5D, kAdcControlA = 0x7A, kAdcControlB = 0x7B, kU
 constexpr std::uint8_t kAdcEnabled = 0x80, kAdcBusy = 0x40, kAdcAutoTrigger = 0x20, kDoubleSpeed = 0x02;
 constexpr std::uint8_t kTriggerSources = 0x07, kTimer1MatchB = 0x05;
 constexpr int kInterruptFlag = 7;                    // in sreg
-constexpr int kDataBase = 0x800000;                  // of data memory among the addresses in an ELF file
+constexpr int kDataBase = 0x800000;                  // offset of data memory in the addresses of an ELF file
 constexpr std::uint64_t kCyclesPerTick = 8;          // of Timer 1
 constexpr int kBitsPerByte = 10;                     // start, eight, stop
 constexpr std::uint64_t kSampleDelay = 2 * 128 + 3;  // cycles from the match to the end of sampling (data sheet 24.4)
 
-/// Instead of waiting for real time to pass.
+/// Returns at once instead of waiting for real time to pass.
 void NoSleep(avr_t*, avr_cycle_count_t) {}
 
-/// Nothing of what it says of its own limits is of interest: they are made up for here.
+/// Discards simavr's messages about its own limits, which this file works around.
 void NoMessages(avr_t*, int, const char*, va_list) {}
 
 }  // namespace
@@ -45,9 +45,9 @@ SimulatedBoard::SimulatedBoard(BoardOptions options) : options_(std::move(option
   avr_init(avr_);
   LoadFirmware();
   avr_->frequency = 16000000;
-  // simavr makes mV * 1023 / reference of a voltage; so the "voltage" is the reading.
+  // simavr converts a voltage to mV * 1023 / reference, so with this reference the "voltage" is the reading.
   avr_->vcc = avr_->avcc = avr_->aref = 1023;
-  avr_->sleep = NoSleep;  // time is the caller's affair
+  avr_->sleep = NoSleep;  // the caller controls the time
   least_stack_ = avr_->ramend;
   ConnectConverter();
   ConnectLine();
@@ -93,7 +93,7 @@ void SimulatedBoard::ConnectConverter() {
 }
 
 void SimulatedBoard::ConnectLine() {
-  std::uint32_t flags = 0;  // neither sleep while the firmware polls nor print what it sends
+  std::uint32_t flags = 0;  // do not sleep while the firmware polls, and do not print its output
   avr_ioctl(avr_, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
   input_ = avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
   avr_irq_register_notify(
@@ -104,7 +104,7 @@ void SimulatedBoard::ConnectLine() {
       this);
 }
 
-/// The flag's rising edge starts a conversion, so one that is not cleared starts no more.
+/// The flag's rising edge starts a conversion; a flag that is not cleared starts no more.
 void SimulatedBoard::OnTimerMatch(bool is_pending) {
   const bool rises = is_pending && !is_match_pending_;
   is_match_pending_ = is_pending;
@@ -123,7 +123,7 @@ void SimulatedBoard::OnConversion() {
   const bool is_first = is_run && !start_;
   std::uint64_t trigger = avr_->cycle;
   if (is_first) first_ = trigger;
-  // simavr acts some cycles late, after the instruction under way; the match was on a tick.
+  // simavr acts some cycles late, after the current instruction; the match was on a tick.
   if (is_run) trigger = first_ + (trigger - first_ + kCyclesPerTick / 2) / kCyclesPerTick * kCyclesPerTick;
   const double sampled = static_cast<double>(trigger + kSampleDelay) / ClockHz();
   if (!is_run) {
@@ -146,7 +146,7 @@ std::uint64_t SimulatedBoard::CyclesPerByte() const {
 void SimulatedBoard::OnByte(std::uint8_t byte) {
   const std::uint64_t duration = CyclesPerByte();
   line_free_ = std::max<std::uint64_t>(line_free_, avr_->cycle) + duration;
-  if (line_free_ - avr_->cycle > 2 * duration) ++faults_.overrun_bytes;  // one in the shift register, one behind it
+  if (line_free_ - avr_->cycle > 2 * duration) ++faults_.overrun_bytes;  // one in the shift register, one waiting
   to_host_.push_back({static_cast<double>(line_free_) / ClockHz(), byte});
 }
 

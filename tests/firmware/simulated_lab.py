@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated logger as a process, for tests of what reads it."""
+"""A simulated logger as a process, for tests of programs that read it."""
 
 import json
 import pathlib
@@ -8,7 +8,7 @@ import time
 
 
 class Logger:
-    """simulated_logger of a build, behind the pseudo terminal `port` in a folder, until the block ends."""
+    """Runs simulated_logger of a build, behind the pseudo terminal `port` in a folder, until the block ends."""
 
     def __init__(self, build, folder, *flags, board="uno", name="ttyPENDULUM"):
         self.port = pathlib.Path(folder) / name

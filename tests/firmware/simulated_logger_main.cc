@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A logger without a board: the firmware in simavr, a pendulum on its potentiometer, and a pseudo terminal for its
-// serial port, in real time. For the tests of record_pendulum, and for those who have no Arduino at hand.
+// A simulated logger: the firmware in simavr, a pendulum on its potentiometer, and a pseudo terminal as its serial
+// port, in real time. For the tests of record_pendulum, and for users without an Arduino.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -67,8 +67,8 @@ std::vector<double> Numbers(const std::string& text) {
   return numbers;
 }
 
-/// The pendulum on the board's potentiometer, and the hand that holds it until the logger samples and releases it so
-/// long after that.
+/// The pendulum on the board's potentiometer, and the hand that holds it. The hand releases it a given time after the
+/// logger starts to sample.
 class Swing {
  public:
   Swing(const SimulateOptions& options, const PotentiometerOptions& potentiometer)
@@ -76,12 +76,12 @@ class Swing {
     Release(synthetic_.release_angle);
   }
 
-  /// The next run begins.
+  /// Called when the next run begins.
   void BeginAt(double time) {
     begin_ = time;
     const std::vector<double> holds = Numbers(FLAGS_hold_deg), releases = Numbers(FLAGS_release_angles);
     const std::size_t run = runs_++;
-    potentiometer_.Reseed(FLAGS_seed + run);  // so that a run does not depend on how long those before were
+    potentiometer_.Reseed(FLAGS_seed + run);  // so a run does not depend on the length of earlier runs
     held_.reset();
     if (run < holds.size()) {
       held_ = holds[run] * kRadFromDeg;
@@ -113,7 +113,7 @@ class Swing {
   std::optional<double> begin_, held_;
 };
 
-/// A pseudo terminal whose other end has a name.
+/// A pseudo terminal whose other end has a file name.
 class PseudoTerminal {
  public:
   explicit PseudoTerminal(std::string link) : link_(std::move(link)) {
@@ -131,8 +131,8 @@ class PseudoTerminal {
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
   ~PseudoTerminal() { Close(); }
 
-  /// What has no room now goes with the next bytes: a machine that was suspended reads much at once. What nobody reads
-  /// at all is lost.
+  /// Bytes without room now are written with the next ones: a machine that was suspended reads many at once. Bytes that
+  /// nobody reads are lost.
   void Write(const std::vector<std::uint8_t>& bytes) {
     constexpr std::size_t kMostUnread = std::size_t{1} << 16;
     unread_.insert(unread_.end(), bytes.begin(), bytes.end());
@@ -148,9 +148,9 @@ class PseudoTerminal {
     return bytes;
   }
 
-  /// Closes it once all is read that was written, or this program is to end: what a reader has not fetched yet is lost
-  /// with the terminal. A reader may wait long for its disk, and the kernel passes on in its own time what was written,
-  /// so nothing has to be there for a while.
+  /// Closes the terminal after all written bytes are read, or if this program is to end. Bytes not yet read are lost
+  /// with the terminal. A reader may wait long for its disk, and the kernel delays the bytes, so the terminal must be
+  /// quiet for some time first.
   void Unplug() {
     if (host_side_ < 0) return;
     constexpr int kQuietLooks = 200;
@@ -178,7 +178,7 @@ class PseudoTerminal {
   int host_side_ = -1, board_side_ = -1;
 };
 
-/// A line on which bytes are hurt.
+/// A serial line that damages bytes.
 class Line {
  public:
   std::vector<std::uint8_t> Carry(const std::vector<LineByte>& bytes) {
@@ -244,7 +244,7 @@ PotentiometerOptions PotentiometerOfFlags() {
   return options;
 }
 
-/// Board, pendulum and line, kept in step with the time of day.
+/// Runs board, pendulum and line in real time.
 void Run(SimulatedBoard& board, PseudoTerminal& terminal) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// That what a solver calls again and again allocates nothing, for recordings that are not shared among threads. A
-// program of its own: it replaces operator new, and is linked with --wrap=malloc so that it also sees what Eigen takes.
+// Tests that the functions which a solver calls repeatedly allocate no memory, for recordings too short for several
+// threads. It is a separate program: it replaces operator new, and is linked with --wrap=malloc to see Eigen's
+// allocations too.
 #include <array>
 #include <atomic>
 #include <cstdlib>
@@ -26,7 +27,7 @@ void* __wrap_malloc(std::size_t size) {
 }
 }
 
-// Not inlined, or g++ thinks that the two do not belong together.
+// Not inlined; otherwise g++ warns that new and delete do not match.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
@@ -52,7 +53,7 @@ TEST(Allocations, AreSeen) {
   const Eigen::VectorXd vector = Eigen::VectorXd::Constant(1000, allocations);
   EXPECT_EQ(allocations - before, 1) << vector.sum();
   before = allocations;
-  void* const memory = ::operator new(4);  // called as a function, or a compiler may leave it out
+  void* const memory = ::operator new(4);  // called as a function, because a compiler may remove a new-expression
   EXPECT_EQ(allocations - before, 1) << memory;
   ::operator delete(memory);
   before = allocations;
@@ -61,7 +62,7 @@ TEST(Allocations, AreSeen) {
   ::operator delete (aligned, std::align_val_t{64});
 }
 
-/// Residuals and, if asked for, derivatives as Ceres asks for them, each at another point than the last.
+/// Evaluates residuals, and optionally derivatives, as Ceres does, each time at a different point.
 void EvaluateAtManyPoints(const TrajectoryCost& cost, const std::vector<double>& at, bool with_jacobians) {
   std::array<double, 16> p{};
   std::array<double, 16> residuals{};
@@ -86,7 +87,7 @@ void ExpectNoAllocations(const NoiseModel& noise) {
     const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model, start, data);
     cost->set_noise(noise);
     for (const bool with_jacobians : {true, false}) {
-      EvaluateAtManyPoints(*cost, p, with_jacobians);  // makes room
+      EvaluateAtManyPoints(*cost, p, with_jacobians);  // allocates the working memory
       const int before = allocations;
       EvaluateAtManyPoints(*cost, p, with_jacobians);
       EXPECT_EQ(allocations - before, 0) << "with derivatives: " << with_jacobians;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise that remembers, from seeds.
+// Seeded autocorrelated noise.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,8 @@ inline Eigen::VectorXd EvenTimes(Eigen::Index count) {
   return Eigen::VectorXd::LinSpaced(count, 0, 0.01 * static_cast<double>(count - 1));
 }
 
-/// exp(-Δt / τ) beside independent noise that is white_share of the variance 1; exact at any stamps. τ = 0: white.
+/// Noise of total variance 1: a part with correlation exp(-Δt / τ), and an independent part with the share
+/// white_share. Exact at any time stamps. τ = 0: white.
 inline Eigen::VectorXd CorrelatedNoise(const Eigen::VectorXd& time, double decay_time, double white_share,
                                        std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -30,12 +31,12 @@ inline Eigen::VectorXd CorrelatedNoise(const Eigen::VectorXd& time, double decay
   return noise;
 }
 
-/// AR(1) at EvenTimes: of each sample with the one before, phi in [0, 1).
+/// AR(1) at EvenTimes; phi, in [0, 1), is the correlation of neighbouring samples.
 inline Eigen::VectorXd FirstOrderNoise(Eigen::Index count, double phi, double white_share, std::uint64_t seed) {
   return CorrelatedNoise(EvenTimes(count), phi > 0 ? -0.01 / std::log(phi) : 0, white_share, seed);
 }
 
-/// Times without some of their samples, each missing with this probability.
+/// The times after each sample is removed with this probability.
 inline Eigen::VectorXd WithSomeMissing(const Eigen::VectorXd& time, double probability, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   Eigen::VectorXd kept(time.size());
@@ -46,7 +47,7 @@ inline Eigen::VectorXd WithSomeMissing(const Eigen::VectorXd& time, double proba
   return kept.head(count);
 }
 
-/// Times of events that come on their own, 100 a second.
+/// Times of random events, 100 per second.
 inline Eigen::VectorXd EventTimes(Eigen::Index count, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   Eigen::VectorXd time(count);

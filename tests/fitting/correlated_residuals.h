@@ -23,9 +23,9 @@ namespace pendulum {
 
 inline constexpr double kSampleInterval = 0.01;  // s, of EvenTimes
 
-// ---- The likelihood by another route: a dense covariance matrix ----------------------------------------------------
+// ---- The likelihood computed independently: a dense covariance matrix -----------------------------------------------
 
-/// Correlations of lags 0..longest by the weights ψ of an infinite moving average (Box & Jenkins, section 3.4).
+/// Correlations of lags 0..longest, from the weights ψ of an infinite moving average (Box & Jenkins, section 3.4).
 inline std::vector<double> Correlations(const Autocorrelation& memory, std::size_t longest) {
   constexpr std::size_t kWeights = 20'000;
   std::vector<double> psi(kWeights, 0);
@@ -45,7 +45,7 @@ inline std::vector<double> Correlations(const Autocorrelation& memory, std::size
   return correlation;
 }
 
-/// Of z and rounding.
+/// Covariance of z plus rounding.
 inline Eigen::MatrixXd Covariance(const Autocorrelation& memory, double sigma, double rounding_variance,
                                   const Eigen::VectorXd& time) {
   const Eigen::Index size = time.size();
@@ -114,7 +114,7 @@ inline Eigen::VectorXd NormalNumbers(Eigen::Index count, std::uint64_t seed) {
   return numbers;
 }
 
-/// Residuals of no fit.
+/// Residuals without a fit.
 inline CorrelatedResiduals Residuals(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                      double rounding_variance) {
   return {time, residual, Eigen::MatrixXd(time.size(), 0), {}, {}, rounding_variance};

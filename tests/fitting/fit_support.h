@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of the fit share: recordings with a known truth, and fits that must run.
+// Shared by the tests of the fit: recordings with known true parameters, and fits that must succeed.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace pendulum {
 inline constexpr double kTextbookTorque = (0.380 + 0.095 / 2) * 9.81 * 0.43;  // N m
 inline constexpr double kCount = 0.1985 * kPi / 180;                          // rad
 
-/// The value, or an end of the test that says why there is none.
+/// The value; throws with the error's message if there is none.
 template <typename T>
 T Must(Result<T> result) {
   if (!result) throw std::runtime_error(result.error().message);
@@ -34,8 +34,7 @@ T Must(Result<T> result) {
 }
 
 /// Inertia and friction of the textbook rig in units of G, for any registered model: I_O 0.079 kg m², b 0.003 N m
-/// s/rad, τ_c 0.004 N m, τ_s 0.008 N m, c 0.0005 N m s²/rad²; a parameter that is none of these has the value
-/// TypicalFriction gives it.
+/// s/rad, τ_c 0.004 N m, τ_s 0.008 N m, c 0.0005 N m s²/rad². Any other parameter has the value of TypicalFriction.
 inline std::vector<double> TextbookParameters(const MotionModel& model) {
   std::vector<double> parameters = {0.079 / kTextbookTorque};
   FrictionModels::Visit(model.friction, [&]<typename F>() {
@@ -53,8 +52,9 @@ inline std::vector<double> TextbookParameters(const MotionModel& model) {
   return parameters;
 }
 
-/// Whether a short run hardly tells all of a law's parameters: friction of slow motion alone, or a share by which its
-/// directions differ, which is nearly a shift of the zero. Fits then end at bounds, or not identifiable.
+/// Whether a short run hardly determines all parameters of a law. Examples are friction of slow motion alone, or a
+/// share by which the directions differ, which acts almost like a shift of the zero. Fits then end at bounds, or not
+/// identifiable.
 inline bool IsHardlyTold(const MotionModel& model) {
   return OrderOf(model).larger >= 0 || std::ranges::any_of(PhysicalParameters(model), [](const ParameterInfo& info) {
            return std::isfinite(info.upper);
@@ -72,7 +72,7 @@ inline SyntheticOptions TextbookRun(std::string_view model) {
   return options;
 }
 
-/// 10 s of it with noise.
+/// The textbook run for 10 s with noise.
 inline SyntheticOptions NoisyRun(std::string_view model = "coulomb", std::uint64_t seed = 1) {
   SyntheticOptions run = TextbookRun(model);
   run.duration = 10;
@@ -81,7 +81,7 @@ inline SyntheticOptions NoisyRun(std::string_view model = "coulomb", std::uint64
   return run;
 }
 
-/// The same pendulum passing -0.2 rad at 1.5 rad/s when the recording begins.
+/// The same pendulum; at the first sample it passes -0.2 rad at 1.5 rad/s.
 inline SyntheticOptions MovingRun(std::string_view model) {
   SyntheticOptions options = TextbookRun(model);
   options.start = StartKind::kMoving;
@@ -90,7 +90,7 @@ inline SyntheticOptions MovingRun(std::string_view model) {
   return options;
 }
 
-/// A swing of 0.6 rad for 30 s at 100 Hz, seen by a sensor with some noise.
+/// A swing of 0.6 rad for 30 s at 100 Hz, measured by a sensor with some noise.
 inline SyntheticOptions Seen(Quantity quantity, SensorKind kind, std::vector<double> parameters, double noise) {
   SyntheticOptions options;
   options.parameters = {1 / 22.0, 0.05 / 22, 0.05 / 22};
@@ -106,7 +106,7 @@ inline SyntheticOptions Seen(Quantity quantity, SensorKind kind, std::vector<dou
   return options;
 }
 
-/// The parameters a fit of that recording should find, in FitParameters' order.
+/// The true parameters of a recording in FitParameters' order.
 inline std::vector<double> Truth(const SyntheticOptions& options) {
   std::vector<double> truth = options.parameters;
   if (options.start == StartKind::kRelease) {
@@ -128,12 +128,12 @@ inline FitReport Fit(const Recording& recording, const FitOptions& options) {
   return Must(FitRecording(recording, options));
 }
 
-/// Simulates the recording and fits the model it was made with.
+/// Simulates the recording and fits its own model.
 inline FitReport FitOwnModel(const SyntheticOptions& options) {
   return Fit(Must(SimulateRecording(options)), ModelOptions(options.model.name));
 }
 
-/// (estimate - truth) / std_error of each parameter; NaN where there is no standard error.
+/// (estimate - truth) / std_error of each parameter; NaN without a standard error.
 inline std::vector<double> Deviations(const FitReport& report, const std::vector<double>& truth) {
   std::vector<double> deviations;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -144,7 +144,8 @@ inline std::vector<double> Deviations(const FitReport& report, const std::vector
   return deviations;
 }
 
-/// Every parameter within 4.5 of its standard errors of the truth: twelve of them miss that once in 12 000 fits.
+/// Expects every parameter within 4.5 of its standard errors of the truth; twelve parameters miss that once in 12 000
+/// fits.
 inline void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
   ASSERT_EQ(fit.termination, Termination::kConverged) << fit.reason;
   const std::vector<double> truth = TrueParameters(options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fit with what it was made from, for tests that look behind the report.
+// A fit together with its problem, cost and solution, for tests of internals.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@
 
 namespace pendulum {
 
-/// 8 s at 50 Hz of a swing of 1 rad, friction four times the textbook's: tens of standard errors from its bound.
+/// 8 s at 50 Hz of a swing of 1 rad. Friction is four times the textbook's, tens of standard errors from its bound.
 inline SyntheticOptions ShortSwing(std::string_view model = "coulomb") {
   SyntheticOptions run = TextbookRun(model);
   run.release_angle = 1.0;
@@ -37,7 +37,7 @@ inline SyntheticOptions ShortSwing(std::string_view model = "coulomb") {
   return run;
 }
 
-/// A recording, its problem, cost and solution, and the likelihood around it. The cost looks into the problem.
+/// A recording, its problem, cost and solution, and the likelihood around it. The cost refers to the problem.
 struct Fitted {
   Recording recording;
   FitOptions options;
@@ -45,14 +45,15 @@ struct Fitted {
   std::unique_ptr<TrajectoryCost> cost;
   Solution solution;
   Optimum optimum;
-  Autocorrelation correlation;  ///< Of the quantile residuals; white unless asked for.
+  Autocorrelation correlation;  ///< Of the quantile residuals; white unless requested.
   Eigen::VectorXd residuals;    ///< N x 1, quantile residuals.
 
   double At(int i) const { return solution.parameters[static_cast<std::size_t>(i)]; }
   Errors StandardErrors() const { return ComputeErrors(*problem, *cost, solution, optimum, correlation); }
 };
 
-/// Fits as FitRecording does, from Search to the likelihood's largest; `remembers` looks for memory in the residuals.
+/// Fits like FitRecording, from Search to the maximum likelihood. If `remembers`, estimates the residuals'
+/// autocorrelation.
 inline Fitted FitOpenly(Recording recording, FitOptions options, bool remembers = false) {
   Fitted fitted;
   fitted.recording = std::move(recording);
@@ -86,7 +87,7 @@ Recording WithNoise(Recording recording, std::uint64_t seed, Noise noise) {
   return recording;
 }
 
-/// Stationary AR(1) noise of that lag-1 correlation and standard deviation, one sample after the other.
+/// Stationary AR(1) noise with the given lag-1 correlation and standard deviation, one sample per call.
 class RememberingNoise {
  public:
   RememberingNoise(double correlation, double deviation) : correlation_(correlation), deviation_(deviation) {}

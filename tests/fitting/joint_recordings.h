@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several recordings of the textbook's rig, and joint fits of them that must run.
+// Several recordings of the textbook's rig, and joint fits that must succeed.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline Rig RigOfTorque(double std_dev = 0) {
   return rig;
 }
 
-/// In SI, intervals from covariances.
+/// Options in SI units, with intervals from covariances.
 inline FitOptions RigOptions() {
   FitOptions options = ModelOptions("coulomb");
   options.rig = RigOfTorque();
@@ -58,17 +58,18 @@ inline void ExpectConverged(const JointFit& fit) {
   for (const FitReport& run : fit.runs) EXPECT_EQ(run.termination, Termination::kConverged) << run.reason;
 }
 
-/// Truth in SI (fit_support.h): kg m², N m s/rad, N m.
+/// True values in SI (fit_support.h): kg m², N m s/rad, N m.
 inline const std::vector<double> kTruthInSi = {0.079, 0.003, 0.004};
 
-/// 10 s of the rig released at that angle.
+/// 10 s of the rig, released at `angle`.
 inline SyntheticOptions Released(double angle, std::uint64_t seed) {
   SyntheticOptions run = NoisyRun("coulomb", seed);
   run.release_angle = angle;
   return run;
 }
 
-/// A fine angle, a coarse one at another rate, and a gyro's rate of a start in motion; noise far above counts.
+/// An accurate angle, a coarse angle at another sample rate, and a gyro's rate of a start in motion. The noise is far
+/// above the counts.
 inline Recordings MixedRecordings(std::uint64_t seed = 1) {
   SyntheticOptions coarse = Released(0.8, seed + 1);
   coarse.sample_rate = 60;
@@ -82,7 +83,7 @@ inline Recordings MixedRecordings(std::uint64_t seed = 1) {
   return {Must(SimulateRecording(Released(0.5, seed))), Must(SimulateRecording(coarse)), Must(SimulateRecording(gyro))};
 }
 
-/// Two recordings with the fits alone; a problem looks into them.
+/// Two recordings with their separate fits; a problem refers to them.
 struct TwoRuns {
   FitOptions options;
   Recordings recordings = {Must(SimulateRecording(Released(0.3, 1))), Must(SimulateRecording(Released(0.6, 2)))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where derivatives of what is seen of a trajectory can be compared with differences.
+// Samples at which derivatives of the readings can be compared with finite differences.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace pendulum {
 
-/// When the motion begins, turns and stops [s].
+/// The times [s] when the motion begins, turns and stops.
 inline std::vector<double> Instants(const MotionModel& model, StartKind start, const std::vector<double>& p,
                                     double end) {
   const double begin = start == StartKind::kRelease ? p[p.size() - 2] : 0.0;
@@ -38,7 +38,7 @@ inline std::vector<double> Instants(const MotionModel& model, StartKind start, c
   return instants;
 }
 
-/// Parameters to both sides along one of them.
+/// Parameters shifted up and down along one of them.
 struct BesideParameters {
   std::vector<double> above, below;
   double step = 0;
@@ -47,14 +47,14 @@ struct BesideParameters {
 inline BesideParameters Beside(const MotionModel& model, const std::vector<double>& p, int column) {
   const std::vector<ParameterInfo> infos = PhysicalParameters(model);
   const bool is_share = static_cast<std::size_t>(column) < infos.size() && std::isfinite(infos[column].upper);
-  BesideParameters beside{p, p, (is_share ? 1e-4 : 1e-6) * std::abs(p[column])};  // motion hardly changes with a share
+  BesideParameters beside{p, p, (is_share ? 1e-4 : 1e-6) * std::abs(p[column])};  // a share hardly changes the motion
   beside.above[column] += beside.step;
   beside.below[column] -= beside.step;
   return beside;
 }
 
-/// Samples that no beginning, reversal or stop passes between these parameters, each the model's, the start and the
-/// zero: all but a few.
+/// All samples except the few that a start, reversal or stop crosses between these parameter sets. Each set holds the
+/// model's parameters, the start and the zero.
 inline std::vector<Eigen::Index> QuietSamples(const MotionModel& model, StartKind start, const TrajectoryData& data,
                                               const std::array<std::vector<double>, 3>& parameters) {
   std::array<std::vector<double>, 3> instants;

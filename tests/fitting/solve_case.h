@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of the solver and of the search share: a recording made ready, and its cost.
+// Shared by the tests of solver and search: a prepared recording and its cost.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace pendulum {
 
-/// A simulated recording, ready to be solved, with the cost of the model it is solved for.
+/// A simulated recording prepared for the solver, with the cost of the model to be fitted.
 struct SolveCase {
   SolveCase(const SyntheticOptions& run, std::string_view model)
       : truth(Truth(run)),

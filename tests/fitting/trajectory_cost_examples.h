@@ -33,7 +33,7 @@ inline std::vector<double> TypicalParameters(const MotionModel& model, StartKind
   return p;
 }
 
-/// Samples at 100 Hz and slightly off it, so that none falls on a reversal by construction; no readings yet.
+/// Samples at about 100 Hz, slightly off so that none coincides with a reversal; no readings yet.
 inline TrajectoryData Samples(Quantity quantity, std::size_t count) {
   TrajectoryData data;
   data.quantity = quantity;
@@ -49,7 +49,7 @@ inline Eigen::VectorXd ReadingsOf(const TrajectoryCost& cost, const std::vector<
   return readings;
 }
 
-/// Samples with the readings of these parameters and uniform noise of ± `noise`.
+/// Samples with the readings for these parameters plus uniform noise of ± `noise`.
 inline TrajectoryData Simulated(const MotionModel& model, StartKind start, Quantity quantity, std::size_t count,
                                 const std::vector<double>& p, double noise) {
   TrajectoryData data = Samples(quantity, count);
@@ -69,7 +69,7 @@ inline std::string Describe(const MotionModel& model, StartKind start, Quantity 
          (quantity == Quantity::kAngle ? ", angle" : ", rate");
 }
 
-/// Calls visit(model, start, quantity) for every combination there is.
+/// Calls visit(model, start, quantity) for every combination.
 template <typename Visitor>
 void ForEachCase(Visitor&& visit) {
   for (const MotionModel& model : MotionModels()) {
@@ -82,7 +82,7 @@ void ForEachCase(Visitor&& visit) {
   }
 }
 
-/// Data of the typical parameters and, beside them, a trial.
+/// Data of the typical parameters, and a trial near these.
 struct Example {
   std::vector<double> trial;
   TrajectoryData data;
@@ -94,7 +94,7 @@ struct Example {
     cost = MakeTrajectoryCost(model, start, data);
     for (double& p : trial) p *= 1.001;
   }
-  Example(const Example&) = delete;  // the cost looks at the data here
+  Example(const Example&) = delete;  // the cost refers to the data here
   Example& operator=(const Example&) = delete;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes are a calibration with a curve, or a sentence.
+// Any bytes give a calibration with a curve, or an error sentence.
 #include <cstddef>
 #include <cstdint>
 

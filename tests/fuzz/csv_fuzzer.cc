@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of text, ours and those that other programs export.
+// Rows of text in our format and in the formats that other programs export.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes are a form whose parts lie in it in their order, or a sentence.
+// Any bytes give a form whose parts are in order within it, or an error sentence.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -32,7 +32,7 @@ void Check(std::string_view content_type, std::string_view body) {
 }  // namespace
 }  // namespace pendulum
 
-/// The first line is the content type, or empty for that of a form with a short boundary.
+/// The first line is the content type; if it is empty, that of a form with a short boundary.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = pendulum::TextOf(data, size);
   const std::string_view line = text.substr(0, text.find('\n'));

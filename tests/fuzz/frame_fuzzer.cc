@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes on the line are frames or rejected, and what a run makes of them is a recording with rising times.
+// Any bytes on the line are frames or are rejected, and a run made from them is a recording with increasing times.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@
 namespace pendulum {
 namespace {
 
-/// Message to bytes to message: nothing that was accepted is changed by being sent again.
+/// Message to bytes to message: an accepted message does not change if it is sent again.
 template <class Message>
 void RequireSame(const Message& message) {
   std::vector<std::uint8_t> bytes = CommandBytes(message);
@@ -50,8 +50,8 @@ void Check(std::span<const std::uint8_t> bytes) {
   Require(run.size() <= choice % 16u && run.Losses().samples >= 0);
 }
 
-/// The input with frames made right: a piece between two zeros gets the code and the CRC it would need, so that what
-/// lies behind these is reached too.
+/// The input with valid frames: every piece between two zeros gets the correct encoding and CRC, so that the code after
+/// these checks is reached too.
 std::vector<std::uint8_t> Mended(std::span<const std::uint8_t> bytes) {
   std::vector<std::uint8_t> mended, piece;
   for (const std::uint8_t byte : bytes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MAT-files, each read in a process of its own.
+// MAT-files, each read in a separate process.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes back from the process that reads a MAT-file, and the choice among its columns.
+// The output of the process that reads a MAT-file, and the choice among its columns.
 #include <cstddef>
 #include <cstdint>
 

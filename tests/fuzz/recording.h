@@ -9,7 +9,7 @@
 #include "pendulum/recording/readers/read_recording.h"
 #include "tests/fuzz/require.h"
 
-/// Any bytes are a recording that holds its invariant, or a sentence.
+/// Any bytes give a recording that satisfies its invariant, or an error sentence.
 namespace pendulum {
 
 inline Calibration CountsToDegrees() {
@@ -21,7 +21,7 @@ inline Calibration CountsToDegrees() {
   return calibration;
 }
 
-/// What a user may say beside the file; the last byte chooses.
+/// Options that a user may give with the file; the last byte selects them.
 inline ReadOptions Options(std::uint8_t choice) {
   const std::array<ReadOptions, 8> options = {
       ReadOptions(),

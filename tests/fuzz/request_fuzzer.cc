@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any request gets an answer that is documented and well formed, and what it made can be asked for, and deleted.
+// Any request gets a documented, well-formed answer. What it created can be requested, and deleted.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A service with small limits and a store in memory, for all inputs: each deletes what it made.
+/// A service with small limits and a store in memory, for all inputs; each input deletes what it created.
 class Asked {
  public:
   Asked() {
@@ -100,7 +100,7 @@ void CheckAnswer(const HttpResponse& response) {
   Require(events.text.empty() || events.text.ends_with("\n\n"));
 }
 
-/// "METHOD TARGET", lines "Name: value", an empty line, and the body, as HTTP has it; a Host where there is none.
+/// "METHOD TARGET", lines "Name: value", an empty line, and the body, as in HTTP; a Host is added if missing.
 HttpRequest RequestOf(std::string_view text) {
   const auto next_line = [&text] {
     const std::size_t end = text.find('\n');
@@ -116,7 +116,7 @@ HttpRequest RequestOf(std::string_view text) {
   if (blank != std::string_view::npos) request.target = line.substr(blank + 1);
   for (std::string_view field = next_line(); !field.empty(); field = next_line()) {
     const std::size_t colon = field.find(':');
-    if (colon == 0 || colon == std::string_view::npos || !IsLine(field)) continue;  // the server lets none through
+    if (colon == 0 || colon == std::string_view::npos || !IsLine(field)) continue;  // the server rejects such fields
     const std::size_t value = std::min(field.find_first_not_of(" \t", colon + 1), field.size());
     request.fields.push_back({std::string(field.substr(0, colon)), std::string(field.substr(value))});
   }

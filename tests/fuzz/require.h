@@ -7,14 +7,14 @@
 #include <string>
 #include <string_view>
 
-/// What the fuzzers share: a broken promise ends the process, which the fuzzer reports with its input.
+/// Shared by the fuzzers: a violated requirement ends the process, and the fuzzer reports the input.
 namespace pendulum {
 
 inline void Require(bool promise) {
   if (!promise) std::abort();
 }
 
-/// A message names the file first and is short enough to be read.
+/// A message starts with the file's name and is short enough to read.
 inline void RequireSentence(const std::string& message, const std::string& name) {
   Require(message.starts_with(name + ":") && message.size() < 2000);
 }

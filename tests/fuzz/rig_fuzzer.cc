@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes are a rig with a usable gravity torque, or a sentence.
+// Any bytes give a rig with a usable gravity torque, or an error sentence.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

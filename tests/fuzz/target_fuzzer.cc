@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes are a target without anything that a path or a terminal would obey, or a sentence.
+// Any bytes give a target without parts that a path or a terminal would interpret, or an error sentence.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Zip files; what is in them is text more often than not.
+// Zip files; their content is mostly text.
 #include <cstddef>
 #include <cstdint>
 

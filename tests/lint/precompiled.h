@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other people's headers that most source files read, precompiled for scripts/lint: half of its time. A source file
-// that forgets one of these is found by tests/check_includes.py, by the names it uses.
+// Third-party headers that most source files include, precompiled for scripts/lint to halve its time. If a source file
+// forgets one of these, tests/check_includes.py finds it by the names used.
 #pragma once
 
 #include <algorithm>

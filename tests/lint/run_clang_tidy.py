@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy on source files of the libraries and the tools, each compiled by itself, for scripts/lint.
+"""Runs clang-tidy on source files of the libraries and the tools, each compiled separately, for scripts/lint.
 
   run_clang_tidy.py --all        all of them
-  run_clang_tidy.py BASE         those that differ from a revision of git, or include a header that does, through others
-                                 too; all of them when the checks or the build differ
-  run_clang_tidy.py --self_test  shows on a small tree what is remembered
+  run_clang_tidy.py BASE         those that differ from a revision of git, or include a header that differs, directly or
+                                 through others; all of them if the checks or the build differ
+  run_clang_tidy.py --self_test  shows on a small tree what the cache remembers
 
-A file without findings is remembered in ~/.cache/pendulum_lint (or XDG_CACHE_HOME), and not read again until it, a
-header that it includes, the checks, its compile command or a Debian package with headers changes. Needs the preset lint.
+A file without findings is remembered in ~/.cache/pendulum_lint (or XDG_CACHE_HOME). It is not checked again until the
+file, a header that it includes, the checks, its compile command or a Debian package with headers changes. Needs the
+preset lint.
 Exit 0: no finding. Exit 1: a finding. Exit 2: it could not be run.
 """
 
@@ -29,9 +30,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build" / "lint"
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "pendulum_lint")
 DAYS_IN_CACHE = 30
-# A change of one of these may change what is found in every file.
+# A change of one of these files may change the findings in every file.
 CONCERNS_ALL = re.compile(r"(^|/)(\.clang-tidy|CMakeLists\.txt|CMakePresets\.json)$|^tests/lint/|^scripts/lint$")
-# How the precompiled header is compiled, and what has no compile command of its own.
+# Options for the precompiled header and for files without a compile command.
 COMPILE_OPTIONS = ["-std=c++20", "-DGFLAGS_IS_A_DLL=0", "-isystem", "/usr/include/eigen3"]
 sys.path.insert(0, str(ROOT / "tests"))
 
@@ -51,13 +52,13 @@ def output(*command):
 
 
 def changed_since(base):
-    """The paths that differ from a revision, from the top folder; files that git does not know yet too."""
+    """The paths that differ from a revision, relative to the top folder; includes files that git does not track yet."""
     names = output("git", "diff", "--name-only", "--relative", "-z", base, "--")
     return (names + output("git", "ls-files", "--others", "--exclude-standard", "-z")).split("\0")
 
 
 def shared_digest():
-    """Of what the findings in all files depend on besides the sources: checks, this program, other people's headers."""
+    """Digest of all inputs other than the sources: checks, this program, third-party headers."""
     digest = hashlib.sha256(output("dpkg-query", "--show", "clang-tidy-19", "*-dev").encode())
     checks = output("git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", "*.clang-tidy", "tests/lint")
     for name in sorted(filter(None, checks.split("\0"))):
@@ -66,7 +67,7 @@ def shared_digest():
 
 
 def build_once(path, *command):
-    """Has a command write a file that is not there; two runs at once do no harm."""
+    """Runs a command to create a file that does not exist. Two runs at the same time do no harm."""
     if not path.exists():
         part = path.with_name(f"{path.name}.{os.getpid()}")
         output(*command, "-o", part)
@@ -77,11 +78,11 @@ def build_once(path, *command):
 
 
 def tidy_command(digest):
-    """clang-tidy with its plugin and the precompiled header, which are built where they are missing."""
+    """The clang-tidy command with its plugin and the precompiled header, which are built if missing."""
     include = output("llvm-config-19", "--includedir").strip()
     plugin = build_once(BUILD / f"skip_system_headers_{digest[:16]}.so", "clang++-19", "-std=c++17", "-fPIC", "-shared", "-fno-rtti",
                         f"-I{include}", "tests/lint/skip_system_headers.cc")
-    # With the templates it instantiates, which takes half of the time off each file.
+    # It includes the templates that it instantiates, which halves the time per file.
     header = build_once(BUILD / f"precompiled_{digest[:16]}.pch", "clang++-19", "-fpch-instantiate-templates",
                         *COMPILE_OPTIONS, "-x", "c++-header", "tests/lint/precompiled.h")
     return ["clang-tidy-19", "-p", BUILD, "--quiet", "--warnings-as-errors=*", f"--load={plugin}", "--extra-arg=-Xclang",
@@ -89,23 +90,23 @@ def tidy_command(digest):
 
 
 def compile_commands():
-    """{source file: how it is compiled, the same in every checkout}"""
+    """{source file: its compile command, identical in every checkout}"""
     commands = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
-        root = str(pathlib.Path(entry["directory"]).parent.parent)  # as cmake was told it, through links or not
+        root = str(pathlib.Path(entry["directory"]).parent.parent)  # as passed to cmake, with or without links
         commands[pathlib.Path(entry["file"]).resolve()] = entry["command"].replace(root, "")
     return commands
 
 
 class Lint:
-    """Files of a tree, and which of them are known to be clean: `command` and a path says what is wrong with one."""
+    """The files of a tree, and which are known to be clean. `command` with a path prints the findings in that file."""
 
     def __init__(self, tree, commands, digest, command, cache):
         self.tree, self.commands, self.digest, self.command, self.cache = tree, commands, digest, command, cache
         cache.mkdir(parents=True, exist_ok=True)
 
     def mark(self, path, text):
-        """The file that is there when `path` is clean, of the text of what it includes."""
+        """The cache file that exists if `path` is clean with the present text of its includes."""
         digest = hashlib.sha256((self.digest + self.commands[path]).encode())
         for file in sorted(self.tree.reached(path)[0]):
             digest.update(f"{file.relative_to(self.tree.root)}\n{text(file)}".encode())
@@ -118,7 +119,7 @@ class Lint:
         return False
 
     def check(self, path):
-        """What clang-tidy says of a file, or None; remembers that it is nothing unless the file has changed meanwhile."""
+        """clang-tidy's findings in a file, or None. A clean file is remembered unless it has changed meanwhile."""
         run = subprocess.run([*self.command, path], cwd=ROOT, capture_output=True, text=True)
         if run.returncode != 0:
             return (run.stdout + run.stderr) or f"run_clang_tidy: {self.command[0]} ended with {run.returncode} on {path}."
@@ -135,7 +136,7 @@ class Lint:
 
 
 def finds_what_is_planted(command):
-    """Whether clang-tidy complains of a C array in a source file and of one in a header that it includes."""
+    """Whether clang-tidy reports a C array in a source file and another in a header that it includes."""
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         source, header = pathlib.Path(folder, "src/planted.cc"), pathlib.Path(folder, "src/planted.h")
         source.parent.mkdir()
@@ -147,7 +148,7 @@ def finds_what_is_planted(command):
 
 
 def sources_to_check(tree, commands, base):
-    """The source files to look at; all of them where there is no base."""
+    """The source files to check; all of them if there is no base."""
     sources = [path for path in tree.paths if path.suffix == ".cc" and path.is_relative_to(tree.root / "src")]
     for path in sources:
         if path not in commands:
@@ -178,7 +179,7 @@ def run(base):
 
 
 def self_test():
-    """What is wrong with what is remembered of a small tree."""
+    """Errors in the cache's memory of a small tree."""
     failures = []
 
     def lint(command=("true",), digest="checks", how="c++ x.cc"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Debian package of the tools is installed, upgraded, removed and purged by dpkg, in a folder of its own:
+"""Installs, upgrades, removes and purges the Debian package of the tools with dpkg, in a separate folder:
 debian_installation_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS.
 
 dpkg's --force-script-chrootless runs the maintainer scripts with this system's programs on the folder's files."""
@@ -32,7 +32,7 @@ class DebianInstallationTest(unittest.TestCase):
 
     @classmethod
     def make_light(cls, version, addition):
-        """The package without the tools, which would be unpacked again and again, and with more in its conffile."""
+        """The package without the tools, to save repeated unpacking, and with an addition to its conffile."""
         files = cls.folder / version
         packed.output("dpkg-deb", "--raw-extract", cls.whole, files)
         shutil.rmtree(files / "usr/bin")
@@ -54,7 +54,7 @@ class DebianInstallationTest(unittest.TestCase):
         self.empty = self.files()
 
     def files(self):
-        """All there is but dpkg's own."""
+        """All files except dpkg's own."""
         return {str(path.relative_to(self.root)) for path in self.root.rglob("*")
                 if not path.is_dir() and self.root / "var/lib/dpkg" not in path.parents}
 
@@ -123,7 +123,7 @@ class DebianInstallationTest(unittest.TestCase):
     def test_purge_leaves_nothing(self):
         self.dpkg("--install", self.package)
         self.systemctl("enable", UNIT)
-        (self.root / "var/lib/private/pendulum").mkdir(parents=True)  # as systemd makes them
+        (self.root / "var/lib/private/pendulum").mkdir(parents=True)  # as systemd creates them
         (self.root / "var/lib/pendulum").symlink_to("private/pendulum")
         self.dpkg("--purge", "pendulum")
         self.assertEqual(self.files(), self.empty)

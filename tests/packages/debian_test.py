@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Debian packages say what they are and hold it: debian_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+"""Checks metadata and contents of the Debian packages: debian_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import os
 import pathlib
@@ -39,7 +39,7 @@ class DebianTest(unittest.TestCase):
         self.assertIn("Description: Moment of inertia", output("dpkg-deb", "--info", package))
 
     def check_contents(self, package, patterns):
-        """Each file is by one of the patterns, and none can be written by others than root, as --contents lists them."""
+        """Each file matches one of the patterns, and only root can write it, as --contents lists them."""
         for line in output("dpkg-deb", "--contents", package).splitlines():
             mode, owner, _, _, _, path = line.split(maxsplit=5)
             self.assertEqual(owner, "root/root", line)
@@ -48,7 +48,7 @@ class DebianTest(unittest.TestCase):
                 self.assertTrue(any(re.fullmatch(pattern, path) for pattern in patterns), line)
 
     def check_dependencies(self, package, expected):
-        """Each is of a package that is here, in a version that is enough: these were built with it."""
+        """Each dependency is installed here in a sufficient version: the package was built with it."""
         names = []
         for alternatives in output("dpkg-deb", "--field", package, "Depends").strip().split(", "):
             name, _, version = re.fullmatch(r"([a-z0-9.+-]+)( \(>= (.*)\))?", alternatives.split(" | ")[0]).groups()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A root file system that holds nothing but glibc's libraries, and programs run in it.
+"""A root file system that contains only glibc's libraries, and programs run in it.
 
-Where neither root nor user namespaces are to be had the programs cannot be run, and tests of theirs fail."""
+Without root rights and without user namespaces the programs cannot run, and their tests fail."""
 
 import os
 import pathlib
@@ -22,7 +22,7 @@ def glibc_of(program):
 
 
 def fill(root, program):
-    """Puts into the folder what a program needs of glibc, and the data of FIT."""
+    """Copies the glibc files that a program needs, and the data of FIT, into the folder."""
     for path in glibc_of(program) + DATA:
         target = root / path.lstrip("/")
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -30,15 +30,15 @@ def fill(root, program):
 
 
 def tell_origin(root, tool):
-    """The loader learns from /proc where the program lies that it loads, and only the folder matters to it. This link
-    stands for that, which needs no right to mount: it is the same for all tools of a folder."""
+    """The loader reads the program's path from /proc and uses only its folder. This link replaces /proc, so no right to
+    mount is needed; it is the same for all tools of a folder."""
     link = root / "proc/self/exe"
     link.parent.mkdir(parents=True)
     link.symlink_to(tool)
 
 
 def run(root, command, **environment):
-    """Runs a command whose paths are those of the root, with this environment and no other; it begins in /."""
+    """Runs a command with paths relative to the root and only this environment; it starts in /."""
     path = f"{os.environ['PATH']}:/usr/sbin:/sbin"
     chroot = [shutil.which("chroot", path=path), root]
     if os.geteuid() != 0:
@@ -47,7 +47,7 @@ def run(root, command, **environment):
 
 
 def only_one(packages, pattern):
-    """The one package of this kind."""
+    """The only package that matches the pattern."""
     found = sorted(pathlib.Path(packages).glob(pattern))
     if len(found) != 1:
         raise FileNotFoundError(f"{packages} has {len(found)} of {pattern}, not one: {found}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The packages have the licences of all that is in them, and nothing that is only for tests:
+"""Checks that the packages include the licences of all their contents, and nothing that only tests need:
 licences_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import functools
@@ -17,22 +17,22 @@ import packed
 
 SOURCES = empty_root.TOP / "src"
 PLACES = [pathlib.Path("/usr/include" + folder) for folder in ("", "/eigen3", "/hdf5/serial")]
-# The compiler's, which every program has: their licences allow that without saying so (GCC Runtime Library Exception).
+# Parts of the compiler, in every program: their licences permit that without a notice (GCC Runtime Library Exception).
 COMPILERS = {"gcc-12", "glibc", "linux"}
-# What Ceres, a static library, brings along as shared ones: they are named in a sentence, and packages with licences of
-# their own, which are in the tarball one by one.
+# Shared libraries that Ceres, a static library, needs. A sentence names them; they are separate packages with their own
+# licences, and the tarball includes each of these.
 CERES = {"suitesparse", "lapack", "atlas", "openblas"}
 
 
 @functools.cache
 def debian_source(package):
-    """The source package, of which a library and its headers are two packages."""
+    """The source package; a library and its headers are two packages of it."""
     return packed.output("dpkg-query", "--show", "--showformat", "${source:Package}\n", package).splitlines()[0]
 
 
 def owners(paths):
-    """The packages that files are of, by the names these have or had before /lib became a link to /usr/lib. All are looked
-    up at once: dpkg-query reads its whole data base each time."""
+    """The packages of files, by the files' names now or before /lib became a link to /usr/lib. A single call looks all of
+    them up, because dpkg-query reads its whole data base each time."""
     names = {str(path) for path in paths}
     names |= {re.sub(r"^/usr/lib/", "/lib/", name) for name in names}
     lines = subprocess.run(["dpkg-query", "--search", *sorted(names)], capture_output=True, text=True).stdout.splitlines()
@@ -45,7 +45,7 @@ def owners(paths):
 
 
 def libraries(program):
-    """Paths of the shared libraries that a program itself names."""
+    """Paths of the shared libraries that a program names directly."""
     needed = re.findall(r"\(NEEDED\).*\[(.*)\]", packed.output("readelf", "--wide", "--dynamic", program))
     resolved = dict(re.findall(r"(\S+) => (\S+)", packed.output("ldd", program)))
     return {pathlib.Path(resolved[name]).resolve() for name in needed}
@@ -53,7 +53,7 @@ def libraries(program):
 
 @functools.cache
 def packages_of_headers():
-    """The packages of the headers of others that our sources include."""
+    """The packages of third-party headers that our sources include."""
     sources = [path for folder in (SOURCES, empty_root.TOP / "include", empty_root.TOP / "firmware/pendulum_logger")
                for path in folder.rglob("*.[ch]*") if "node_modules" not in path.parts]
     names = {name for path in sources for name in re.findall(r"^#include <([^>]+)>", path.read_text(errors="replace"), re.MULTILINE)}
@@ -67,7 +67,8 @@ class LicencesTest(packed.DebianFilesTest):
         super().setUpClass()
         cls.text = (cls.root / "usr/share/doc/pendulum/copyright").read_text()
         cls.named = set(re.findall(r"^=+\n(\S+)\n=+$", cls.text, re.MULTILINE))
-        # Texts in src/packages/licences stand for packages too: boost for what Debian builds of source package boost1.74.
+        # Texts in src/packages/licences also represent packages: boost is built by Debian from the source package
+        # boost1.74.
         cls.sources = {debian_source(name) for name in cls.named - {"boost", "uplot"}} | {"boost1.74"}
 
     def test_every_library_that_a_tool_is_linked_with_is_named(self):
@@ -108,7 +109,7 @@ class LicencesTest(packed.DebianFilesTest):
             self.assertEqual([archive.extractfile(name).read().decode() for name in names], [self.text])
 
     def test_nothing_that_only_tests_need_is_packed(self):
-        """The simulator of the board is under the GPL, and a simulated logger is no logger."""
+        """The board's simulator is under the GPL, and users do not need a simulated logger."""
         with tarfile.open(empty_root.only_one(self.packages, "pendulum-*.tar.gz")) as archive:
             archive.extractall(self.folder / "tarball")
         for folder in (self.root, self.folder / "tarball"):

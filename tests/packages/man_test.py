@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Each tool's manual page says what its --help does: man_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+"""Compares each tool's manual page with its --help: man_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import os
 import pathlib
@@ -23,7 +23,7 @@ class ManTest(packed.DebianFilesTest):
         cls.pages = {path.name.removesuffix(".1.gz"): path for path in (cls.root / "usr/share/man/man1").iterdir()}
 
     def render(self, page, *options):
-        """The page as text, a paragraph a line, and what was wrong with it."""
+        """The page as text, one paragraph per line, and the errors found in it."""
         environment = os.environ | {"LC_ALL": "C.UTF-8", "MANWIDTH": "5000", "MAN_KEEP_FORMATTING": "", "MANROFFOPT": ""}
         done = subprocess.run(["man", *options, "--no-hyphenation", "--no-justification", "--local-file", page],
                               capture_output=True, text=True, env=environment)
@@ -42,7 +42,8 @@ class ManTest(packed.DebianFilesTest):
         for name, page in self.pages.items():
             self.assertEqual(self.render(page, "--warnings")[1], "", name)
             linted = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True)
-            lines = [line for line in linted.stdout.splitlines() if "cannot parse date" not in line]  # help2man's month is none
+            # Help2man gives a month only.
+            lines = [line for line in linted.stdout.splitlines() if "cannot parse date" not in line]
             self.assertEqual(lines, [], name)
 
     def test_whatis_finds_the_name(self):
@@ -75,7 +76,8 @@ class ManTest(packed.DebianFilesTest):
             self.assertLessEqual({0, 2, 70}, set(listed), name)
 
     def test_pages_that_it_refers_to_are_ours_or_known(self):
-        others = {"curl", "gnuplot", "nginx", "sqlite3", "systemctl"}  # of packages that ours suggests, or of the system
+        # In packages that ours suggests, or in the system.
+        others = {"curl", "gnuplot", "nginx", "sqlite3", "systemctl"}
         for name, page in self.pages.items():
             section = self.render(page)[0].partition("\nSEE ALSO\n")[2]
             for reference in re.findall(r"\b(\w+)\(\d\)", section):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""serve_pendulum of the Debian package behind a real nginx, with TLS, as the package's example says:
+"""Runs serve_pendulum of the Debian package behind a real nginx, with TLS, according to the package's example:
 nginx_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS.
 
-Only ports, paths and the certificate are other ones than in the example; all of it runs on 127.0.0.1."""
+Only ports, paths and the certificate differ from the example; everything runs on 127.0.0.1."""
 
 import json
 import os
@@ -25,11 +25,11 @@ BIN = pathlib.Path()
 NAME = "pendulum.example.org"
 TOKEN = "0123456789abcdef" * 4
 RECORDING = empty_root.TOP / empty_root.DATA[0]
-PATIENCE = 60  # s, for what is there at once unless it is lost
+PATIENCE = 60  # s, for answers that come at once unless they are lost
 
 
 def free_ports(count):
-    """Ports of 127.0.0.1 that nothing listens on, each another one."""
+    """Different ports of 127.0.0.1 on which nothing listens."""
     sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
     ports = [each.getsockname()[1] for each in sockets]
     for each in sockets:
@@ -38,7 +38,7 @@ def free_ports(count):
 
 
 class Answer:
-    """What curl --include printed, of the last answer: status, fields (names in lower case), body."""
+    """The last answer in the output of curl --include: status, fields (names in lower case), body."""
 
     def __init__(self, printed):
         head, _, self.body = printed.partition(b"\r\n\r\n")
@@ -92,7 +92,7 @@ class NginxTest(packed.DebianFilesTest):
 
     @classmethod
     def example(cls):
-        """The package's nginx.conf, with this test's ports and paths in the places of those of a system."""
+        """The package's nginx.conf, with this test's ports and paths instead of a system's."""
         text = (cls.root / "usr/share/doc/pendulum/examples/nginx.conf").read_text()
         for there, here in {
                 "    listen 80;": f"    listen 127.0.0.1:{cls.http};", "    listen [::]:80;\n": "",
@@ -111,7 +111,7 @@ class NginxTest(packed.DebianFilesTest):
         (cls.folder / "site.conf").write_text(cls.example())
         paths = "".join(f"{name}_temp_path {cls.folder}/{name};\n"
                         for name in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
-        user = "user root;\n" if os.geteuid() == 0 else ""  # who may write into this folder
+        user = "user root;\n" if os.geteuid() == 0 else ""  # the user who may write into this folder
         configuration = cls.folder / "nginx.conf"
         configuration.write_text(f"{user}daemon off;\npid {cls.folder}/nginx.pid;\nerror_log stderr;\nworker_processes 1;\n"
                                  f"events {{}}\nhttp {{\naccess_log off;\n{paths}include {cls.folder}/site.conf;\n}}\n")
@@ -134,7 +134,7 @@ class NginxTest(packed.DebianFilesTest):
         raise AssertionError((cls.folder / "nginx.log").read_text() + cls.checked.stderr)
 
     def command(self, path, *options, token=TOKEN):
-        """curl's, which trusts the test's certificate and nothing else."""
+        """A curl command that trusts only the test's certificate."""
         authorization = ["--header", f"Authorization: Bearer {token}"] if token else []
         return ["curl", "--silent", "--show-error", "--max-time", str(PATIENCE), "--noproxy", "*", "--cacert",
                 self.certificate, "--resolve", f"{NAME}:{self.https}:127.0.0.1", *authorization, *options,
@@ -191,7 +191,7 @@ class NginxTest(packed.DebianFilesTest):
         self.check_problem(answer, 413, "too_large")
 
     def test_limits_and_times_are_in_step_with_the_flags(self):
-        """Of the texts, so that whoever changes a default changes the other."""
+        """Compares the texts, so that a change of one default requires the change of the other."""
         text = (self.root / "usr/share/doc/pendulum/examples/nginx.conf").read_text()
         default = packed.default_numbers(self.root / "usr/bin/serve_pendulum")
         self.assertEqual(int(re.search(r"client_max_body_size (\d+)m;", text)[1]), default["max_body_mb"])
@@ -199,7 +199,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertEqual(re.search(r"server 127\.0\.0\.1:(\d+);", text)[1], str(default["port"]))
 
     def test_streams_of_the_service_are_the_ones_that_nginx_does_not_buffer(self):
-        """nginx passes on at once what the service sends in chunks, so only its text tells whether it is allowed to wait."""
+        """nginx passes chunks from the service on at once, so only its configuration shows whether it may wait."""
         location = re.search(r"location ~ (\S+) \{([^}]*)\}", self.example())
         self.assertIn("proxy_buffering off;", location[2])
         paths = self.ask("/openapi.json").json()["paths"]
@@ -211,7 +211,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertEqual(self.ask("/metrics").status, 404)
 
     def stream(self, path):
-        """Lines of a stream as they come; one that takes longer than PATIENCE fails."""
+        """The lines of a stream as they arrive; a line that takes longer than PATIENCE fails."""
         process = subprocess.Popen(self.command(path, "--no-buffer"), stdout=subprocess.PIPE)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
@@ -235,7 +235,7 @@ class NginxTest(packed.DebianFilesTest):
         return json.loads(next(lines).removeprefix("data:"))["time_s"]
 
     def test_live_events_arrive_while_the_stream_is_open(self):
-        """It never ends by itself: what a proxy keeps back until there is more would not arrive at all."""
+        """The stream never ends, so data held back by a proxy would never arrive."""
         with open(f"{self.run_csv}.part", "w") as part:
             part.write("# sample_rate_hz: 10\ntime_s,angle_deg\n0,5\n0.1,4\n0.2,3\n")
             part.flush()
@@ -255,7 +255,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertEqual(json.loads(last.removeprefix("data:")), {"runs": 2, "done": 2, "failed": 0})
 
     def ask_together(self, count):
-        """What so many requests at a time get, over one connection of HTTP/2."""
+        """The answers to `count` simultaneous requests over one HTTP/2 connection."""
         command = self.command("/healthz", "--http2", "--parallel", "--parallel-max", str(count),
                                "--write-out", "%{http_code} %{content_type} %header{retry-after}\n", token=None)
         command += ["--output", os.devnull] * count + [f"https://{NAME}:{self.https}/healthz"] * (count - 1)
@@ -263,7 +263,7 @@ class NginxTest(packed.DebianFilesTest):
 
     def test_too_many_requests_of_one_address_are_told_so(self):
         answers = set()
-        for _ in range(10):  # on a machine that stands still they are not at the same time, and all are taken
+        for _ in range(10):  # on a stalled machine they are not simultaneous, and all are accepted
             if len(answers) < 2:
                 answers |= set(self.ask_together(150))
         self.assertEqual(answers, {"200 application/json ", "429 application/problem+json 1"})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is in the packages, for the tests of it: files of the Debian packages, the tools' names, what the tools say."""
+"""The contents of the packages, for their tests: files of the Debian packages, names of the tools, output of the tools."""
 
 import pathlib
 import re
@@ -15,25 +15,25 @@ def output(*command, **options):
 
 
 def tool_names():
-    """Of all tools, as src/CMakeLists.txt builds them."""
+    """The names of all tools in src/CMakeLists.txt."""
     return set(re.findall(r"^pendulum_add_tool\((\w+)\)$", (empty_root.TOP / "src/CMakeLists.txt").read_text(), re.MULTILINE))
 
 
 def flags(tool):
-    """Name -> description of each flag, as --help has them, with single blanks."""
+    """Name -> description of each flag, from --help, with single blanks."""
     text = output(tool, "--help")
     found = re.findall(r"^  --(\w+)  +(.*(?:\n {4,}.*)*)", text[text.index("\n  --"):], re.MULTILINE)
     return {name: " ".join(description.split()) for name, description in found}
 
 
 def default_numbers(tool):
-    """Flag -> its default, of the flags whose description tells a number."""
+    """Flag -> default, for flags whose description gives a number."""
     found = ((name, re.search(r"\b[Dd]efault (\d+)\b", description)) for name, description in flags(tool).items())
     return {name: int(default[1]) for name, default in found if default}
 
 
 class DebianFilesTest(unittest.TestCase):
-    """Tests of the files of the Debian package of the tools, which are below root."""
+    """Tests of the files below `root` of the tools' Debian package."""
 
     packages = pathlib.Path()
 

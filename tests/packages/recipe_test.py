@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Apptainer recipe, as far as that can be shown without Apptainer, and what scripts/package refuses:
+"""Tests the Apptainer recipe, as far as possible without Apptainer, and the errors of scripts/package:
 recipe_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import pathlib
@@ -72,7 +72,7 @@ class RecipeTest(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
 
     def run_post(self, folder):
-        """%post on what %files brings, in a folder instead of /, with packages that are made already."""
+        """Runs %post on the files of %files, in a folder instead of /, with packages that are already built."""
         source = folder / "source"
         for line in self.build_sections["files"]:
             target = source / line.split()[0]
@@ -87,7 +87,7 @@ class RecipeTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def make_image(self, folder):
-        """What the final stage is made of, with no more of Debian than glibc and sh."""
+        """Assembles the final stage, with no more of Debian than glibc and sh."""
         (folder / "stage").mkdir()
         self.run_post(folder / "stage")
         image = folder / "image"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The unit of the service, as systemd reads it: service_unit_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+"""Tests the service's unit as systemd reads it: service_unit_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import pathlib
 import re
@@ -21,13 +21,14 @@ class ServiceUnitTest(packed.DebianFilesTest):
         cls.text = (cls.root / "lib/systemd/system" / UNIT).read_text()
         cls.tool = cls.root / "usr/bin/serve_pendulum"
         cls.unit = cls.folder / UNIT
-        cls.unit.write_text(cls.text.replace("/usr/bin/serve_pendulum", str(cls.tool)))  # so that it is found where it is
+        # So that it is found in its present place.
+        cls.unit.write_text(cls.text.replace("/usr/bin/serve_pendulum", str(cls.tool)))
 
     def settings(self, name):
         return re.findall(rf"^{name}=(.*)$", self.text, re.MULTILINE)
 
     def default_options(self):
-        """What a shell, and systemd, make of OPTIONS in /etc/default/serve_pendulum."""
+        """OPTIONS in /etc/default/serve_pendulum as a shell, and systemd, split it."""
         file = self.root / "etc/default/serve_pendulum"
         return shlex.split(packed.output("sh", "-c", '. "$1" && printf "%s" "$OPTIONS"', "sh", file))
 
@@ -36,7 +37,7 @@ class ServiceUnitTest(packed.DebianFilesTest):
         self.assertEqual((done.returncode, [line for line in done.stderr.splitlines() if UNIT in line]), (0, []), done.stderr)
 
     def test_it_is_exposed_as_little_as_a_network_service_can_be(self):
-        """systemd's own measure is from 0 to 10; up to 2 it says that this is "OK", its best but for what has no network."""
+        """systemd's own measure is 0 to 10. Up to 2 it reports "OK", its best verdict for a service with a network."""
         done = subprocess.run(["systemd-analyze", "security", "--offline=yes", "--threshold=15", "--no-pager", self.unit],
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout[-300:])

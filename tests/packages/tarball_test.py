@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The tarball runs where there is nothing but glibc: tarball_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
+"""Runs the tarball's tools where only glibc is available: tarball_test.py FOLDER_OF_THE_PACKAGES FOLDER_OF_THE_TOOLS."""
 
 import pathlib
 import re

@@ -11,7 +11,7 @@
 namespace pendulum {
 namespace {
 
-/// Leaves out what the user said of parameters that the model does not have.
+/// Removes the options for parameters that the model does not have.
 template <typename Map>
 void KeepKnown(const std::vector<ParameterInfo>& infos, Map& map) {
   std::erase_if(map, [&](const auto& entry) {
@@ -19,7 +19,7 @@ void KeepKnown(const std::vector<ParameterInfo>& infos, Map& map) {
   });
 }
 
-/// The start values of the richer law without what the simpler does not have.
+/// The start values of the richer law without the parameters that the simpler law does not have.
 StartValues StartOf(const MotionModel& simpler, const FitProblem& problem) {
   StartValues start = problem.start;
   const std::vector<ParameterInfo> kept = PhysicalParameters(simpler);
@@ -39,7 +39,7 @@ StartValues StartOf(const MotionModel& simpler, const FitProblem& problem) {
 }
 
 /// The parameters of the richer law: those of the simpler fit, the larger of the pair equal to the smaller, the others
-/// as the data gave them at first.
+/// at their start values.
 std::vector<ParameterEstimate> Embed(const FitReport& simpler, const FitProblem& problem, const OrderedPair& order) {
   std::vector<ParameterEstimate> parameters;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {

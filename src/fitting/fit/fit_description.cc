@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Index;
 
-/// Residuals of a billionth of the swing are those of numbers, not of a model.
+/// Residuals of a billionth of the swing are rounding errors of the numbers, not of a model.
 bool IsRounding(const Recording& recording, const FitReport& report) {
   constexpr double kRounding = 1e-9;
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   return report.statistics.rms_residual < kRounding * range;
 }
 
-/// Samples in a period, as a number of lags.
+/// Samples per period, as a number of lags.
 int PeriodLags(const FitProblem& problem) {
   const std::vector<double>& time = problem.data.time;
   constexpr std::size_t kEnough = 100'000;
@@ -34,7 +34,7 @@ int PeriodLags(const FitProblem& problem) {
   return static_cast<int>(std::min(lags, static_cast<double>(time.size())));
 }
 
-/// The unit of what is told in that of the readings.
+/// Converts the unit of a parameter to the unit of the readings if they are not calibrated.
 void SetReadingUnit(const Recording& recording, const SensorModel& sensor, ParameterEstimate& parameter) {
   const std::string_view name = parameter.info.name;
   const bool is_length = name == kPivotX.name || name == kPivotY.name || name == kRadius.name;
@@ -42,7 +42,7 @@ void SetReadingUnit(const Recording& recording, const SensorModel& sensor, Param
   if (sensor.kind == SensorKind::kScaledRate && name == kRateBias.name) parameter.unit = recording.unit;
   if (name == kRateScale.name) parameter.unit = recording.unit + " s/rad";
   if (sensor.kind != SensorKind::kDirect || recording.is_calibrated() || !parameter.unit.starts_with("rad")) return;
-  // The motion itself is told in the readings' unit then: of a rate it is a rate.
+  // The motion is then in the readings' unit as well; for a rate sensor this is the unit of its rate.
   const bool is_rate = parameter.unit == "rad/s";
   if (recording.quantity != Quantity::kRate) {
     parameter.unit.replace(0, 3, recording.unit);

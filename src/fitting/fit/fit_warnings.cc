@@ -16,7 +16,7 @@
 namespace pendulum {
 namespace {
 
-/// A reading at an end of the sensor's range only says that the angle is there or beyond.
+/// A reading at an end of the sensor's range only states that the angle is at that end or beyond.
 void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings) {
   if (problem.censored == 0) return;
   warnings.push_back({"saturated", std::to_string(problem.censored) +
@@ -24,7 +24,7 @@ void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings)
                                        "the angle is there or beyond"});
 }
 
-/// The misfit beyond the noise, in levels where the readings stand on such.
+/// The size of the misfit, in resolutions if the readings are quantized.
 std::string MisfitSize(const Recording& recording, double misfit) {
   if (recording.resolution > 0) return NumberText(misfit / recording.resolution, 2) + " resolutions";
   return NumberText(misfit, 2) + " " + recording.value_unit();
@@ -59,7 +59,7 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
                                          "conditional on a model that may be wrong"});
 }
 
-/// Line through the mean residuals of whole periods, which the swing itself leaves alone.
+/// A line through the mean residuals of whole periods. The swing itself does not affect these means.
 void WarnOfDrift(const Recording& recording, const FitProblem& problem, const FitReport& report,
                  std::vector<Warning>& warnings) {
   constexpr Eigen::Index kFewest = 5;
@@ -96,10 +96,11 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
                                         "=0 makes the drift a parameter of the fit"});
 }
 
-/// Below half a resolution of noise the readings are rounded values of a smooth curve, not a curve with white noise.
+/// If the noise is below half a resolution, the readings are rounded values of a smooth curve, not a curve with white
+/// noise.
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
-  const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // outliers apart
+  const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers
   const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
   if (of_levels || !(rms < kQuiet * recording.resolution)) return;
   warnings.push_back(
@@ -110,7 +111,7 @@ void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std:
 
 void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kNegligible = 0.01;
-  constexpr double kRounding = 1e-11;  // rad or rad/s: noise below it is none
+  constexpr double kRounding = 1e-11;  // rad or rad/s: smaller noise is rounding error
   if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
   warnings.push_back({"trace_accuracy", "the trajectory is computed to " + NumberText(report.trace_error, 1) +
                                             " only, which is not small against the noise of " +
@@ -118,9 +119,9 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
                                             ": near the top rounding grows; choose a window of smaller swings"});
 }
 
-/// The prior against what the recording alone would say, which prior and estimate tell: with variances s² of the
-/// estimate and p² of the prior, the recording's own is 1 / (1/s² - 1/p²). Where s is no less than p, for the law does
-/// not fit, that is no variance: then the estimate is compared with the prior alone.
+/// Compares the prior with the estimate from the recording alone, which follows from prior and posterior. If the
+/// estimate has variance s² and the prior p², the recording's own variance is 1 / (1/s² - 1/p²). If s is at least p,
+/// because the law does not fit, this is not a variance. Then the estimate is compared with the prior alone.
 void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
                   std::vector<Warning>& warnings) {
   constexpr double kFar = 3;  // standard deviations of their difference
@@ -138,7 +139,7 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
   }
 }
 
-/// With one parameter at its bound the errors of the others hold only if the truth lies on that bound.
+/// If one parameter is at its bound, the errors of the others are valid only if the true value lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr std::string_view kConsequence =
       "; the standard errors of the others take that as exact, the intervals by profile likelihood do not";
@@ -146,7 +147,7 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
     if (parameter.info.name != kReleaseTime.name) {
-      const bool none = parameter.estimate == 0 && parameter.info.lower == 0;  // what is left is a simpler law
+      const bool none = parameter.estimate == 0 && parameter.info.lower == 0;  // the result is a simpler law
       const bool own = parameter.estimate == parameter.info.lower || parameter.estimate == parameter.info.upper;
       (none ? friction : own ? extreme : bounded).push_back(parameter.info);
       continue;
@@ -169,7 +170,7 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
                                       "; a simpler model, or a longer recording, has smaller ones"});
 }
 
-/// Warnings about the stop of a pendulum that dry friction brings to rest.
+/// Warns about the stop of a pendulum that dry friction brings to rest.
 void WarnOfStop(const FitProblem& problem, const Solution& solution, const TraceSummary& trace, const FitReport& report,
                 std::vector<Warning>& warnings) {
   const int holding = problem.solve.holding_parameter;

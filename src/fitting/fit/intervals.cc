@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Index;
 
-/// All but the fixed parameters: free ones first.
+/// All parameters that are not fixed, free ones first.
 std::vector<int> NotFixed(const Optimum& optimum) {
   std::vector<int> parameters = optimum.free;
   parameters.insert(parameters.end(), optimum.at_bound.begin(), optimum.at_bound.end());
   return parameters;
 }
 
-/// Sets one parameter's interval, given in the problem's units.
+/// Sets one parameter's interval from ends in the problem's units.
 void SetInterval(const FitProblem& problem, int parameter, const std::optional<double>& lower,
                  const std::optional<double>& upper, FitReport& report) {
   const auto i = static_cast<std::size_t>(parameter);
@@ -34,7 +34,7 @@ void SetInterval(const FitProblem& problem, int parameter, const std::optional<d
   report.parameters[i].upper95 = reported(upper);
 }
 
-/// The points of a profile as the report has them.
+/// Converts the points of a profile to reported units.
 ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const ProfileInterval& interval) {
   const auto i = static_cast<std::size_t>(parameter);
   ProfileCurve curve;
@@ -73,7 +73,7 @@ void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
                            std::to_string(fitted.options.seed);
 }
 
-/// Over the free parameters of `optimum`.
+/// The linearized fit over the free parameters of `optimum`.
 LinearizedFit LinearizedOf(const FittedModel& fitted, const Optimum& optimum) {
   const FitProblem& problem = fitted.problem;
   const std::vector<int>& free = optimum.free;
@@ -100,7 +100,7 @@ LinearizedFit LinearizedOf(const FittedModel& fitted, const Optimum& optimum) {
   return linear;
 }
 
-/// The parameters that follow the one in `row` of the inverse most closely.
+/// The parameters that are most strongly correlated with the one in `row` of the inverse.
 std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& optimum, Index row) {
   constexpr double kClosely = 0.9;
   const Eigen::MatrixXd& inverse = optimum.inverse.matrix;
@@ -112,7 +112,8 @@ std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& opt
   return names;
 }
 
-/// Noise so small that no parabola describes the likelihood: the few samples near the edges of levels tell all.
+/// Whether the noise is so small that the likelihood is not parabolic: only the few samples near the edges of levels
+/// carry information.
 bool IsQuiet(const FittedModel& fitted) {
   constexpr double kFewAtEdges = 500;
   constexpr double kAtSmallest = 1.05;
@@ -123,7 +124,7 @@ bool IsQuiet(const FittedModel& fitted) {
   return levels < kAtSmallest * kSmallestSigma || (levels < kQuietSigma && samples * levels < kFewAtEdges);
 }
 
-/// Whether a bound cuts the posterior off.
+/// Whether a bound truncates the posterior.
 bool ReachesBound(const LinearizedFit& linear, const Posterior& posterior) {
   constexpr double kNear = 3;  // standard deviations
   const Eigen::ArrayXd reach = kNear * posterior.covariance.diagonal().array().sqrt();
@@ -131,8 +132,8 @@ bool ReachesBound(const LinearizedFit& linear, const Posterior& posterior) {
          (posterior.mean.array() + reach > linear.upper.array()).any();
 }
 
-/// The shortest interval that holds 95 % of the draws of parameter k: unlike quantiles it does not leave out where a
-/// bound cuts the posterior off. An end next to a bound is the bound.
+/// The shortest interval that contains 95 % of the draws of parameter k. Unlike quantiles it includes the region where
+/// a bound truncates the posterior. An end next to a bound is set to the bound.
 IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& posterior, Index k) {
   std::vector<double> draws(posterior.draws.col(k).begin(), posterior.draws.col(k).end());
   std::ranges::sort(draws);
@@ -147,7 +148,7 @@ IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& post
   return {std::max(low, linear.lower[k]), std::min(high, linear.upper[k])};
 }
 
-/// The estimates of the free parameters are the posterior's means.
+/// Sets the estimates of the free parameters to the means of the posterior.
 void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted,
             const std::vector<int>& free, FitReport& report) {
   const bool cut_off = ReachesBound(linear, posterior);
@@ -169,7 +170,7 @@ void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const Fitte
   report.statistics.rms_residual = fitted.problem.RmsResidual(report.fitted);
 }
 
-/// The optimum with what is at a bound free, as a posterior within the bounds has it.
+/// The optimum with the parameters at bounds made free, as the posterior needs it.
 Optimum WithoutBounds(const Optimum& optimum) {
   Optimum free = optimum;
   free.free.insert(free.free.end(), free.at_bound.begin(), free.at_bound.end());
@@ -229,7 +230,7 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
 }
 
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
-  constexpr std::size_t kMostSamples = 200'000;  // the matrices of a draw fill the memory
+  constexpr std::size_t kMostSamples = 200'000;  // beyond this, the matrices of the draws need too much memory
   const bool asked = fitted.options.interval == IntervalMethod::kAuto;
   const bool remembers = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
   if (!asked || remembers || !IsQuiet(fitted) || fitted.problem.data.time.size() > kMostSamples) return std::nullopt;
@@ -268,7 +269,7 @@ namespace {
 
 Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& optimum, int parameter,
                                      const ParameterEstimate& estimate) {
-  // Correlated with the others by 0.995: its error is ten times what it would be if they were known.
+  // A correlation of 0.995 with the others: its error is ten times what it would be if they were known.
   constexpr double kTraded = 100;
   constexpr double kImprecise = 0.1;  // of the estimate
   const auto i = static_cast<std::size_t>(parameter);

@@ -30,8 +30,8 @@ std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices
   return names;
 }
 
-/// True when the pendulum comes to rest and gravity hardly exceeds, or hardly fails to exceed, what holds it at some
-/// reversal: a little less friction and it would swing on.
+/// Whether the pendulum comes to rest where gravity and the holding friction are nearly equal at some reversal. With
+/// slightly less friction it would continue to swing.
 bool OnKink(const FitProblem& problem, const TraceSummary& trace, const Solution& solution) {
   constexpr double kNear = 1e-4;
   const int holding = problem.solve.holding_parameter;
@@ -57,9 +57,9 @@ std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
          " choose a window of free swing with --from and --to";
 }
 
-/// RemainingShift, but where the release lies at the instant of a rate's sample: there the sum of squares has a kink.
-/// If it rises on both sides the release is where it belongs, whatever the slope on one of them, and only the step of
-/// the others is left.
+/// RemainingShift, corrected for a kink of the sum of squares: it occurs if the release coincides with a sample of a
+/// rate. If the sum rises on both sides, the release is at its optimum despite the slope on one side. Then only the
+/// step of the other parameters counts.
 double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                  const Optimum& optimum) {
   constexpr double kBeside = 1e-5;  // standard errors
@@ -83,22 +83,22 @@ double ShiftLeft(const FitProblem& problem, const TrajectoryCost& cost, const So
   return others.inverse.identifiable ? RemainingShift(others) : shift;
 }
 
-/// Whether a step is left to make only because the sum of squares jumps: nowhere along it, down to 0.1 standard errors,
-/// is it less.
+/// Whether a step remains only because the sum of squares jumps: the sum is nowhere smaller along the step, down to 0.1
+/// standard errors.
 bool StopsAtJump(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                  const Optimum& optimum) {
   return HasJumps(problem) && optimum.inverse.identifiable && RemainingShift(optimum) > kLargestShift &&
          !LowerAlongShift(optimum, problem.solve, cost, solution);
 }
 
-/// How many small-angle periods the motion of the solution lasts in the recording.
+/// Duration of the solution's motion in the recording, in small-angle periods.
 double PeriodsOf(const FitProblem& problem, const Solution& solution) {
   const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
   const std::optional<std::size_t> release = problem.Find(kReleaseTime.name);
   return (problem.data.time.back() - (release ? solution.parameters[*release] : 0.0)) / period;
 }
 
-/// What a solution is judged by.
+/// The quantities that decide the termination.
 struct Judged {
   double shift = 0;      ///< ShiftLeft
   bool at_jump = false;  ///< StopsAtJump
@@ -155,11 +155,11 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   return report;
 }
 
-/// Estimates, errors and intervals of a fit that converged, and what they rest on.
+/// Sets estimates, errors and intervals of a converged fit, and the quantities they are based on.
 void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
                Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
                FitReport& report) {
-  // Before the posterior moves σ, on which the optimum's information rests.
+  // Computed first, because the posterior changes σ, on which the optimum's information depends.
   SetSystematicErrors(problem, SystematicCovariance(recording, options, problem, cost, solution, optimum), report);
   const Autocorrelation memory = AutocorrelationOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, memory);

@@ -10,14 +10,14 @@
 namespace pendulum {
 namespace {
 
-/// Whether another value of it means another pendulum or another sensor. The axis has two sides that look alike along
-/// the rod.
+/// Whether a different value means a different pendulum or sensor. The axis is excluded: along the rod it has two sides
+/// that give the same readings.
 bool IsTelling(const FitProblem& problem, std::size_t i) {
   const std::string_view name = problem.infos[i].name;
   return i <= static_cast<std::size_t>(problem.solve.last_friction) || (IsSensorParameter(name) && name != kAxis.name);
 }
 
-/// The parameters in which a solution differs from the report's, beyond what its errors allow.
+/// The parameters in which a solution differs from the report by more than their errors allow.
 std::vector<std::size_t> DifferencesOf(const FitProblem& problem, const RivalSolution& rival, const FitReport& report) {
   constexpr double kFew = 3;  // standard errors
   std::vector<std::size_t> different;
@@ -45,7 +45,8 @@ std::string Instead(const FitProblem& problem, const RivalSolution& rival, const
   return text;
 }
 
-/// The parameter whose value would settle it: the sensor's, for it can be measured.
+/// The parameter whose known value would decide between the solutions. A parameter of the sensor is preferred, because
+/// it can be measured.
 std::size_t SettledBy(const FitProblem& problem, const std::vector<std::size_t>& different) {
   const auto of_sensor =
       std::ranges::find_if(different, [&](std::size_t i) { return IsSensorParameter(problem.infos[i].name); });

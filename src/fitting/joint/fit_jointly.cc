@@ -24,12 +24,12 @@ namespace {
 
 using Eigen::Index;
 
-/// A joint solution on its way to a report.
+/// A joint solution and the intermediate results for its report.
 struct Work {
   JointProblem joint;
   Solution solution;
   Optimum optimum;
-  std::vector<Optimum> own_optima;        // K: the optimum as each recording sees it
+  std::vector<Optimum> own_optima;        // K: the optimum restricted to each recording
   std::vector<Description> descriptions;  // K
   std::vector<Autocorrelation> memories;  // K
   Errors errors;
@@ -37,7 +37,7 @@ struct Work {
   bool from_posteriors = false;
 };
 
-/// The rows of a recording's free parameters among all that are free.
+/// The indices of a recording's free parameters among all free parameters.
 std::vector<Index> RowsOf(const Work& work, std::size_t k) {
   return work.joint.members[k].RowsAmong(work.optimum.free, work.own_optima[k].free);
 }
@@ -60,7 +60,7 @@ void SeeOwn(Work& work) {
   }
 }
 
-// ---- How it ended ---------------------------------------------------------------------------------------------------
+// ---- Termination ----------------------------------------------------------------------------------------------------
 
 struct Ending {
   Termination termination = Termination::kNotConverged;
@@ -74,7 +74,7 @@ std::string NamesOf(const JointProblem& joint, const std::vector<int>& parameter
   return NameList(names);
 }
 
-/// Which recordings the joint trajectories leave unexplained.
+/// The recordings that the joint trajectories do not explain.
 std::string Unexplained(const Work& work) {
   std::string left;
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
@@ -88,7 +88,7 @@ std::string Unexplained(const Work& work) {
   return left;
 }
 
-/// Which recording, by itself, has another solution that the others say nothing of.
+/// The first recording that has a second solution by itself, which the other recordings do not exclude.
 std::string Ambiguous(const Work& work) {
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
     const FitReport& alone = *work.joint.members[k].alone;
@@ -135,7 +135,7 @@ Errors ErrorsAt(const Work& work, const Optimum& optimum) {
   return ComputeErrors(runs, work.joint.cost->priors(), optimum);
 }
 
-/// Whether the joint residuals of a recording are those of its own fit, but for what sharing a few parameters costs.
+/// Whether the joint residuals of a recording equal those of its own fit, apart from the cost of shared parameters.
 bool IsAsAlone(const JointMember& member, bool correlated) {
   constexpr double kFew = 10;  // of the deviance
   const FitReport& alone = *member.alone;
@@ -158,7 +158,7 @@ bool WantsProfiles(const Work& work) {
          IsNearBound(work.joint.solve, work.optimum, work.solution.parameters, work.errors.covariance);
 }
 
-/// Profiles of the shared parameters, the same in every report.
+/// Profiles of the shared parameters, identical in every report.
 void SetSharedProfiles(Work& work, std::vector<FitReport>& reports) {
   const JointProblem& joint = work.joint;
   const ErrorsOf errors_of = [&](const Optimum& optimum) { return ErrorsAt(work, optimum); };
@@ -195,7 +195,7 @@ FitReport ReportOf(const Work& work, std::size_t k) {
   return report;
 }
 
-/// Parameters, errors and intervals of all recordings.
+/// Sets parameters, errors and intervals of all recordings.
 void SetReports(Work& work, JointFit& fit) {
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) fit.runs.push_back(ReportOf(work, k));
   if (WantsProfiles(work) && !work.from_posteriors) SetSharedProfiles(work, fit.runs);
@@ -206,7 +206,7 @@ void SetReports(Work& work, JointFit& fit) {
   }
 }
 
-/// Parameters without errors.
+/// Sets parameters without errors.
 void SetReportsWithoutErrors(Work& work, JointFit& fit) {
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
     const JointMember& member = work.joint.members[k];
@@ -218,14 +218,14 @@ void SetReportsWithoutErrors(Work& work, JointFit& fit) {
   }
 }
 
-/// Free ones that are not at a bound 0, and σ of each recording.
+/// Number of free parameters, of those at a bound other than 0, and one σ for each recording.
 int CountParameters(const Work& work) {
   auto count = static_cast<int>(work.optimum.free.size() + work.joint.members.size());
   for (const int i : work.optimum.at_bound) count += work.solution.parameters[static_cast<std::size_t>(i)] == 0 ? 0 : 1;
   return count;
 }
 
-/// The rows and columns of what is shared.
+/// Copies the rows and columns of the shared parameters.
 void CopyShared(const JointFit& fit, const std::vector<std::string>& names, const Eigen::MatrixXd& matrix,
                 std::vector<std::string>& shared_names, Eigen::MatrixXd& shared) {
   std::vector<Index> rows;
@@ -237,14 +237,14 @@ void CopyShared(const JointFit& fit, const std::vector<std::string>& names, cons
   shared = matrix(rows, rows);
 }
 
-/// That of the first recording whose residuals remember, or of the first.
+/// The noise of the first recording with autocorrelated residuals, otherwise of the first recording.
 const NoiseEstimate& ExampleOfNoise(const JointFit& fit) {
   const auto remembers = std::ranges::find_if(
       fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
   return (remembers == fit.runs.end() ? fit.runs.front() : *remembers).noise;
 }
 
-/// What is shared, as the first recording's report has it.
+/// Copies the results for the shared parameters from the first recording's report.
 void SetShared(JointFit& fit) {
   const FitReport& first = fit.runs.front();
   FitReport& whole = fit.whole;
@@ -258,14 +258,14 @@ void SetShared(JointFit& fit) {
                        [&](const ProfileCurve& curve) { return fit.IsShared(curve.name); });
   std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),
                        [&](const Identifiability& known) { return fit.IsShared(known.parameter); });
-  // Each is of inertia and one friction parameter at most: all of them need all of these.
+  // Each derived quantity needs inertia and at most one friction parameter, so all of them need all these parameters.
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
   whole.noise = ExampleOfNoise(fit);
 }
 
-/// The joint fit where no trajectory can be traced.
+/// The result if no joint trajectory can be computed.
 JointFit Failed(const JointProblem& joint, JointFit fit) {
   fit.whole.termination = Termination::kFailed;
   fit.whole.reason = "no joint trajectory can be traced: the recordings are too different, or what is fixed holds them";
@@ -287,7 +287,7 @@ void AddWarnings(const Work& work, JointFit& fit) {
   }
 }
 
-/// What the solution leaves of each recording.
+/// Describes the residuals of each recording at the solution.
 void DescribeAll(Work& work) {
   SeeOwn(work);
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
@@ -297,7 +297,7 @@ void DescribeAll(Work& work) {
   }
 }
 
-/// The memory of each recording's residuals, and the covariance that follows.
+/// Computes the autocorrelation of each recording's residuals, and the covariance of the parameters.
 void FindErrors(Work& work) {
   for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
     const JointMember& member = work.joint.members[k];
@@ -311,7 +311,7 @@ void FindErrors(Work& work) {
   if (work.from_posteriors) work.errors.covariance = work.optimum.inverse.matrix;
 }
 
-/// How it ended, in every report.
+/// Sets termination and reason in every report.
 void SetEnding(Work& work, FitReport& whole) {
   const auto [termination, reason] = EndOf(work);
   whole.termination = termination;
@@ -348,7 +348,7 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 
 namespace {
 
-/// Once a stop is requested, of no meaning.
+/// The result is meaningless if a stop was requested meanwhile.
 Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());
@@ -362,7 +362,7 @@ Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vec
   fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message, {}};
   if (!optimum) return Failed(work.joint, std::move(fit));
   work.optimum = *std::move(optimum);
-  // Before posteriors move σ, on which the optimum's information rests.
+  // Computed first, because posteriors change σ, on which the optimum's information depends.
   work.systematic = SystematicErrors(work.joint, work.solution, work.optimum);
   work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work.joint, work.solution, work.optimum);
   DescribeAll(work);

@@ -17,14 +17,15 @@ using Eigen::Index;
 
 bool IsFromPosterior(const FitReport& fit) { return fit.interval_method == kPosteriorIntervals; }
 
-/// A source of errors, and how many recordings have it.
+/// A source of errors, and the number of recordings that share it.
 struct CommonSource {
   SystematicSource source;  // of all P parameters
   std::size_t count = 0;
 };
 
-/// Where a recording's powers stand among all. An angle's friction follows the clock otherwise than a rate's: then no
-/// one power of a shared parameter says it, there are none, and the pulls do.
+/// Adds a recording's powers to those of the common source. The friction of an angle recording and of a rate recording
+/// depend on the clock with different powers. Then no single power describes a shared parameter, and only the pulls are
+/// used.
 void MergePowers(const JointProblem& joint, const JointMember& member, const SystematicSource& own,
                  CommonSource& common) {
   Eigen::VectorXd& powers = common.source.powers;
@@ -40,7 +41,7 @@ void MergePowers(const JointProblem& joint, const JointMember& member, const Sys
   }
 }
 
-/// The sources of all recordings by what they are.
+/// The sources of all recordings, by identity.
 std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
   std::map<std::string, CommonSource> sources;
   const auto size = static_cast<Index>(joint.solve.fixed.size());
@@ -95,7 +96,7 @@ bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known) {
   for (JointMember& member : joint.members) {
     member.solution.noise.sigma = member.alone->noise.sigma;
     member.cost->Readings(member.solution.parameters, &member.solution.readings,
-                          nullptr);  // known to be traced, unless stopped
+                          nullptr);  // computed before, so it fails only after a stop
   }
   return true;
 }

@@ -16,15 +16,15 @@ namespace {
 
 using Eigen::Index;
 
-/// The likelihood of a recording about its own fit, without its priors: places among all parameters (M), information A
-/// (M x M), and A p - gradient.
+/// The log-likelihood of a recording near its own fit, without its priors: indices among all parameters (M),
+/// information A (M x M), and A p - gradient.
 struct Parabola {
   std::vector<int> at;
   Eigen::MatrixXd information;
   Eigen::VectorXd pull;
 };
 
-/// From the sums where the fit alone ended: its cost has no priors.
+/// From the sums at the end of the recording's own fit; its cost has no priors.
 Parabola ParabolaOfSums(const JointMember& member) {
   const std::vector<double>& own = member.alone_parameters;
   const auto size = static_cast<Index>(own.size());
@@ -37,7 +37,7 @@ Parabola ParabolaOfSums(const JointMember& member) {
   return parabola;
 }
 
-/// From the covariance of the fit alone where it has one: the trajectory need not be traced for it.
+/// From the covariance of the recording's own fit if there is one; this needs no trajectory.
 Parabola ParabolaOf(const JointMember& member) {
   const FitReport& alone = *member.alone;
   const auto count = static_cast<Index>(alone.covariance_names.size());

@@ -18,18 +18,19 @@ using Eigen::Index;
 
 std::string NumberOf(std::size_t k) { return "recording " + std::to_string(k + 1); }
 
-/// A problem whose parameters are those of the fit alone.
+/// A problem with the same parameters as the recording's own fit.
 Result<FitProblem> ProblemOf(const JointRun& run, FitOptions& options) {
   options = OptionsLike(run.alone, run.options);
   options.search.start_values = run.alone.start_values;
   options.initial.clear();
-  for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {  // a parameter where the options name it
+  // The options must name it to make it a parameter.
+  for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {
     if (run.alone.Find(drift) != nullptr && !options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
   }
   return MakeFitProblem(run.used, options);
 }
 
-/// The noise of the fit alone, with the sensor's range.
+/// The noise of the recording's own fit, with the sensor's range.
 NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
   NoiseModel noise = problem.noise;
   noise.family = alone.noise.family;
@@ -69,7 +70,8 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
   return member;
 }
 
-/// One model, and one rig, for parameters are shared in units of its gravity torque.
+/// Checks that all runs have the same model and rig, because shared parameters are in units of the rig's gravity
+/// torque.
 Result<void> CheckAlike(std::span<const JointRun> runs) {
   const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
   for (std::size_t k = 1; k < runs.size(); ++k) {
@@ -83,7 +85,7 @@ Result<void> CheckAlike(std::span<const JointRun> runs) {
   return {};
 }
 
-/// Names of the model's parameters among those asked for, in the model's order.
+/// The model's parameters that the user asked to share, in the model's order.
 std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<std::string>& asked) {
   std::vector<std::string> shared;
   for (const ParameterInfo& info : PhysicalParameters(model)) {
@@ -92,14 +94,14 @@ std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<st
   return shared;
 }
 
-/// Room for so many parameters, without bounds.
+/// Extends the arrays to `count` parameters, without bounds.
 void Resize(SolveOptions& solve, std::size_t count) {
   solve.lower.resize(count, -kUnbounded);
   solve.upper.resize(count, kUnbounded);
   solve.fixed.resize(count, false);
 }
 
-/// Where the parameter of a member stands among all: what is its own is added to them.
+/// Index of a member's parameter among all. A parameter that is not shared is added.
 std::size_t FindOrAddPlace(JointProblem& joint, std::string_view name) {
   const auto shared = std::ranges::find(joint.shared, name);
   if (shared != joint.shared.end()) return static_cast<std::size_t>(shared - joint.shared.begin());
@@ -107,7 +109,7 @@ std::size_t FindOrAddPlace(JointProblem& joint, std::string_view name) {
   return joint.solve.fixed.size() - 1;
 }
 
-/// Gives a member's parameters their places. What is shared keeps to the bounds of all members.
+/// Assigns indices to a member's parameters. A shared parameter must keep to the bounds of all members.
 void Place(JointProblem& joint, JointMember& member) {
   const SolveOptions& own = member.problem->solve;
   SolveOptions& all = joint.solve;
@@ -120,7 +122,7 @@ void Place(JointProblem& joint, JointMember& member) {
   }
 }
 
-/// What is known beforehand of a shared parameter counts once, as the first member has it.
+/// The priors of all members. A prior on a shared parameter counts once, taken from the first member.
 std::vector<PriorTerm> PriorsOf(const JointProblem& joint) {
   std::vector<PriorTerm> priors;
   for (const JointMember& member : joint.members) {
@@ -132,7 +134,7 @@ std::vector<PriorTerm> PriorsOf(const JointProblem& joint) {
   return priors;
 }
 
-/// One cost of all members, and how it is solved.
+/// Builds the cost of all members and the solver's options.
 void Assemble(JointProblem& joint) {
   Resize(joint.solve, joint.shared.size());
   std::vector<JointTerm> terms;

@@ -20,7 +20,8 @@ namespace {
 
 using Eigen::Index;
 
-/// How many of the free parameters a recording pays for: without priors those of all recordings add up to their number.
+/// Number of free parameters attributed to a recording; without priors the sum over all recordings is the number of
+/// free parameters.
 double ShareOf(const JointMember& member, const Optimum& optimum) {
   Eigen::MatrixXd sums;
   if (!member.cost->Sums(member.solution.parameters, &sums)) return 0;
@@ -29,7 +30,7 @@ double ShareOf(const JointMember& member, const Optimum& optimum) {
   return optimum.inverse.matrix(rows, rows).cwiseProduct(sums(own, own)).sum();
 }
 
-/// σ of a recording at the joint optimum; of Gaussian noise RSS / (N - its share of the parameters).
+/// σ of a recording at the joint optimum. For Gaussian noise σ² is RSS / (N - its share of the parameters).
 double SigmaOf(const JointMember& member, const Optimum& optimum) {
   const FitProblem& problem = *member.problem;
   const NoiseModel& noise = member.solution.noise;
@@ -42,7 +43,8 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
 }
 
-/// Gives every recording its parameters and readings at the solution. False where a motion cannot be traced.
+/// Sets the parameters and readings of every recording at the solution. Returns false if a trajectory cannot be
+/// computed.
 bool UpdateReadings(JointProblem& joint, const Solution& solution) {
   joint.Distribute(solution.parameters);
   return std::ranges::all_of(joint.members, [](JointMember& member) {
@@ -50,8 +52,9 @@ bool UpdateReadings(JointProblem& joint, const Solution& solution) {
   });
 }
 
-/// Gives every recording the σ that its residuals have at the solution, and its cost too unless that has it to a
-/// fraction of σ's own error: another σ of levels costs a trajectory. False where a motion cannot be traced.
+/// Sets σ of every recording from its residuals. Its cost gets the new σ only if the change is more than a fraction of
+/// σ's own error, because another σ of quantized noise costs a trajectory. Returns false if a trajectory cannot be
+/// computed.
 bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   constexpr double kSame = 3e-3;
   const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
@@ -68,7 +71,7 @@ bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   return true;
 }
 
-/// Parameters and σ in turn.
+/// Estimates parameters and σ in turn.
 void Settle(JointProblem& joint, Solution& solution) {
   constexpr int kMostRounds = 30;
   constexpr double kSettled = 0.01;  // standard errors
@@ -81,8 +84,8 @@ void Settle(JointProblem& joint, Solution& solution) {
   solution.usable = solution.usable && UpdateReadings(joint, solution);
 }
 
-/// Whether all trajectories are accurate enough, or no finer tolerance is left to try. Where the fit alone was accurate
-/// at the first tolerance, so is the joint one.
+/// Whether all trajectories are accurate enough, or `last` is set. A recording whose own fit was accurate at the first
+/// tolerance is accurate in the joint fit too.
 bool AreAccurate(JointProblem& joint, Solution& solution, bool last) {
   bool accurate = true;
   for (JointMember& member : joint.members) {
@@ -104,7 +107,7 @@ Solution SolveJointly(JointProblem& joint) {
   Solution solution;
   solution.parameters = CombineParabolas(joint).parameters;
   solution = Refine(*joint.cost, solution, joint.solve);
-  if (!solution.usable) {  // far from parabolas the step may lead where nothing can be traced
+  if (!solution.usable) {  // with a likelihood that is not parabolic, that point may have no trajectory
     solution.parameters = joint.AloneParameters();
     solution = Refine(*joint.cost, solution, joint.solve);
   }

@@ -12,10 +12,10 @@
 
 namespace pendulum {
 
-/// Brings the segments of a trajectory, as they are traced, to the samples of a recording, block by block: kBlock
-/// consecutive samples, whatever the segments. Of a long recording segments are kept until there are blocks enough for
-/// several threads; what blocks give (Part) is added up in their order, so that a sum does not depend on the number of
-/// threads. A block has R rows, the first of them as EvaluateAt fills them.
+/// Evaluates the segments of a trajectory at the samples of a recording, in blocks of kBlock consecutive samples that
+/// do not depend on the segments. For a long recording, segments are kept until there are enough blocks for several
+/// threads. The results of the blocks (Part) are added in order, so a sum does not depend on the number of threads. A
+/// block has R rows; EvaluateAt fills the first of them.
 template <typename T, bool kRelease, int R, typename Part>
 class BlockSamples {
  public:
@@ -27,8 +27,8 @@ class BlockSamples {
     next_ = done_ = 0;
   }
 
-  /// Works on the samples before the segment's end that no segment was for yet: calls work(SampleBlock<R>&, first
-  /// sample, count, Part&), then add(Part), for each block that is complete.
+  /// Evaluates the segment at the samples before its end that no earlier segment covered. For each complete block it
+  /// calls work(SampleBlock<R>&, first sample, count, Part&), then add(Part).
   template <typename Work, typename Add>
   void Take(const Segment<T>& segment, const Work& work, const Add& add) {
     const std::size_t first = next_;
@@ -53,15 +53,16 @@ class BlockSamples {
   bool is_complete() const { return next_ == time_.size(); }
 
  private:
-  static constexpr std::size_t kShare = 128;  ///< Blocks that are worth a thread: some hundred microseconds.
+  static constexpr std::size_t kShare = 128;  ///< Blocks that justify another thread: some hundred microseconds.
 
-  /// A segment and the first of the samples it is for, up to the next one's.
+  /// A segment and the first sample it covers; it covers samples up to the first one of the next segment.
   struct Kept {
     std::size_t first = 0;
     Segment<T> segment;
   };
 
-  /// The first sample from next_ on that is not before `end` [s]: near where evenly spaced ones have it.
+  /// Index of the first sample from next_ on that is not before `end` [s]. Starts from the position it would have with
+  /// even spacing.
   std::size_t FirstNotBefore(double end) const {
     if (next_ == time_.size() || !(time_[next_] < end)) return next_;
     const double guess = (end - time_[next_]) * samples_per_second_;
@@ -71,7 +72,7 @@ class BlockSamples {
     return sample;
   }
 
-  /// Samples `begin` to end - 1, of a block that begins with sample `first`.
+  /// Evaluates samples `begin` to end - 1 of the block that starts with sample `first`.
   void Evaluate(const Segment<T>& segment, std::size_t begin, std::size_t end, SampleBlock<R>& block,
                 std::size_t first) const {
     double* const rows = block.row[0].data() + (begin - first);
@@ -83,7 +84,7 @@ class BlockSamples {
     segments_[kept_++] = {first, segment};
   }
 
-  /// Works on all full blocks once there are enough of them, and on what is left when the last sample has come.
+  /// Works on all full blocks once there are enough of them, and on the remainder after the last sample.
   template <typename Work, typename Add>
   void Share(const Work& work, const Add& add) {
     constexpr std::size_t kMostKept = 4096;
@@ -124,11 +125,11 @@ class BlockSamples {
   std::span<const double> time_;
   int threads_ = 1;
   double samples_per_second_ = 0;
-  std::size_t next_ = 0;  ///< The first sample that no segment was for.
+  std::size_t next_ = 0;  ///< The first sample that no segment has covered yet.
   SampleBlock<R> block_;
   Part part_{};
-  std::size_t done_ = 0;        ///< The first sample that was not worked on, where segments are kept.
-  std::vector<Kept> segments_;  ///< The first kept_ of them; the others are room.
+  std::size_t done_ = 0;        ///< The first sample not yet worked on, if segments are kept.
+  std::vector<Kept> segments_;  ///< Only the first kept_ are in use; the others are spare memory.
   std::size_t kept_ = 0;
   std::vector<Part> parts_;
 };

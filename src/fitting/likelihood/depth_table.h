@@ -10,22 +10,23 @@
 
 namespace pendulum {
 
-/// Log-probability of a level, or of a censored reading, by how deep within its nearer edge the modelled value lies.
-/// Lengths in units of the resolution. Quintic between nodes σ/4 apart, with the exact value, slope and curvature
-/// there: the logarithm to 2e-8, its derivatives are those of the same curve.
+/// Table of the log-probability of a level, or of a censored reading. Its argument is the depth: the distance of the
+/// modelled value inside the nearer edge, in units of the resolution. Quintic between nodes σ/4 apart, with exact
+/// value, slope and curvature at the nodes. The logarithm is accurate to 2e-8; the derivatives are those of the same
+/// curve.
 class DepthTable {
  public:
-  /// A log-probability and its derivatives by the depth.
+  /// A log-probability and its first two derivatives by the depth.
   struct Curve {
     double log = 0;
     double slope = 0;
     double curvature = 0;
   };
 
-  /// width: 1 of a level, infinite of a censored reading.
+  /// width: 1 for a level, infinite for a censored reading.
   explicit DepthTable(double width) : width_(width) {}
 
-  /// Some 60 evaluations of the exact probability. σ > 0.
+  /// Costs some 60 evaluations of the exact probability. σ > 0.
   void Build(double sigma);
 
   /// depth <= width / 2, negative outside the interval.
@@ -46,7 +47,7 @@ class DepthTable {
             curvature * cells_per_length_ * cells_per_length_};
   }
 
-  /// The largest logarithm, deepest within.
+  /// The largest log-probability, at the greatest depth.
   double best() const { return end_.log; }
 
  private:
@@ -67,7 +68,7 @@ class DepthTable {
 
   Curve Exactly(double depth) const;
 
-  /// Hermite's polynomial between two nodes a step apart.
+  /// Hermite polynomial between two nodes a step apart.
   static Quintic Between(const Curve& from, const Curve& to, double step);
 
   double width_;
@@ -100,8 +101,8 @@ inline DepthTable::Quintic DepthTable::Between(const Curve& from, const Curve& t
 }
 
 inline void DepthTable::Build(double sigma) {
-  constexpr double kCertain = 8.5;   // σ within the edge: the probability is 1 to rounding
-  constexpr double kImprobable = 6;  // σ outside: seldom asked for
+  constexpr double kCertain = 8.5;   // in σ inside the edge: the probability is 1 to rounding
+  constexpr double kImprobable = 6;  // in σ outside: such values are rare
   constexpr double kCellsPerSigma = 4;
   sigma_ = sigma;
   first_ = -kImprobable * sigma;
@@ -117,7 +118,7 @@ inline void DepthTable::Build(double sigma) {
     cells_[i] = Between(before, next, step);
     before = next;
   }
-  cells_[cells] = {before.log, 0, 0, 0, 0, 0};  // where rounding puts a depth just short of the last
+  cells_[cells] = {before.log, 0, 0, 0, 0, 0};  // for a depth that rounding puts just below the last node
   end_ = before;
 }
 

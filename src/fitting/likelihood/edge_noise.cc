@@ -14,11 +14,11 @@ namespace {
 
 using Eigen::Index;
 
-/// Differences of successive residuals: their squares, and what multiplies the variances of an edge and of a stamp in
-/// their expectation.
+/// Squared differences of successive residuals. Their expected value is `edges` times the variance of an edge plus
+/// `stamps` times the variance of a time stamp.
 struct Differences {
   Eigen::ArrayXd square;
-  Eigen::ArrayXd edges;   // 2
+  Eigen::ArrayXd edges;   // always 2
   Eigen::ArrayXd stamps;  // sum of the squared rates
 };
 
@@ -54,7 +54,7 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings) {
   const Index last = time.size() - 1;
   Eigen::VectorXd rates(time.size());
-  // Two stamps that are all but the same tell no rate.
+  // Two nearly equal time stamps do not give a usable rate.
   const double least = 1e-3 * (time[last] - time[0]) / static_cast<double>(last);
   for (Index i = 0; i <= last; ++i) {
     Index from = std::max<Index>(i - 1, 0);
@@ -68,18 +68,18 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
   return rates;
 }
 
-/// Fisher's scoring: squares of normal differences about their variances v, of variance 2 v².
+/// Fisher scoring: squared normal differences about their variances v; the variance of a square is 2 v².
 double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                            const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates) {
   constexpr int kSteps = 30;
   constexpr Index kFewest = 20;
-  constexpr double kLeastShare = 1e-4;  // of the variance, that an edge keeps
+  constexpr double kLeastShare = 1e-4;  // smallest share of the variance left to an edge
   constexpr double kSure = 2;
   const Differences of = DifferencesOf(noise, value, readings, rates);
   if (of.square.size() < kFewest || !(of.square.sum() > 0) || !(of.stamps.sum() > 0)) return 0;
   const double all = of.square.mean() / 2;
   Eigen::Vector2d variance(all, 0);  // of an edge, of a stamp
-  double error = 0;                  // of the latter
+  double error = 0;                  // standard error of the variance of a stamp
   for (int step = 0; step < kSteps; ++step) {
     const Eigen::ArrayXd v = variance[0] * of.edges + variance[1] * of.stamps;
     const Eigen::ArrayXd weight = v.square().inverse();

@@ -9,14 +9,14 @@
 
 namespace pendulum {
 
-/// What decides a cost's answer besides its noise.
+/// The arguments that determine a cost's result, apart from its noise.
 struct Question {
   std::span<const double> parameters;
   double tolerance;
   std::size_t samples;
 };
 
-/// Something known, and where: solver, active set, search and judgement ask for it at the same point, one by one.
+/// A cached result and its arguments. Solver, active set, search and judge ask for it at the same point in turn.
 template <typename What>
 struct KnownAt {
   std::vector<double> parameters;
@@ -29,7 +29,7 @@ struct KnownAt {
            samples == question.samples;
   }
 
-  /// What stands in `value` is the answer.
+  /// Marks the present `value` as the result for `question`.
   void SetAt(const Question& question) {
     parameters.assign(question.parameters.begin(), question.parameters.end());
     tolerance = question.tolerance;

@@ -35,11 +35,11 @@ using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMo
 
 }  // namespace
 
-/// By a pivoted Cholesky factor of J'J scaled to unit diagonal: a direction that the data do not see gets a row of
-/// zeros, which Levenberg-Marquardt leaves alone. Where J'J is a likelihood's information the rest may be negative;
-/// then R grows until it is none, a shorter step.
+/// Uses a pivoted Cholesky factor of J'J scaled to unit diagonal. A direction that the data do not determine gets a row
+/// of zeros, which Levenberg-Marquardt leaves unchanged. If J'J is the information of a likelihood, the rest of |r|²
+/// may be negative. R is then enlarged until the rest is zero, which shortens the step.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
-  constexpr double kRounding = 1e-15;  // of a diagonal of ones
+  constexpr double kRounding = 1e-15;  // relative to a unit diagonal
   const Eigen::Index size = sums.rows() - 1;
   const SmallVector norms = sums.diagonal().head(size).cwiseSqrt();
   const SmallVector inverse = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });

@@ -10,22 +10,22 @@
 
 namespace pendulum {
 
-/// NoiseModel::LikelihoodAt for many readings on levels: by how far the modelled value is from the level it is a smooth
-/// function, taken by cubic interpolation between exact values σ/32 apart: the logarithm within 1e-6, its derivatives
-/// by λ = ln σ and by the value in σ within 1e-5. Other noise, and values far off, go to the noise itself. (DepthTable,
-/// which says nothing of λ, is for the solver's inner loop.)
+/// Fast NoiseModel::LikelihoodAt for many quantized readings. The likelihood is a smooth function of the distance
+/// between modelled value and level; it is interpolated cubically between exact values σ/32 apart. Errors: the
+/// logarithm 1e-6, its derivatives by λ = ln σ and by the value in units of σ 1e-5. Other noise and distant values are
+/// evaluated exactly. (DepthTable, for the solver's inner loop, has no derivatives by λ.)
 class LevelLikelihoods {
  public:
-  /// For so many readings: a table is made where it has far fewer entries.
+  /// `samples`: number of readings; a table is made only if it has far fewer entries.
   LevelLikelihoods(const NoiseModel& noise, Eigen::Index samples) : noise_(noise) {
-    constexpr double kImprobable = 6;  // σ beyond the edge: seldom asked for
+    constexpr double kImprobable = 6;  // in σ beyond the edge: such values are rare
     if (noise.family != NoiseFamily::kQuantized) return;
     const double cells = (0.5 * noise.resolution / noise.sigma + kImprobable) * kCellsPerSigma;
     if (!(cells < 0.3 * static_cast<double>(samples))) return;
     cells_ = std::floor(cells);
     per_length_ = kCellsPerSigma / noise.sigma;
     table_.reserve(static_cast<std::size_t>(cells_) + 3);
-    // On levels at 0, of a sensor without ends: values from one cell below it to two above the last cell.
+    // For a level at 0 and a sensor without a limited range. Nodes from one cell below 0 to two above the last cell.
     NoiseModel endless = noise;
     endless.low = -kInfinity;
     endless.high = kInfinity;
@@ -37,7 +37,7 @@ class LevelLikelihoods {
     if (!(position < cells_) || noise_.IsCensored(y)) return noise_.ForSample(sample).LikelihoodAt(y, m);
     const auto cell = static_cast<std::size_t>(position);
     const double s = position - static_cast<double>(cell);
-    // Lagrange's, for values at -1, 0, 1 and 2.
+    // Lagrange interpolation for values at -1, 0, 1 and 2.
     const std::array<double, 4> w = {-s * (s - 1) * (s - 2) / 6, (s + 1) * (s - 1) * (s - 2) / 2,
                                      -(s + 1) * s * (s - 2) / 2, (s + 1) * s * (s - 1) / 6};
     const double side = m < y ? -1 : 1;

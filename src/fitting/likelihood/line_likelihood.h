@@ -14,34 +14,34 @@
 
 namespace pendulum {
 
-/// Samples of rounded readings as a linear model sees them, in units of the resolution: position + slope · w. Equal
-/// samples are one, counted.
+/// Quantized samples under a linear model with parameters w: position + slope · w, in units of the resolution. Equal
+/// samples are merged and counted.
 struct LevelSamples {
-  Eigen::VectorXd position;  ///< n x 1, modelled less measured; of censored readings the depth within the interval.
+  Eigen::VectorXd position;  ///< n x 1, modelled minus measured; for censored readings, the depth within the interval.
   Eigen::MatrixXd slope;     ///< n x F
   Eigen::VectorXd count;     ///< n x 1
-  Eigen::Index levels = 0;   ///< As many levels come first, then the censored readings.
+  Eigen::Index levels = 0;   ///< The first `levels` samples are levels; the rest are censored readings.
 
   Eigen::Index size() const { return position.size(); }
 
-  /// Those that come closer than `depth` to an edge, or leave their interval, within `reach` times the norm of their
-  /// slope: the closest first, whose branches in a sum are then foreseen, and which soonest tell that it is small.
+  /// The samples that come closer than `depth` to an edge, or leave their interval, for some w with norm up to `reach`.
+  /// Sorted, the closest first: this helps branch prediction, and a small sum is detected early.
   LevelSamples Near(double depth, double reach) const;
 };
 
-/// From N values and readings and an N x F Jacobian. Equal samples are found where they follow one another, as those
-/// of a hold and of a rest do.
+/// Merges N values and readings and an N x F Jacobian. Only consecutive equal samples are merged, as in a hold or at
+/// rest.
 LevelSamples MergeSamples(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings,
                           const Eigen::MatrixXd& jacobian);
 
-/// Their log-likelihood at one σ, along lines.
+/// Log-likelihood of such samples at one σ, along lines.
 class LineLikelihood {
  public:
   /// σ in units of the resolution.
   void SetSigma(double sigma);
 
-  /// Σ l where each position is start + step · direction (n x 1 each); or, once it is sure to be less than `floor`,
-  /// some number less than that. Adds the samples it looked at to `work`.
+  /// Σ l for positions start + step · direction (n x 1 each). As soon as the sum is certain to be less than `floor`, it
+  /// returns some number below `floor`. Adds the number of samples evaluated to `work`.
   double Sum(const LevelSamples& samples, const Eigen::VectorXd& start, const Eigen::VectorXd& direction, double step,
              double floor);
 
@@ -79,7 +79,7 @@ inline LevelSamples LevelSamples::Near(double depth, double reach) const {
   return selected;
 }
 
-/// Samples that stand for others, and for how many.
+/// Representatives of equal samples, and how many samples each represents.
 struct Merged {
   std::vector<Eigen::Index> sample;
   std::vector<double> count;
@@ -88,7 +88,7 @@ struct Merged {
 inline Merged MergeEqual(const Eigen::VectorXd& value, const Eigen::VectorXd& readings,
                          const Eigen::MatrixXd& jacobian) {
   Merged merged;
-  std::size_t run = 0;  // first of those with the last one's model
+  std::size_t run = 0;  // first representative of the run of samples with the same model
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const bool same = i > 0 && readings[i] == readings[i - 1] && jacobian.row(i) == jacobian.row(i - 1);
     if (!same) run = merged.sample.size();

@@ -17,7 +17,7 @@ constexpr double kLogRootTwoPi = 0.91893853320467274178;
 
 double Density(double x) { return std::exp(-0.5 * x * x) / kRootTwoPi; }
 
-/// Mills' ratio (1 - Φ(x)) / φ(x) for x >= 0; far out by its asymptotic series (Abramowitz & Stegun 26.2.12).
+/// Mills' ratio (1 - Φ(x)) / φ(x) for x >= 0; for large x by the asymptotic series (Abramowitz & Stegun 26.2.12).
 double MillsRatio(double x) {
   constexpr double kFarOut = 20;
   if (x < kFarOut) return 0.5 * std::erfc(kRootHalf * x) * kRootTwoPi * std::exp(0.5 * x * x);
@@ -31,7 +31,7 @@ double MillsRatio(double x) {
   return sum / x;
 }
 
-/// 0 <= a < b.
+/// For 0 <= a < b.
 IntervalProbability UpperTail(double a, double b) {
   const double ratio = MillsRatio(a);
   const double density = std::isinf(b) ? 0 : std::exp(-0.5 * (b - a) * (b + a));  // φ(b) / φ(a)
@@ -43,23 +43,23 @@ IntervalProbability UpperTail(double a, double b) {
   return interval;
 }
 
-/// a < 0 < b.
+/// For a < 0 < b.
 IntervalProbability AroundZero(double a, double b) {
-  // What lies outside is summed when it is little, what lies inside when that is little.
+  // Computes the smaller of the probabilities outside and inside, to keep its digits.
   const double outside = 0.5 * (std::erfc(-kRootHalf * a) + std::erfc(kRootHalf * b));
   const double inside = outside < 0.5 ? 1 - outside : 0.5 * (std::erf(kRootHalf * b) - std::erf(kRootHalf * a));
   return {outside < 0.5 ? std::log1p(-outside) : std::log(inside), Density(a) / inside, Density(b) / inside};
 }
 
-/// The density is tilted this little along an interval, or the interval is a tenth of this long: it is a density times
-/// its length, to the fourth power of either.
+/// Limit for a short interval: on it log φ is tilted by at most this much, or its length is at most a tenth of this.
+/// The probability is then density times length, with an error of fourth order in either.
 constexpr double kShort = 4e-3;
 
 IntervalProbability Short(double a, double b) {
   const double length = b - a;
   const double middle = 0.5 * (a + b);
   const double curvature = (middle * middle - 1) * length * length / 24;
-  const double tilt = 0.5 * middle * length;  // of log φ, to either side
+  const double tilt = 0.5 * middle * length;  // of log φ, to each end
   const double sag = 0.125 * length * length + curvature;
   IntervalProbability interval;
   interval.log = -0.5 * middle * middle - kLogRootTwoPi + std::log(length) + curvature;
@@ -72,7 +72,7 @@ double LogStudentConstant(double freedom) {
   return std::lgamma(0.5 * (freedom + 1)) - std::lgamma(0.5 * freedom) - 0.5 * std::log(freedom * kPi);
 }
 
-/// Integral of exp(-ρ(z)), Huber's ρ.
+/// Integral of exp(-ρ(z)) for Huber's ρ.
 double HuberConstant(double width) {
   return kRootTwoPi * std::erf(kRootHalf * width) + 2 / width * std::exp(-0.5 * width * width);
 }
@@ -101,7 +101,7 @@ std::string_view NoiseFamilyName(NoiseFamily family) {
 
 namespace {
 
-/// What a reading says of the value: that it lies between these, or that it is there.
+/// The values that a reading allows: an interval, or from == to.
 struct Interval {
   double from;
   double to;
@@ -114,10 +114,10 @@ Interval IntervalOf(const NoiseModel& noise, double y) {
   return {y - half, y + half};
 }
 
-/// b · density, 0 where b is infinite.
+/// b · density, or 0 if b is infinite.
 double Times(double b, double density) { return std::isinf(b) ? 0 : b * density; }
 
-/// log-probability of an interval and its derivatives (MODEL.md eq. (27)).
+/// Log-probability of an interval and its derivatives (MODEL.md eq. (27)).
 NoiseLikelihood OfInterval(const Interval& interval, double m, double sigma) {
   const double a = (interval.from - m) / sigma;
   const double b = (interval.to - m) / sigma;
@@ -183,7 +183,7 @@ NoiseLikelihood OfHuber(double residual, double sigma) {
 
 namespace {
 
-/// A standardized robust law below u: its probability, density, and the density's derivative.
+/// Lower tail of a standardized robust distribution at u: probability, density, and the density's derivative.
 struct Tail {
   double probability;
   double density;
@@ -211,7 +211,7 @@ Tail RobustBelow(NoiseFamily family, double u) {
   return family == NoiseFamily::kHuber ? HuberBelow(u) : StudentBelow(u);
 }
 
-/// Of a reading at an end of the range: that the value is there or beyond.
+/// A reading at an end of the range: the value is at that end or beyond it.
 NoiseLikelihood OfRobustEnd(const NoiseModel& noise, double y, double m) {
   const double side = y >= noise.high ? 1 : -1;
   const double u = side * (m - (side > 0 ? noise.high : noise.low)) / noise.sigma;
@@ -255,12 +255,12 @@ SampleLikelihood NoiseModel::At(double y, double m) const {
     return {2 * (best - l.log), l.score, at_top ? LikelihoodAt(y, y).information : l.score / (y - m)};
   }
   const Interval interval = IntervalOf(*this, y);
-  constexpr double kCertain = 8.5;  // σ from both edges: the probability is 1 to rounding
+  constexpr double kCertain = 8.5;  // in σ from both edges: the probability is 1 to rounding
   if (interval.from + kCertain * sigma < m && m < interval.to - kCertain * sigma) return {};
   const double a = (interval.from - m) / sigma;
   const double b = (interval.to - m) / sigma;
   const IntervalProbability p = GaussianInterval(a, b);
-  const double best = std::log(std::erf(0.5 * kRootHalf * (b - a)));  // 0 when censored
+  const double best = std::log(std::erf(0.5 * kRootHalf * (b - a)));  // 0 if censored
   const double slope = p.lower - p.upper;
   const double first = Times(a, p.lower) - Times(b, p.upper);
   return {std::max(2 * (best - p.log), 0.0), slope / sigma, std::max(slope * slope - first, 0.0) / (sigma * sigma)};
@@ -287,7 +287,7 @@ double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vect
 
 namespace {
 
-/// Σ ∂l/∂λ and Σ -∂²l/∂λ².
+/// Σ ∂l/∂λ and Σ -∂²l/∂λ² over the samples.
 struct SigmaSums {
   double score = 0;
   double information = 0;
@@ -297,7 +297,7 @@ struct SigmaSums {
 SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                    const Eigen::Ref<const Eigen::VectorXd>& readings) {
   SigmaSums sums;
-  // Proposal 2: the mean of ψ² is that of normal noise.
+  // Proposal 2: the mean of ψ² equals its mean under normal noise.
   constexpr double kWidth = NoiseModel::kHuberWidth;
   static const double normal =
       std::erf(kRootHalf * kWidth) - 2 * kWidth * Density(kWidth) + kWidth * kWidth * std::erfc(kRootHalf * kWidth);
@@ -321,7 +321,7 @@ double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>&
                       const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest) {
   constexpr int kMostSteps = 60;
   constexpr double kLongestStep = 1;   // in λ
-  constexpr double kConverged = 0.01;  // the next step is its square
+  constexpr double kConverged = 0.01;  // the error after a step is of the order of its square
   double below = std::log(smallest);
   double above = std::log(1e6 * noise.sigma);
   double lambda = std::max(std::log(noise.sigma), below);

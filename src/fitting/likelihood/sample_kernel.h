@@ -10,17 +10,17 @@
 #include "pendulum/model/dual.h"
 #include "pendulum/trajectory/swing.h"
 
-/// The arithmetic that every sample costs. It is compiled for each instruction set that is worth it and chosen by what
-/// the processor has: see instruction_set.h.
+/// The arithmetic done for every sample. It is compiled for each useful instruction set and chosen by the features of
+/// the processor: see instruction_set.h.
 namespace pendulum {
 
-/// Samples are worked on in blocks of consecutive ones: their columns stay in the nearest cache, and sums over a block
-/// do not depend on which thread makes them.
+/// Samples are processed in blocks of consecutive samples. The columns of a block stay in the first-level cache, and
+/// sums over a block do not depend on the thread that computes them.
 inline constexpr std::size_t kBlock = 256;
-inline constexpr std::size_t kParts = 8;  ///< Partial sums of a product over a block: as many as the widest vector has.
+inline constexpr std::size_t kParts = 8;  ///< Partial sums of a product over a block: the lanes of the widest vector.
 inline constexpr std::size_t kBlockStride = kBlock + kParts;  ///< Of a row: vectors reach beyond the last sample.
 
-/// R rows of numbers, one for each sample of a block.
+/// R rows of numbers, one column for each sample of a block.
 template <int R>
 struct SampleBlock {
   alignas(64) std::array<std::array<double, kBlockStride>, R> row;
@@ -30,8 +30,8 @@ struct SampleBlock {
 template <int R>
 using RowProducts = std::array<double, R*(R + 1) / 2>;
 
-/// How many rows a segment of T fills: with a dual T the partial derivatives of the angle at a fixed time and, for a
-/// release, that by its instant, -θ'; then the angle.
+/// Number of rows that a segment of T fills. With a dual T: the partial derivatives of the angle at a fixed time, for a
+/// release also -θ', the derivative by its instant, and last the angle. Otherwise only the angle.
 template <typename T, bool kRelease>
 inline constexpr int kSegmentRows = 1;
 template <int P, bool kRelease>
@@ -60,8 +60,8 @@ using Vector [[gnu::vector_size(64)]] = double;
 #pragma GCC pop_options
 #endif
 
-/// Fills a segment's rows at `count` samples' times [s]: derivatives by the parameters of T, by the instant of release,
-/// the angle (MODEL.md eq. (17)). Rows are written up to kParts - 1 beyond the last sample.
+/// Fills a segment's rows at the times [s] of `count` samples: derivatives by the parameters of T, by the instant of
+/// release, then the angle (MODEL.md eq. (17)). Writes up to kParts - 1 entries beyond the last sample.
 template <bool kRelease, typename T>
 void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX
@@ -71,7 +71,7 @@ void EvaluateAt(const Segment<T>& segment, const double* time, int count, double
   baseline::Evaluate<kRelease>(segment, time, count, rows);
 }
 
-/// All products of the first `count` samples' rows; overwrites what is beyond the last of them.
+/// Sums all products of two rows over the first `count` samples. Overwrites the entries beyond the last sample.
 template <int R>
 void SumProducts(SampleBlock<R>& block, int count, RowProducts<R>& sums) {
   for (auto& row : block.row) std::fill_n(row.begin() + count, kParts, 0.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Included by sample_kernel.h once for each instruction set, in a namespace of its own: `Vector` is a vector of kLanes
-// doubles that the set has registers for. No guard, and nothing included, for the same reason.
+// sample_kernel.h includes this file once for each instruction set, in a separate namespace. `Vector` is a vector of
+// kLanes doubles that fits the registers of the set. For this reason there is no include guard and no #include.
 
 static_assert(kParts % kLanes == 0);
 
@@ -13,8 +13,9 @@ inline Vector Load(const double* from) {
 
 inline void Store(const Vector& vector, double* to) { std::memcpy(to, &vector, sizeof(vector)); }
 
-/// G vectors of samples, τ after a segment's start: Horner chains for each column and for the rate, which is the slope
-/// of the angle's. None waits for another. Derivatives are made those at a fixed time in the end (MODEL.md eq. (17)).
+/// Evaluates G vectors of samples at τ after a segment's start, by independent Horner chains for each column and for
+/// the rate, the slope of the angle's polynomial. Finally converts the derivatives to those at a fixed time (MODEL.md
+/// eq. (17)).
 template <int G, bool kRelease, int P, typename T>
 inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double* rows) {
   std::array<Vector, G> at;
@@ -44,7 +45,7 @@ inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double
   }
 }
 
-/// Samples from number i on, G vectors of them at once as long as there are as many, then fewer.
+/// Evaluates the samples from index i on, G vectors at a time while that many remain, then fewer.
 template <int G, bool kRelease, int P, typename T>
 inline void EvaluateFrom(int i, const Segment<T>& segment, const double* tau, int count, double* rows) {
   for (; i + (G - 1) * static_cast<int>(kLanes) < count; i += G * static_cast<int>(kLanes)) {
@@ -63,7 +64,7 @@ void Evaluate(const Segment<T>& segment, const double* time, int count, double* 
   EvaluateFrom<kVectors, kRelease, kPartials<T>>(0, segment, tau.data(), count, rows);
 }
 
-/// Products of row I with rows 0 to I, each in kParts partial sums whatever the instruction set.
+/// Products of row I with rows 0 to I, each in kParts partial sums regardless of the instruction set.
 template <int I>
 inline void SumRow(const double* rows, int count, double* sums) {
   constexpr std::size_t kVectors = kParts / kLanes;

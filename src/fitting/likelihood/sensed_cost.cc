@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// The data without its sensor: the motion is that of an angle whose zero is 0.
+/// The data without its sensor: the readings are the angle, with zero 0.
 TrajectoryData Unsensed(const TrajectoryData& data) {
   TrajectoryData unsensed = data;
   unsensed.quantity = Quantity::kAngle;
@@ -21,7 +21,7 @@ TrajectoryData Unsensed(const TrajectoryData& data) {
   return unsensed;
 }
 
-/// The motion of another cost, seen by a sensor: parameters are the motion's, M of them, then the sensor's, S.
+/// The motion of another cost as a sensor reads it. Parameters: M of the motion, then S of the sensor.
 class SensedCost final : public TrajectoryCost {
  public:
   SensedCost(int count, const TrajectoryData& data, const MotionModel& model, StartKind start)
@@ -97,7 +97,7 @@ class SensedCost final : public TrajectoryCost {
  private:
   Question Asking(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
 
-  /// Its parameters, and 0 for its zero.
+  /// Parameters of the motion, with 0 for its zero.
   std::vector<double> OfMotion(std::span<const double> p) const {
     const auto motion = p.first(p.size() - static_cast<std::size_t>(data_.sensor.size()));
     std::vector<double> parameters(motion.begin(), motion.end());
@@ -105,7 +105,7 @@ class SensedCost final : public TrajectoryCost {
     return parameters;
   }
 
-  /// Readings and, unless null, their derivatives by the chain rule.
+  /// Computes the readings and, unless null, their derivatives by the chain rule.
   void See(const MotionStates& states, std::span<const double> p, VectorXd* readings, MatrixXd* jacobian) const {
     const Index samples = states.value[0].size();
     const int sensor_size = data_.sensor.size();
@@ -124,7 +124,7 @@ class SensedCost final : public TrajectoryCost {
     }
   }
 
-  /// Residuals are measured - modelled: their derivatives are minus the model's.
+  /// Residuals are measured - modelled, so their derivatives are minus the model's.
   void AddUp(const VectorXd& readings, MatrixXd jacobian, MatrixXd* sums) const {
     const Index size = jacobian.cols();
     VectorXd residual(readings.size());

@@ -16,7 +16,8 @@ TrajectoryCost::TrajectoryCost(int count) : count_(count) {
   mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(count), 1);
 }
 
-/// A trial whose step is taken is asked for its derivatives next: these cost little more than the residuals alone.
+/// After a trial is accepted, the solver asks for derivatives at the same point. They cost little more than the
+/// residuals alone.
 bool TrajectoryCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   std::array<double, kMostCompressed> values{};
   for (int i = 0; i < count_; ++i) values[i] = *parameters[i];

@@ -19,19 +19,19 @@
 
 namespace pendulum {
 
-/// A trial that asks for more steps than this has a time scale far from that of the start values: a period takes
-/// some 12.
+/// A trial that needs more steps than this has a time scale far from that of the start values. A period takes some 12
+/// steps.
 inline constexpr double kStepsPerRadian = 20;
 inline constexpr double kMostSteps = 10'000;
 
-/// The cost of one law and start, whose parameters are as many as the compiler knows.
+/// The cost of one friction law and start, with the number of parameters known at compile time.
 template <FrictionModel F, StartKind kStart>
 class TrajectoryCostFor final : public TrajectoryCost {
   static constexpr int kFriction = kFrictionParameters<F>;
   static constexpr int kParameters = kFriction + 4;
   static constexpr int kZero = kParameters - 1;
   static_assert(kParameters + 1 <= kMostCompressed);
-  static constexpr int kModel = kZero;  ///< Row of the model's reading, behind its derivatives.
+  static constexpr int kModel = kZero;  ///< Row of the model's reading, after its derivatives.
   /// Derivatives by release time and zero need no dual number.
   using Dual = std::conditional_t<kStart == StartKind::kRelease, ReleaseDual<F>, MovingDual<F>>;
   template <typename T, int R, typename Sum>
@@ -86,7 +86,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     if (is_stopped()) return false;
     if (!last_.IsAt(Asking(p))) {
       if (!(data_.moves.empty() ? AddUp<1>(steady_, p, sums) : AddUp<2>(moving_, p, sums))) return false;
-      last_.value = *sums;  // into the room it has
+      last_.value = *sums;  // reuses the allocated memory
       last_.SetAt(Asking(p));
     }
     *sums = last_.value;
@@ -126,7 +126,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return with_jacobian ? FollowMotion<Dual>(p, states) : FollowMotion<double>(p, states);
   }
 
-  /// The search asks whether the motion comes to rest, the judgement when: at a point whose samples are known.
+  /// The search asks whether the motion comes to rest, and the judge asks when. Both ask at a point already evaluated.
   TraceSummary Trace(std::span<const double> p) const override {
     if (is_stopped()) return {};
     if (traced_.IsAt(Asking(p))) return traced_.value;
@@ -139,8 +139,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   bool is_stopped() const override { return data_.stop.stop_requested(); }
 
-  /// Each half swing loses twice the torque, which changes an amplitude by as much at small angles; four times to be
-  /// safe.
+  /// A torque change alters an amplitude by twice as much in each half swing, at small angles. The factor four is a
+  /// safety margin.
   bool ComesToRest(std::span<const double> p, double torque_change) const override {
     constexpr double kSafe = 4;
     const TraceSummary trace = Trace(p);
@@ -149,7 +149,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   }
 
  private:
-  /// Readings of the model's values: what the sensor shows when the angle, or rate, is zero is added.
+  /// Computes readings from the model's values: adds the zero, and its motion if there is one.
   void Read(std::span<const double> p, const double* row, std::size_t first, int count, double* readings) const {
     const double zero = p[kZero];
     for (int i = 0; i < count; ++i) readings[i] = row[i] + zero;
@@ -157,7 +157,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.moves[first + i];
   }
 
-  /// As noise_.At, without an exponential and an error function for every sample of a level.
+  /// Same result as noise_.At, without an exponential and an error function for every quantized sample.
   SampleLikelihood At(std::size_t sample, double reading) const {
     const double value = data_.value[sample];
     if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).At(value, reading);
@@ -174,19 +174,19 @@ class TrajectoryCostFor final : public TrajectoryCost {
     for (int i = 0; i < count; ++i) residuals[i] = value[i] - readings[i];
   }
 
-  /// The rows of a block whose products are wanted: derivatives, zero, what moves it if anything does, residuals.
+  /// The rows of a block whose products are needed: derivatives, zero, factor of its motion if it moves, residuals.
   template <int kBaseline>
   using Rows = SampleBlock<kZero + kBaseline + 1>;
 
-  /// Of one block.
+  /// Sums of one block.
   template <int kBaseline>
   struct Part {
     RowProducts<kZero + kBaseline + 1> products;
     double deviance = 0;
   };
 
-  /// Completes the rows behind the derivatives and weighs them all; gives the deviance. Plain residuals are divided by
-  /// σ when all are summed up.
+  /// Fills the rows after the derivatives and weights all rows; returns the deviance. Plain residuals are divided by σ
+  /// only after all sums are complete.
   template <int kBaseline>
   double Prepare(const double* readings, std::size_t first, int count, Rows<kBaseline>& block) const {
     constexpr int kResidual = kZero + kBaseline;
@@ -208,8 +208,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return deviance;
   }
 
-  /// kBaseline parameters for the zero: itself, and what moves it. Residuals are measured - modelled: their derivatives
-  /// are minus the model's.
+  /// kBaseline: number of parameters of the zero, 2 if it moves. Residuals are measured - modelled, so their
+  /// derivatives are minus the model's.
   template <int kBaseline>
   bool AddUp(auto& samples, std::span<const double> p, Eigen::MatrixXd* sums) const {
     constexpr int kResidual = kZero + kBaseline;
@@ -240,7 +240,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return sums->allFinite();
   }
 
-  /// Parameter i as a T: carries its own derivative when T is dual.
+  /// Parameter i as a T; if T is dual, with its own derivative.
   template <typename T>
   static T Carry(double value, int i) {
     if constexpr (DualNumber<T>) {
@@ -276,8 +276,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return options;
   }
 
-  /// A motion of a short period and few samples takes minutes: the tracer refuses it as soon as it may make no more
-  /// steps.
+  /// A motion with a short period and few samples can take minutes. The tracer gives up as soon as no more steps are
+  /// allowed.
   void GiveUpIfStopped(TraceOptions& options) const {
     if (is_stopped()) options.max_steps = 0;
   }
@@ -287,7 +287,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return kStart == StartKind::kMoving || (p[kZero - 1] >= 0 && p[kZero - 1] <= data_.latest_release);
   }
 
-  /// Traces the motion and hands its segments to take(segment).
+  /// Traces the motion and passes each segment to take(segment).
   template <typename T, typename TakeSegment>
   bool Follow(std::span<const double> p, const TakeSegment& take) const {
     TraceOptions options = Options();
@@ -303,7 +303,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return true;
   }
 
-  /// Values and, of dual numbers, derivatives of the angle and of its rate and acceleration, which are slopes of the
+  /// Values and, for dual numbers, derivatives of angle, rate and acceleration. Rate and acceleration are slopes of the
   /// same segments.
   template <typename T>
   bool FollowMotion(std::span<const double> p, MotionStates* states) const {
@@ -332,8 +332,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return traced && samples[0].is_complete();
   }
 
-  /// Traces the motion through all samples. The first rows of each block are EvaluateAt's: derivatives by all
-  /// parameters but zero, in the parameters' order, then the model's reading; with T = double the reading alone.
+  /// Traces the motion through all samples. EvaluateAt fills the first rows of each block: the derivatives by all
+  /// parameters except the zero, in the parameters' order, then the model's reading. For T = double only the reading.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
     if (is_stopped() || !IsAdmissible(p)) return false;
@@ -356,11 +356,11 @@ class TrajectoryCostFor final : public TrajectoryCost {
   double tolerance_ = 1e-10;
   int threads_ = 1;
   NoiseModel noise_;
-  DepthTable levels_{1};                   // of quantized noise_
+  DepthTable levels_{1};                   // for quantized noise_
   mutable KnownAt<Eigen::MatrixXd> last_;  // sums without priors
   mutable KnownAt<TraceSummary> traced_;
   mutable KnownAt<Eigen::VectorXd> read_;
-  // Room that evaluations leave to the next one.
+  // Memory that each evaluation reuses.
   mutable Samples<double, 1, double> values_;
   mutable Samples<Dual, kZero + 2, Part<1>> steady_;
   mutable Samples<Dual, kZero + 3, Part<2>> moving_;

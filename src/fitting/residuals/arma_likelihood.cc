@@ -24,7 +24,7 @@ using Kind = Autocorrelation::Kind;
 
 // ---- Likelihood and its slope --------------------------------------------------------------------------------------
 
-/// The log-likelihood of residuals at a place, and its gradient and expected information there.
+/// The log-likelihood of residuals at a place, with its gradient and expected information.
 struct Slope {
   double log_likelihood = -std::numeric_limits<double>::infinity();
   double mean_square = 0;  // of the standardized innovations
@@ -32,7 +32,7 @@ struct Slope {
   Eigen::MatrixXd information;
 };
 
-/// Filters for some places side by side, and what they make of one series, block by block.
+/// Filters for several places in parallel, and their results for one series, block by block.
 class FilterRow {
  public:
   FilterRow(const MemoryFamily& family, const std::vector<Eigen::VectorXd>& places) {
@@ -79,7 +79,7 @@ class FilterRow {
 };
 
 /// Gradient Σ u v'/√F + (1 - u²) F'/2F and information Σ v'v'/F + F'F'/2F² of innovations v = u √F (Harvey, section
-/// 3.4.5), with derivatives by differences; `step` 0: only the likelihood.
+/// 3.4.5), with derivatives by finite differences. If `step` is 0, only the likelihood.
 Slope SlopeAt(const MemoryFamily& family, const Eigen::VectorXd& place, const Eigen::VectorXd& time,
               const Eigen::VectorXd& residual, double step) {
   const Index size = step > 0 ? place.size() : 0;
@@ -112,14 +112,14 @@ Slope SlopeAt(const MemoryFamily& family, const Eigen::VectorXd& place, const Ei
   return slope;
 }
 
-/// Fisher's scoring, damped as by Levenberg and Marquardt.
+/// Fisher scoring, damped as in the Levenberg-Marquardt method.
 class Climb {
  public:
   Climb(const MemoryFamily& family, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
         const std::stop_token& stop)
       : family_(family), time_(time), residual_(residual), stop_(stop) {}
 
-  /// Nowhere near, when stopped.
+  /// After a stop request: a log-likelihood of -infinity.
   Slope At(const Eigen::VectorXd& place) const {
     return is_stopped() ? Slope{} : SlopeAt(family_, place, time_, residual_, 0);
   }
@@ -148,11 +148,11 @@ class Climb {
   }
 
  private:
-  static constexpr double kDifference = 1e-5;  // moves the highest place by half of it
+  static constexpr double kDifference = 1e-5;  // shifts the maximum by half of it
 
   static Eigen::VectorXd StepOf(const Slope& slope, double damping) {
     Eigen::MatrixXd damped = slope.information;
-    const double least = 1e-10 * slope.information.diagonal().maxCoeff();  // for what has no influence
+    const double least = 1e-10 * slope.information.diagonal().maxCoeff();  // for parameters without influence
     damped.diagonal() += damping * slope.information.diagonal() + Eigen::VectorXd::Constant(damped.rows(), least);
     return damped.ldlt().solve(slope.gradient);
   }
@@ -163,7 +163,7 @@ class Climb {
   const std::stop_token& stop_;
 };
 
-// ---- Where to begin ------------------------------------------------------------------------------------------------
+// ---- Start places --------------------------------------------------------------------------------------------------
 
 using Places = std::vector<Eigen::VectorXd>;
 
@@ -214,7 +214,7 @@ void AddContinuous(const Autocorrelation& like, const Eigen::VectorXd& time, Pla
   }
 }
 
-/// Of the places that `like` and the residuals' moments suggest the likeliest, at a scale of its own.
+/// The likeliest of the places suggested by `like` and by the moments of the residuals, each at its own scale.
 Eigen::VectorXd LikeliestStart(const MemoryFamily& family, const Autocorrelation& like, const Eigen::VectorXd& time,
                                const Eigen::VectorXd& residual, const Climb& climb) {
   Places places;
@@ -241,7 +241,7 @@ Eigen::VectorXd LikeliestStart(const MemoryFamily& family, const Autocorrelation
 
 // ---- Shift ---------------------------------------------------------------------------------------------------------
 
-/// Columns (N x C) as innovations of variance 1.
+/// Converts columns (N x C) to innovations of variance 1.
 Eigen::MatrixXd Whitened(const FilteredProcess& process, const Eigen::VectorXd& time, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd white(columns.rows(), columns.cols());
   for (Index first = 0; first < columns.cols(); first += kLanes) {
@@ -259,7 +259,7 @@ Eigen::MatrixXd Whitened(const FilteredProcess& process, const Eigen::VectorXd& 
   return white;
 }
 
-/// The likeliest shift under a process.
+/// The maximum likelihood shift for a given process.
 Eigen::VectorXd ShiftUnder(const FilteredProcess& process, const CorrelatedResiduals& data) {
   const Index size = data.jacobian.cols();
   Eigen::MatrixXd columns(data.time.size(), size + 1);
@@ -268,7 +268,7 @@ Eigen::VectorXd ShiftUnder(const FilteredProcess& process, const CorrelatedResid
   return BoxLeastSquares(white.leftCols(size), white.col(size), data.lowest, data.highest);
 }
 
-// ---- Both ----------------------------------------------------------------------------------------------------------
+// ---- Shift and autocorrelation -------------------------------------------------------------------------------------
 
 bool IsSound(const CorrelatedResiduals& data, const Autocorrelation& like) {
   const Index size = data.jacobian.cols();
@@ -293,7 +293,8 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
                                              const CorrelatedResiduals& data, Eigen::VectorXd shift,
                                              const std::stop_token& stop) {
   constexpr int kMostRounds = 6;
-  constexpr double kEnough = 1e-3;  // gain in log-likelihood by the shift; the memory's that follows is less
+  // Gain in log-likelihood by the shift; the gain by the autocorrelation that follows is smaller.
+  constexpr double kEnough = 1e-3;
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
   const Climb climb(family, data.time, left, stop);
   Eigen::VectorXd place = LikeliestStart(family, like, data.time, left, climb);
@@ -321,7 +322,7 @@ CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const A
 std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const CorrelatedResiduals& data,
                                                                  const Autocorrelation& like,
                                                                  const std::stop_token& stop) {
-  constexpr double kNothing = 1e-20;  // of the residuals' sum of squares: rounding
+  constexpr double kNothing = 1e-20;  // relative to the residuals' sum of squares: rounding error
   if (!IsSound(data, like)) return std::nullopt;
   Eigen::VectorXd shift = BoxLeastSquares(data.jacobian, data.residual, data.lowest, data.highest);
   const double squares = (data.residual - data.jacobian * shift).squaredNorm();

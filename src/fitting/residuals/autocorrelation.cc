@@ -49,9 +49,9 @@ double Autocorrelation::SquaredInflation() const {
 
 namespace {
 
-/// Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, which are fed from the last sample backwards:
-/// g_k is what the innovation e_k moves in W'z, by the transpose of the process's filter, so R is never formed and the
-/// sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
+/// Computes Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, from the last sample backwards. g_k is
+/// the derivative of W'z by the innovation e_k, so this is the transpose of the process's filter. R is never formed,
+/// and the sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
 class BackwardFilter {
  public:
   BackwardFilter(const Autocorrelation& correlation, Eigen::Index columns)
@@ -71,7 +71,7 @@ class BackwardFilter {
     later_ = weight;
   }
 
-  /// Samples that were not taken, at most so many: until the filter has forgotten, to rounding.
+  /// Processes `count` missing samples, or fewer if the filter's response decays to rounding error before.
   void Skip(double count) {
     const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(later_.size());
     while (count > 0) {
@@ -83,7 +83,7 @@ class BackwardFilter {
     if (count > 0) response_.setZero();
   }
 
-  /// Over all innovations so far.
+  /// The sum over all innovations so far.
   Eigen::MatrixXd Sum() {
     Flush();
     return sum_;
@@ -92,7 +92,7 @@ class BackwardFilter {
  private:
   static constexpr Eigen::Index kBlock = 256;
 
-  /// Adds the responses that are complete, and moves those still needed to the end of the store.
+  /// Adds the completed responses and moves those still needed to the end of the buffer.
   void Flush() {
     const auto complete = response_.middleCols(head_, kBlock - head_);
     sum_.noalias() += complete * complete.transpose();
@@ -119,7 +119,7 @@ class BackwardFilter {
 
 Eigen::MatrixXd EvenSum(const Autocorrelation& correlation, const Eigen::VectorXd& time,
                         const Eigen::MatrixXd& weights) {
-  constexpr double kLongest = 1e7;  // innovations before the first sample, if a process never forgets
+  constexpr double kLongest = 1e7;  // innovations before the first sample, for a process that never decays
   BackwardFilter filter(correlation, weights.cols());
   for (Eigen::Index k = time.size() - 1; k >= 0; --k) {
     filter.Step(weights.row(k).transpose());
@@ -129,7 +129,7 @@ Eigen::MatrixXd EvenSum(const Autocorrelation& correlation, const Eigen::VectorX
   return correlation.innovation_variance * filter.Sum();
 }
 
-/// z_k = q_k z_{k-1} + sqrt(1 - q_k²) e_k with q_k = exp(-Δt_k / τ), and white noise over it.
+/// z_k = q_k z_{k-1} + sqrt(1 - q_k²) e_k with q_k = exp(-Δt_k / τ), plus white noise.
 Eigen::MatrixXd ContinuousSum(const Autocorrelation& correlation, const Eigen::VectorXd& time,
                               const Eigen::MatrixXd& weights) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(weights.cols(), weights.cols());

@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-/// Of columns of length 1, F x F.
+/// The F x F problem with columns of length 1.
 class BoxProblem {
  public:
   BoxProblem(Eigen::MatrixXd matrix, Eigen::VectorXd value, Eigen::VectorXd lowest, Eigen::VectorXd highest)
@@ -28,7 +28,7 @@ class BoxProblem {
   }
 
   Eigen::VectorXd Solve() {
-    const auto most_steps = 10 * (matrix_.cols() + 1);  // equal gains could let a coordinate in and out for ever
+    const auto most_steps = 10 * (matrix_.cols() + 1);  // equal gains could free and block a coordinate forever
     for (Eigen::Index step = 0; step < most_steps; ++step) {
       if (Move() && !Release()) break;
     }
@@ -36,7 +36,8 @@ class BoxProblem {
   }
 
  private:
-  /// Towards the least sum over the free coordinates; false when one of them came to a bound, and stays there.
+  /// Moves towards the minimum over the free coordinates. Returns false if one of them reaches a bound, where it then
+  /// stays.
   bool Move() {
     constexpr double kDependent = 1e-9;
     if (free_.empty()) return true;
@@ -60,7 +61,7 @@ class BoxProblem {
     return false;
   }
 
-  /// Frees the coordinate that gains most by leaving its bound; false when none does.
+  /// Frees the coordinate with the largest gain from leaving its bound. Returns false if none gains.
   bool Release() {
     const Eigen::VectorXd pull = matrix_.transpose() * (value_ - matrix_ * place_);
     double most = 1e-10 * value_.norm();

@@ -10,34 +10,34 @@
 
 namespace pendulum {
 
-/// Samples begin..begin + size - 1 of a recording, one an interval of its clock.
+/// Samples begin..begin + size - 1 of a recording without gaps, one per interval of its clock.
 struct Stretch {
   Eigen::Index begin = 0;
   Eigen::Index size = 0;
 };
 
-/// Reflection coefficients of orders 1, 2, ... of the autoregression that predicts the samples of all stretches best
-/// from those before and from those after them (Burg, Maximum entropy spectral analysis, Stanford, 1975).
+/// Reflection coefficients of orders 1, 2, ... of the autoregression that best predicts the samples of all stretches,
+/// both from earlier and from later samples (Burg, Maximum entropy spectral analysis, Stanford, 1975).
 ///
 /// value      N x 1, of mean 0.
-/// stretches  within 0..N - 1; no sample predicts one of another stretch.
-/// Returns at most `longest` coefficients, each in (-1, 1), so that the process they make is stationary; fewer when
-/// fewer of them leave nothing to predict. Costs O(N longest).
+/// stretches  within 0..N - 1; no sample predicts a sample of another stretch.
+/// Returns at most `longest` coefficients, each in (-1, 1), so the process is stationary. Returns fewer if the
+/// prediction is already exact with fewer. Costs O(N longest).
 std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<Stretch>& stretches,
                                            int longest);
 
-/// The φ of an autoregression with these reflection coefficients (Levinson 1947, Durbin 1960).
+/// The coefficients φ of the autoregression with these reflection coefficients (Levinson 1947, Durbin 1960).
 std::vector<double> FromReflection(const std::vector<double>& reflection);
 
 // -----------------------------------------------------------------------------------------------------------------
 
-/// Prediction errors of Burg's lattice, of all stretches one after the other. Order p predicts sample t from the p
-/// before it, with the error forward[t], and sample t - p from the p after it, with the error backward[t - p].
+/// Prediction errors of Burg's lattice for all stretches in sequence. Order p predicts sample t from the p samples
+/// before it, with error forward[t]. It predicts sample t - p from the p samples after it, with error backward[t - p].
 struct Lattice {
   Eigen::VectorXd forward, backward;
 };
 
-/// The reflection coefficient that takes the lattice to this order, and the lattice taken there.
+/// Returns the reflection coefficient of this order, and advances the lattice to it.
 inline double Reflect(const std::vector<Stretch>& stretches, Eigen::Index order, Lattice* lattice) {
   double product = 0;
   double energy = 0;

@@ -22,7 +22,7 @@ namespace {
 
 using Kind = Autocorrelation::Kind;
 
-// ---- Stamps --------------------------------------------------------------------------------------------------------
+// ---- Time stamps ---------------------------------------------------------------------------------------------------
 
 struct Clock {
   bool even = false;
@@ -32,7 +32,7 @@ struct Clock {
 
 Clock FindClock(const Eigen::VectorXd& time) {
   constexpr double kJitter = 0.1;   // mean, in intervals
-  constexpr double kShortest = 50;  // samples in a stretch, on average
+  constexpr double kShortest = 50;  // samples per stretch, on average
   const Eigen::Index count = time.size();
   const Eigen::VectorXd steps = time.tail(count - 1) - time.head(count - 1);
   Clock clock;
@@ -64,7 +64,7 @@ double WhiteCriterion(const Eigen::VectorXd& residual) {
   return samples * std::log(residual.squaredNorm() / samples);
 }
 
-/// An autoregression and its Schwarz criterion, over that of white residuals.
+/// An autoregression and its Schwarz criterion relative to that of white residuals.
 struct Autoregression {
   std::vector<double> reflection;
   double criterion = std::numeric_limits<double>::infinity();
@@ -75,14 +75,14 @@ Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& res
   const auto samples = static_cast<double>(residual.size());
   const auto stretches = static_cast<double>(clock.stretches.size());
   const std::vector<double> reflection = ReflectionCoefficients(residual, clock.stretches, LongestOrder(samples));
-  constexpr double kRounding = 1e-8;  // of the variance left to innovations: smooth curves are no noise
+  constexpr double kRounding = 1e-8;  // of the variance left to innovations: a smoother curve is not noise
   Autoregression best;
   double criterion = 0;
   double left = 1;
   for (std::size_t order = 1; order <= reflection.size(); ++order) {
     left *= 1 - reflection[order - 1] * reflection[order - 1];
     if (left < kRounding) break;
-    // The samples at a stretch's begin are predicted from fewer than p others: `order` of them without this one.
+    // Samples at the start of a stretch have fewer than p predecessors: `order` of them do not have this one.
     const double predicted = samples - stretches * static_cast<double>(order);
     criterion += predicted * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
     if (criterion < best.criterion) best = {{reflection.begin(), reflection.begin() + order}, criterion};
@@ -101,16 +101,17 @@ Autocorrelation FromBurg(const Clock& clock, const std::vector<double>& reflecti
 
 // ---- Likelihood of two parameters ----------------------------------------------------------------------------------
 
-/// What turns N residuals into independent innovations e_i = z_i - m_i: the prediction m_i = keep_i m_{i-1} +
-/// gain_i e_{i-1}, and the variance of e_i over that of one that is predicted from all the past (or over that of z).
+/// Coefficients that convert N residuals to independent innovations e_i = z_i - m_i. The prediction is m_i = keep_i
+/// m_{i-1} + gain_i e_{i-1}. The variance of e_i is relative to that of an innovation predicted from the whole past (or
+/// to that of z).
 struct Innovations {
   explicit Innovations(Eigen::Index samples) : keep(samples), gain(samples), variance(samples) {}
   Eigen::VectorXd keep, gain, variance;
   double log_determinant = 0;  // Σ ln variance_i
 };
 
-/// Of ARMA(1,1), exact from the first sample of each stretch on (P. J. Brockwell and R. A. Davis, Time Series: Theory
-/// and Methods, section 5.3, 1991).
+/// Innovations of ARMA(1,1), exact from the first sample of each stretch on (P. J. Brockwell and R. A. Davis, Time
+/// Series: Theory and Methods, section 5.3, 1991).
 void PredictMixed(const Clock& clock, double phi, double theta, Innovations* innovations) {
   constexpr double kSettled = 1e-12;
   innovations->keep.setConstant(phi);
@@ -130,11 +131,12 @@ void PredictMixed(const Clock& clock, double phi, double theta, Innovations* inn
   }
 }
 
-/// Of the continuous AR(1) under white noise: a Kalman filter of one state. age: N x 1, s, since the sample before.
+/// Innovations of the continuous AR(1) with white noise, by a Kalman filter of one state. age: N x 1, s, since the
+/// previous sample.
 void PredictContinuous(const Eigen::VectorXd& age, double decay_time, double white_share, Innovations* innovations) {
   innovations->keep = (age.array() / -decay_time).exp();
   innovations->keep[0] = 0;
-  double known = 0;  // of the state's variance, after the sample before
+  double known = 0;  // of the state's variance, after the previous sample
   double gain = 0;
   for (Eigen::Index i = 0; i < age.size(); ++i) {
     const double kept = innovations->keep[i];
@@ -147,8 +149,8 @@ void PredictContinuous(const Eigen::VectorXd& age, double decay_time, double whi
   innovations->log_determinant = innovations->variance.array().log().sum();
 }
 
-/// Turns some columns, beginning with the one of this number, into their innovations. Several at once do not wait for
-/// each other.
+/// Converts `Columns` columns from number `first` on into their innovations. The recursions of several columns run in
+/// parallel.
 template <int Columns>
 void Whiten(const Innovations& innovations, Eigen::Index first, Eigen::MatrixXd* columns) {
   Eigen::Array<double, 1, Columns> predicted = Eigen::Array<double, 1, Columns>::Zero();
@@ -160,8 +162,8 @@ void Whiten(const Innovations& innovations, Eigen::Index first, Eigen::MatrixXd*
   }
 }
 
-/// -2 log likelihood, but for a constant and at the best scale, of what the first M - 1 of M columns (N x M) leave of
-/// the last one.
+/// -2 log likelihood, up to a constant and at the best scale, of the last of M columns (N x M) after the first M - 1
+/// are regressed out.
 double Deviance(const Innovations& innovations, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd white = columns;
   Eigen::Index done = 0;
@@ -177,8 +179,8 @@ double Deviance(const Innovations& innovations, const Eigen::MatrixXd& columns) 
          innovations.log_determinant;
 }
 
-/// The largest of the squared scores of z_t = δ (z_{t-1} + φ z_{t-2} + φ² z_{t-3} + ...) + e_t at δ = 0, over some φ:
-/// each is χ² of one degree of freedom for white residuals, and about what the likelihood of ARMA(1,1) can gain.
+/// The largest squared score of z_t = δ (z_{t-1} + φ z_{t-2} + φ² z_{t-3} + ...) + e_t at δ = 0, over several φ. For
+/// white residuals each score is χ² with one degree of freedom. It approximates the gain in likelihood by ARMA(1,1).
 double LargestScore(const Eigen::VectorXd& residual) {
   using Scores = Eigen::Array<double, 8, 1>;
   const Scores memory{{-0.9, -0.5, 0.0, 0.5, 0.8, 0.95, 0.99, 0.998}};
@@ -193,13 +195,13 @@ double LargestScore(const Eigen::VectorXd& residual) {
   return (product.square() / energy).maxCoeff() * static_cast<double>(residual.size()) / residual.squaredNorm();
 }
 
-/// Whether no likelihood of two parameters can exceed that of white residuals as much as Schwarz's criterion asks for;
-/// half of that is the margin for what the scores miss.
+/// Whether no likelihood of two parameters can exceed that of white residuals by as much as Schwarz's criterion
+/// requires. Half of that value is used, as a margin for the error of the scores.
 bool LooksWhite(const Eigen::VectorXd& residual) {
   return LargestScore(residual) < std::log(static_cast<double>(residual.size()));
 }
 
-/// A deviance over the plane, which is flat when the search for its lowest place is to end.
+/// Deviance over two parameters. Once a search is stopped it is constant, so the search ends.
 constexpr double kStopped = 0;
 using Surface = std::function<double(const Eigen::Vector2d&)>;
 
@@ -236,7 +238,7 @@ Vertex Lowest(const Surface& surface, const Eigen::Vector2d& start, double size)
   return *std::min_element(simplex.begin(), simplex.end(), lower);
 }
 
-/// The lowest place of a line, within a few parts in a million of its length.
+/// The minimum on a line, to a few millionths of its length.
 Vertex LowestOnLine(const std::function<double(double)>& height, double from, double to) {
   constexpr int kBits = 20;
   std::uintmax_t steps = 60;
@@ -244,11 +246,11 @@ Vertex LowestOnLine(const std::function<double(double)>& height, double from, do
   return {{place, 0}, lowest};
 }
 
-/// Orthonormal columns that span the weights, and the residual behind them. A fit takes of the residuals what its
-/// parameters can follow, and so the slowest part of their memory; the likelihood of what parameters cannot follow
-/// gives it back (H. D. Patterson and R. Thompson, Biometrika 58:545, 1971).
+/// Orthonormal columns that span the weights, then the residual. A fit removes from the residuals all that its
+/// parameters can follow, including the slowest part of the autocorrelation. The likelihood of the remaining
+/// combinations corrects for this (H. D. Patterson and R. Thompson, Biometrika 58:545, 1971).
 Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
-  constexpr Eigen::Index kFew = 100'000;  // beyond, what the parameters took is nothing beside what they left
+  constexpr Eigen::Index kFew = 100'000;  // beyond this, the part removed by the parameters is negligible
   if (weights.cols() == 0 || residual.size() > kFew) return residual;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weights);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Identity(residual.size(), qr.rank() + 1);
@@ -259,7 +261,7 @@ Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::
 
 // ---- ARMA(1,1) -----------------------------------------------------------------------------------------------------
 
-/// Places in the plane are artanh of φ and θ: all of it is stationary and invertible.
+/// The plane's coordinates are artanh of φ and θ: every point is a stationary and invertible process.
 constexpr double kMostMemory = 0.99999;
 
 double MemoryAt(double place) { return kMostMemory * std::tanh(place); }
@@ -321,7 +323,7 @@ Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual
 
 // ---- Continuous AR(1) ----------------------------------------------------------------------------------------------
 
-/// Places are (ln τ, logit s).
+/// Coordinates are (ln τ, logit s).
 Autocorrelation Continuous(const Eigen::VectorXd& time, const Eigen::Vector2d& place) {
   Autocorrelation continuous;
   continuous.kind = Kind::kContinuous;

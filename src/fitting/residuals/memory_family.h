@@ -16,9 +16,9 @@
 
 namespace pendulum {
 
-/// What the places stand for. A place has a scale first: ln of the standard deviation of the innovations, or of z if it
-/// is continuous. Then artanh of partial autocorrelations; artanh of φ and θ; or ln τ and, if there is a white share,
-/// its logit.
+/// The kind of process that a place describes. A place is a vector of unbounded parameters. The first is a scale: ln of
+/// the standard deviation of the innovations, or of z if the process is continuous. The others are artanh of the
+/// partial autocorrelations, artanh of φ and θ, or ln τ and, if there is a white share, its logit.
 struct MemoryFamily {
   Autocorrelation::Kind kind = Autocorrelation::Kind::kWhite;
   Eigen::Index parameters = 1;
@@ -50,7 +50,7 @@ inline MemoryFamily FamilyOf(const Autocorrelation& like, double rounding_varian
   return family;
 }
 
-/// Partial autocorrelations of an autoregression: Levinson's recursion backwards.
+/// Partial autocorrelations of an autoregression: Levinson's recursion in reverse.
 inline std::vector<double> ReflectionOf(std::vector<double> memory) {
   for (std::size_t order = memory.size(); order > 1; --order) {
     const double last = std::clamp(memory[order - 1], -kMostPartial, kMostPartial);
@@ -68,7 +68,7 @@ inline std::vector<double> ReflectionAt(const Eigen::VectorXd& place) {
   return reflection;
 }
 
-/// z and its memory at a place.
+/// The variance of z and its autocorrelation at a place.
 struct MemoryProcess {
   Autocorrelation memory;
   double variance = 0;
@@ -98,7 +98,8 @@ inline MemoryProcess ProcessAt(const MemoryFamily& family, const Eigen::VectorXd
   return process;
 }
 
-/// Correlations ρ_0..ρ_{p-1} of an autoregression, lag after lag from its partial ones (Levinson 1947, Durbin 1960).
+/// Correlations ρ_0..ρ_{p-1} of an autoregression, computed lag by lag from the partial ones (Levinson 1947, Durbin
+/// 1960).
 inline Eigen::VectorXd CorrelationsOf(const std::vector<double>& reflection) {
   const auto order = static_cast<Eigen::Index>(reflection.size());
   Eigen::VectorXd correlation = Eigen::VectorXd::Ones(order);
@@ -114,7 +115,7 @@ inline Eigen::VectorXd CorrelationsOf(const std::vector<double>& reflection) {
   return correlation;
 }
 
-/// Covariance of the states, over the variance of z: a_0 = z_t, a_i = Σ_l φ_{i+l} z_{t-l}.
+/// Covariance of the states divided by the variance of z: a_0 = z_t, a_i = Σ_l φ_{i+l} z_{t-l}.
 inline Eigen::MatrixXd StateCovariance(const std::vector<double>& memory, const std::vector<double>& reflection) {
   const auto order = static_cast<Eigen::Index>(memory.size());
   const Eigen::VectorXd correlation = CorrelationsOf(reflection);

@@ -13,12 +13,12 @@
 
 namespace pendulum {
 
-/// Processes are filtered side by side in lanes: their recursions do not wait for each other and fill vector registers.
+/// Several processes are filtered in parallel lanes: their recursions are independent and fill vector registers.
 inline constexpr int kLanes = 8;
 using Lanes = std::array<double, kLanes>;
 
-/// A stationary process and white noise over it, in the state space of A. C. Harvey (Forecasting, structural time
-/// series models and the Kalman filter, 1989, section 3.3): a' = T a + R e with T = (φ | shift), reading = a_0 + noise.
+/// A stationary process plus white noise in the state space of A. C. Harvey (Forecasting, structural time series models
+/// and the Kalman filter, 1989, section 3.3): a' = T a + R e with T = (φ | shift), reading = a_0 + noise.
 struct FilteredProcess {
   std::vector<double> autoregressive;  // φ_1..φ_m, of m states
   std::vector<double> response;        // R, m: 1, θ, 0, ...
@@ -26,26 +26,26 @@ struct FilteredProcess {
   Eigen::MatrixXd stationary;          // m x m, covariance of a
   double white_variance = 0;           // of the noise
   double interval = 0;                 // s, of an even clock
-  double decay_time = 0;               // s; of a process that decays between any stamps, > 0: then m = 1 and no clock
+  double decay_time = 0;               // s; > 0 for a continuous process, which needs no clock: then m = 1
 };
 
-/// Exact Kalman filters of up to kLanes processes of one kind and order side by side, each over its own readings at the
-/// same times. O(m²) a sample until the covariance of the prediction has settled, then O(m). Advance stands between two
-/// samples, Take at each.
+/// Exact Kalman filters of up to kLanes processes of one kind and order in parallel, each over its own readings at the
+/// same times. Costs O(m²) per sample until the prediction covariance has converged, then O(m). Call Advance between
+/// two samples, Take at each sample.
 class MemoryFilter {
  public:
   explicit MemoryFilter(const std::vector<FilteredProcess>& processes);
 
-  /// To the next sample, so many s later: by one interval, or over a gap in the clock.
+  /// Moves to the next sample, `step` seconds later: by one interval, or over a gap in the clock.
   void Advance(double step);
 
   void Take(const Lanes& value);
 
-  /// What the last reading was not expected to be, and the variance of that.
+  /// Prediction error of the last reading, and its variance.
   const Lanes& innovation() const { return innovation_; }
   const Lanes& variance() const { return variance_; }
 
-  /// Whether the variance has been the same since some samples, and so remains.
+  /// Whether the variance has converged, so that it stays constant.
   bool settled() const { return settled_; }
 
  private:
@@ -127,10 +127,10 @@ inline void MemoryFilter::Predict() {
   observed_ = false;
 }
 
-/// T (P - P_0 P_0' / F) T' + R R', in place, and whether that is the P of the sample before.
+/// Computes T (P - P_0 P_0' / F) T' + R R' in place, and whether P has stopped changing.
 inline void MemoryFilter::PredictCovariance() {
   constexpr double kSame = 1e-12;  // of the variance
-  Lanes kept, known, change{};     // shares: of P_0 after the reading; 1 / F
+  Lanes kept, known, change{};     // factors: share of P_0 left after the reading; 1 / F
   for (int lane = 0; lane < kLanes; ++lane) {
     kept[lane] = observed_ ? white_[lane] / variance_[lane] : 1;
     known[lane] = observed_ ? 1 / variance_[lane] : 0;
@@ -155,7 +155,7 @@ inline void MemoryFilter::PredictCovariance() {
   for (int lane = 0; lane < kLanes; ++lane) settled_ = settled_ && change[lane] <= kSame * variance_[lane];
 }
 
-/// Samples that were not taken.
+/// Predicts over samples that are missing.
 inline void MemoryFilter::Skip(double intervals) {
   constexpr double kFew = 30;
   settled_ = false;
@@ -163,7 +163,7 @@ inline void MemoryFilter::Skip(double intervals) {
   for (double i = 0; i < intervals; ++i) Predict();
 }
 
-/// T to this power, which may be 0 to rounding.
+/// T to this power; it may be 0 to rounding.
 inline Eigen::MatrixXd TransitionPower(const std::vector<double>& memory, double power) {
   constexpr double kLongest = 1e12;
   constexpr double kForgotten = 1e-18;
@@ -180,7 +180,7 @@ inline Eigen::MatrixXd TransitionPower(const std::vector<double>& memory, double
   return product;
 }
 
-/// By P = S + Tⁿ (P - S) T'ⁿ, S the stationary covariance.
+/// Computes P = S + Tⁿ (P - S) T'ⁿ, where S is the stationary covariance.
 inline void MemoryFilter::Jump(double intervals) {
   const auto order = static_cast<Eigen::Index>(order_);
   const auto at = [](Eigen::Index i) { return static_cast<std::size_t>(i); };

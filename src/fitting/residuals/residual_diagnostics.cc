@@ -20,8 +20,8 @@ double Lag1Correlation(const Eigen::VectorXd& residual) {
   return sum > 0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / sum : 0.0;
 }
 
-/// The portmanteau N Σ ρ_k² over lags k spaced as squares is six standard deviations above its mean. Noise that
-/// remembers shows at the first lags, a misfit that swings with the pendulum at some lag within one period.
+/// Tests whether N Σ ρ_k², over lags k spaced as squares, exceeds its mean by six standard deviations. Autocorrelated
+/// noise shows at the first lags, a misfit that oscillates with the pendulum at some lag within one period.
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag) {
   constexpr int kMostLags = 50;
   constexpr double kDeviations = 6;
@@ -98,8 +98,8 @@ bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, cons
   return Exceeds(all, 2.0 * count) || Exceeds(slow, 2.0 * cosines);
 }
 
-/// Φ⁻¹ of the distribution function at the reading, at a random place within the jump that a level or a censored
-/// reading makes.
+/// Φ⁻¹ of the distribution function at the reading. For a quantized or censored reading, the distribution function
+/// jumps; a random point within the jump is used.
 Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                                   const Eigen::Ref<const Eigen::VectorXd>& readings) {
   if (noise.IsPlain()) return (value - readings) / noise.sigma;

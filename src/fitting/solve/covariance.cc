@@ -10,7 +10,8 @@ namespace pendulum {
 
 namespace {
 
-/// The inverse by Cholesky's factors, a tenth of the work of eigenvalues; false where they lose half of the digits.
+/// Inverse by Cholesky factors, which takes a tenth of the time of an eigenvalue decomposition. Returns false if half
+/// of the digits would be lost.
 bool WellConditionedInverse(const Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
   constexpr double kHalfOfTheDigits = 1e-8;
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
@@ -23,7 +24,7 @@ bool WellConditionedInverse(const Eigen::MatrixXd& matrix, Eigen::MatrixXd& inve
 
 }  // namespace
 
-/// Scaled to unit diagonal, so that parameters of very different size do not look dependent.
+/// The matrix is scaled to unit diagonal, so parameters of very different size do not appear dependent.
 InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free) {
   InformationInverse inverse;
   inverse.identifiable = free.empty();

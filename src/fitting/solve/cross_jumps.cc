@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// The likeliest σ, from sums by the noise that a search begins with.
+/// Estimates σ and the likelihood again, starting with the noise at the start of a search.
 void SettleAgain(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options, Solution& solution) {
   cost.set_noise(problem.noise);
   solution.usable = cost.SumOfSquares(solution.parameters, &solution.sum);
@@ -23,7 +23,7 @@ void SettleAgain(TrajectoryCost& cost, const FitProblem& problem, const FitOptio
   MaximizeLikelihood(cost, problem, options, solution);
 }
 
-/// Where a solve from beyond the jump ends; nothing where it finds no jump, or nothing better.
+/// The solution of a solve started beyond the jump. Returns std::nullopt if there is no jump or no better solution.
 std::optional<Solution> AcrossJump(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
   const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
   if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) <= kLargestShift) return std::nullopt;

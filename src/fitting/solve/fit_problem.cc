@@ -18,7 +18,7 @@
 namespace pendulum {
 namespace {
 
-/// Index of the first friction parameter that holds the pendulum at rest, among all parameters; -1: none.
+/// Index, among all parameters, of the first friction parameter that can hold the pendulum at rest; -1: none.
 int HoldingParameter(const MotionModel& model) {
   int holding = -1;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
@@ -31,10 +31,10 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
-/// s², in units of G; ω0 = 1/sqrt(I) must be of a size that can be traced.
+/// s², in units of G; a smaller inertia would give a frequency ω0 = 1/sqrt(I) too high to compute.
 constexpr double kSmallestInertia = 1e-30;
 
-/// What a parameter may be, for a sentence, in the units of the report.
+/// The permitted range of a parameter as text for a message, in reported units.
 std::string Range(const FitProblem& problem, std::size_t i) {
   const auto reported = [&](double internal) { return NumberText(problem.Reported(i, internal)); };
   if (problem.infos[i].name == kInertia.name) return "greater than " + reported(kSmallestInertia);
@@ -42,7 +42,7 @@ std::string Range(const FitProblem& problem, std::size_t i) {
   return std::isfinite(problem.solve.upper[i]) ? from + " and at most " + reported(problem.solve.upper[i]) : from;
 }
 
-/// Index of a parameter that an option names; `what` the option does, for the message.
+/// Index of the parameter that an option names. `what` is the action of the option, for the message.
 Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& name, const std::string& what) {
   if (const std::optional<std::size_t> found = problem.Find(name)) return *found;
   return Error(StatusCode::kInvalidArgument, "model " + std::string(problem.model.name) + " has no parameter '" + name +
@@ -50,7 +50,7 @@ Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& 
                                                  NameList(problem.infos));
 }
 
-/// Begins parameter i at a value; refuses one that it cannot have.
+/// Sets the start value of parameter i. Returns an error if the value is not permitted.
 Result<void> BeginAt(double value, std::size_t i, const std::string& what, FitProblem& problem) {
   const double internal = problem.Internal(i, value);
   const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
@@ -93,7 +93,7 @@ Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
   return {};
 }
 
-/// Puts the user's bounds, start values, fixed values and priors in, and what is known of the sensor.
+/// Applies the user's bounds, start values, fixed values and priors, and the prior knowledge of the sensor.
 Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sensor_priors, FitProblem& problem) {
   if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
   for (const auto& [name, value] : options.initial) {
@@ -111,7 +111,7 @@ Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sens
   return ApplyPriors(sensor_priors, problem);
 }
 
-/// Bounds in the units of the problem: those of the parameters, and the hold for the release.
+/// Sets the bounds in the units of the problem: the parameters' own bounds and, for the release, the end of the hold.
 void SetBounds(FitProblem& problem) {
   for (const ParameterInfo& info : problem.infos) {
     const bool is_release = info.name == kReleaseTime.name;
@@ -135,8 +135,8 @@ TrajectoryData MakeData(const Recording& recording, const SensorModel& sensor, c
   return data;
 }
 
-/// Which readings stand at an end of the sensor's range: those beyond the edge of the last level within it. Files round
-/// their numbers, those of the range too.
+/// Marks readings at an end of the sensor's range as censored: those beyond the edge of the last level within it. The
+/// tolerance allows for rounded numbers in files, including those of the range.
 void SetCensoring(const Recording& recording, FitProblem& problem) {
   problem.noise.sigma = problem.data.scale;
   problem.resolution = recording.resolution;
@@ -156,7 +156,8 @@ void SetCensoring(const Recording& recording, FitProblem& problem) {
   if (problem.censored > 0) problem.noise = noise;
 }
 
-/// The recording with each value the median of five around it, so that lone outliers begin no motion.
+/// Replaces each value by the median of five around it, so that single outliers do not look like the start of the
+/// motion.
 Recording WithoutOutliers(Recording recording) {
   const Eigen::VectorXd value = recording.value;
   for (Eigen::Index i = 2; i + 2 < value.size(); ++i) {
@@ -252,7 +253,7 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
   return {};
 }
 
-/// Start values from the readings, seen through the sensor as an angle or a rate.
+/// Start values from the readings, converted by the sensor to an angle or a rate.
 Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, const SensorModel& sensor,
                               const FitOptions& options, std::size_t& sensor_starts) {
   const auto estimate = [&](const Recording& view) {

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// Parameters that are neither fixed nor at a bound.
+/// Number of parameters that are neither fixed nor at a bound.
 double FreeParameters(const FitProblem& problem, const Solution& solution) {
   double free = 0;
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
@@ -22,7 +22,7 @@ double FreeParameters(const FitProblem& problem, const Solution& solution) {
   return free;
 }
 
-/// σ² = RSS / (N - free parameters) of a deviance under the cost's noise.
+/// σ² = RSS / (N - free parameters), where RSS follows from the deviance under the cost's noise.
 double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, const Solution& solution) {
   const auto samples = static_cast<double>(problem.data.time.size());
   const double freedom = std::max(samples - FreeParameters(problem, solution), 1.0);
@@ -30,7 +30,7 @@ double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, cons
   return std::max(solution.noise.sigma * std::sqrt(sum / freedom), problem.negligible_sigma());
 }
 
-/// Gaussian noise has σ in closed form.
+/// Estimates σ of Gaussian noise, which has a closed form.
 void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 20;
   constexpr double kSame = 1e-4;
@@ -49,12 +49,12 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
   }
 }
 
-/// One σ after the other, each with the parameters that belong to it.
+/// Alternates between estimating σ and solving for the parameters.
 void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMostRounds = 15;
-  constexpr int kSpreadRounds = 3;   // in which edges learn what their stamps' errors are
-  constexpr double kMostLead = 0.4;  // of a count: its silences have some room left
-  constexpr double kSame = 3e-3;     // of σ: some tenths of its standard error at most
+  constexpr int kSpreadRounds = 3;   // in which the time stamps' errors are estimated
+  constexpr double kMostLead = 0.4;  // of a count: leaves room for the silences
+  constexpr double kSame = 3e-3;     // of σ: at most some tenths of its standard error
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
   const bool lags = problem.zero_motion == ZeroMotion::kLags;
@@ -75,7 +75,7 @@ void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& soluti
   }
 }
 
-/// Solves from those of the other minima that came near, by the same noise, and keeps the likeliest.
+/// Solves from the nearly equal local minima with the same noise, and keeps the likeliest.
 void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::vector<Minimum>& others,
                    Solution& solution) {
   for (const Minimum& minimum : others) {
@@ -89,9 +89,10 @@ void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::v
   }
 }
 
-/// The minima of least squares that may be the likeliest.
+/// Local minima of least squares that may have the largest likelihood.
 std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
-  constexpr double kNear = 60;  // in -2 log L by least squares, which counts of little noise do not follow closely
+  // In -2 log L by least squares; if noise is small, the likelihood of quantized readings differs from it.
+  constexpr double kNear = 60;
   constexpr std::size_t kMost = 4;
   std::vector<Minimum> near;
   for (const Minimum& minimum : solution.other_minima) {
@@ -102,10 +103,10 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   return near;
 }
 
-/// The deviances of all minima under the noise that was found, so that they can be compared.
+/// Recomputes the deviances of all minima under the final noise, so that they are comparable.
 void SumAgain(TrajectoryCost& cost, Solution& solution) {
   cost.set_noise(solution.noise);
-  // Of which the judgement asks for the sums next.
+  // Computes all sums, because the judge asks for them next.
   Eigen::MatrixXd sums;
   solution.usable = cost.Sums(solution.parameters, &sums);
   if (solution.usable) solution.sum = sums(sums.rows() - 1, sums.cols() - 1);
@@ -116,7 +117,7 @@ void SumAgain(TrajectoryCost& cost, Solution& solution) {
 
 double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
 
-/// Of Gaussian noise with the likeliest σ, whose square is RSS / N.
+/// Log-likelihood of Gaussian noise with the likeliest σ, whose square is RSS / N.
 double GaussianLogLikelihood(double rss, double samples) {
   return -0.5 * samples * (std::log(2 * kPi * std::max(rss, std::numeric_limits<double>::min()) / samples) + 1);
 }
@@ -136,10 +137,10 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
          densities * std::log(DensityUnit(problem.resolution));
 }
 
-/// Below one resolution rounding errors are no white noise (Widrow & Kollár, Quantization Noise, Cambridge 2008,
-/// section 5.1).
+/// If the residuals are smaller than one resolution, rounding errors are not white noise (Widrow & Kollár, Quantization
+/// Noise, Cambridge 2008, section 5.1).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
-  constexpr double kDrowned = 1;  // resolutions
+  constexpr double kDrowned = 1;  // in resolutions
   if (options.noise) return {*options.noise, IsRobust(options.noise) ? "asked for by --loss" : "asked for by --noise"};
   if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
   const double ratio = residual_std_dev / resolution;
@@ -162,9 +163,9 @@ ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, 
 
 }  // namespace
 
-/// Parameters (Solve) and σ in turn, until σ stays the same. The other minima that came near are solved as well, and
-/// the likeliest wins. Of Gaussian noise nothing is solved again unless priors weigh in. Below kSmallestSigma the
-/// likelihood has no maximum inside, and SamplePosterior has the say.
+/// Estimates parameters (Solve) and σ in turn until σ is constant. Solves from the nearly equal local minima as well
+/// and keeps the likeliest. Gaussian noise needs no further solve unless there are priors. Below kSmallestSigma the
+/// likelihood has no maximum inside the range; SamplePosterior then decides.
 void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
                         Solution& solution) {
   solution.noise = problem.noise;
@@ -191,7 +192,7 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     if (!near.empty()) Alternate(cost, problem, solution);
     SumAgain(cost, solution);
   }
-  // Which the cost knows, unless nothing can be traced there.
+  // The cost has these readings cached, unless the trajectory cannot be computed.
   solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);
   if (solution.usable) solution.log_likelihood = LogLikelihoodOf(problem, solution);
 }

@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-/// A start explains the data when it leaves less than this share of their variance.
+/// A start explains the data if it leaves less than this share of their variance.
 constexpr double kExplained = 0.1;
 
 double Variance(const TrajectoryData& data) {
@@ -24,7 +24,8 @@ std::size_t SamplesBefore(const TrajectoryData& data, double time) {
   return static_cast<std::size_t>(std::upper_bound(data.time.begin(), data.time.end(), time) - data.time.begin());
 }
 
-/// Solves over the samples before each of the times in turn, each from the last; leaves the cost with all samples.
+/// Solves over the samples before each of the times in turn, each from the previous solution. Afterwards the cost uses
+/// all samples again.
 Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
                       const std::vector<double>& times) {
   for (const int k : options.late) options.fixed[k] = true;
@@ -39,7 +40,7 @@ Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution
   return solution;
 }
 
-/// When the motion begins: the hold belongs to no share of it.
+/// Start of the motion: the shares of the motion do not include the hold.
 double MotionStart(const std::vector<double>& parameters, const SolveOptions& options) {
   return options.release_time >= 0 ? parameters[options.release_time] : 0.0;
 }
@@ -51,8 +52,8 @@ std::vector<double> GrowingTimes(double begin, double end, double cycle) {
   return times;
 }
 
-/// How all parameters move when parameter k does and the others follow to keep the cost low: a column of the inverse of
-/// J'J over the free parameters, with a 1 at k; empty where the data do not determine it.
+/// Change of all parameters if parameter k changes by 1 and the others follow to keep the cost low. It is a column of
+/// the inverse of J'J over the free parameters, scaled to 1 at k. Empty if the data do not determine it.
 Eigen::VectorXd ProfileDirection(const LeastSquares& cost, const std::vector<double>& at, int k,
                                  const SolveOptions& options) {
   Eigen::MatrixXd sums;
@@ -70,7 +71,7 @@ Eigen::VectorXd ProfileDirection(const LeastSquares& cost, const std::vector<dou
   return direction.allFinite() ? direction : Eigen::VectorXd();
 }
 
-/// `from` with so much of a direction, within the bounds.
+/// `from` shifted by `shift` times a direction, within the bounds.
 std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift, std::vector<double> from,
                                  const SolveOptions& options) {
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -80,8 +81,8 @@ std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift,
   return from;
 }
 
-/// A start on the other side of the next change in the number of reversals: from a minimum along the profile of dry
-/// friction, weaker (side -1) or stronger (+1); empty when there is none within 20 %.
+/// A start beyond the next change in the number of reversals. It lies along the profile of dry friction, on the weaker
+/// (side -1) or stronger (+1) side of a local minimum. Empty if there is none within 20 %.
 std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double>& from, double side,
                               const SolveOptions& options) {
   constexpr double kFirstShift = 1e-3;
@@ -98,7 +99,7 @@ std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double
   return {};
 }
 
-/// Goes on to the neighbouring minima of a recording that reaches rest, on both sides, as long as they are lower.
+/// Continues to the neighbouring local minima of a recording that reaches rest, on both sides, while they are lower.
 Solution DescendBasins(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
@@ -120,8 +121,8 @@ Solution DescendBasins(LeastSquares& cost, const Solution& found, const SolveOpt
   return best;
 }
 
-/// Whether the pendulum comes to rest, at a minimum or with dry friction 1.2 % to either side along its profile: only
-/// then are there other minima near.
+/// Whether the pendulum comes to rest at a local minimum, or with dry friction 1.2 % to either side along its profile.
+/// Only then are there other local minima nearby.
 bool MayReachRest(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options) {
   constexpr double kShift = 0.012;
   const int k = options.holding_parameter;
@@ -134,15 +135,15 @@ bool MayReachRest(const LeastSquares& cost, const std::vector<double>& parameter
          cost.ComesToRest(ShiftedAlong(direction, -kShift * parameters[k], parameters, options), 0);
 }
 
-/// Solves from `start`; where that does not explain the data, over the first three cycles, then twice as many and so
-/// on. A recording that reaches rest has a minimum per number of half swings before the stop: it is fitted over 30, 60
-/// and 85 percent of the motion first.
+/// Solves from `start`. If that does not explain the data, first solves over three cycles, then over twice as many, and
+/// so on. A recording that reaches rest has one local minimum for each number of half swings before the stop. It is
+/// fitted over 30, 60 and 85 percent of the motion first.
 Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                     const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;
   const double begin = MotionStart(start, options);
-  // Of which Solve asks for the sums next.
+  // Computes all sums, because Solve asks for them next.
   Eigen::MatrixXd sums;
   const bool traced = cost.Sums(start, &sums);
   const int holding = options.holding_parameter;
@@ -159,14 +160,14 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   return Refine(cost, solution, options);
 }
 
-/// A stage of the search ends where it is after so many trajectories, and leaves some to the others.
+/// Limits the trajectories of one stage of the search, so that some remain for the others.
 SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
   constexpr int kMostTraces = 500;
   options.max_traces = std::min(options.max_traces, cost.traces() + kMostTraces);
   return options;
 }
 
-/// Friction parameters that may be held at their bound and leave a simpler law.
+/// Friction parameters that can be fixed at their bound to give a simpler law.
 std::vector<int> Removable(const SolveOptions& options) {
   std::vector<int> removable;
   for (int k = 1; k <= options.last_friction; ++k) {
@@ -176,18 +177,18 @@ std::vector<int> Removable(const SolveOptions& options) {
   return removable.size() > 1 ? removable : std::vector<int>{};
 }
 
-/// Solves without friction parameter k, then lets it go.
+/// Solves with friction parameter k fixed, then frees it.
 Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, int k,
                       const SolveOptions& options) {
   SolveOptions simpler = options;
   simpler.fixed[k] = true;
   const bool search = k == Removable(options).back();
   Solution solution = search ? Search(cost, data, guess, simpler) : Solve(cost, guess(simpler.fixed), simpler);
-  solution.other_minima.clear();  // of the simpler law
+  solution.other_minima.clear();  // they belong to the simpler law
   return Continue(cost, solution, options);
 }
 
-/// Whether the deviance is at most a tenth of what the readings' variance would make it.
+/// Whether the solution explains the data: its deviance is at most a tenth of that of the readings' variance.
 bool IsSmall(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }

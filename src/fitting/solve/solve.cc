@@ -14,10 +14,10 @@
 namespace pendulum {
 namespace {
 
-/// A solve ends when a step changes the cost by a smaller share than this.
+/// A solve ends when a step changes the cost by a share smaller than this.
 constexpr double kSameCost = 1e-10;
 
-/// Indices of the parameters that are not held and stand at a bound.
+/// Indices of the parameters that are not held and lie at a bound.
 std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const SolveOptions& options,
                                  const std::vector<bool>& held) {
   std::vector<std::size_t> indices;
@@ -30,8 +30,8 @@ std::vector<std::size_t> AtBound(const std::vector<double>& parameters, const So
 /// The Gauss-Newton step over the parameters that are not held.
 struct NewtonStep {
   std::vector<int> free;
-  Eigen::VectorXd step;  // empty where the data do not tell them all
-  bool is_last = false;  // it takes away a negligible share of |r|²
+  Eigen::VectorXd step;  // empty if the data do not determine all parameters
+  bool is_last = false;  // it reduces |r|² by a negligible share
 };
 
 NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, const std::vector<double>& parameters) {
@@ -50,9 +50,9 @@ NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, con
   return newton;
 }
 
-/// Ends a solve as soon as a step lands on a bound: Ceres cuts its steps there, and cut steps creep along the bound.
-/// Also as soon as the next step would be the last, which the sums tell that Ceres has just asked for: to find it out
-/// itself it would trace the motion once more.
+/// Ends a solve as soon as a step reaches a bound. Ceres shortens its steps there, and shortened steps move slowly
+/// along the bound. Also ends it as soon as the next step would be the last. That follows from the sums that Ceres just
+/// asked for; Ceres itself would need one more trajectory to find out.
 class EndEarly final : public ceres::IterationCallback {
  public:
   EndEarly(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
@@ -79,23 +79,23 @@ class EndEarly final : public ceres::IterationCallback {
 
 ceres::Solver::Options SolverOptions(int max_iterations, bool several) {
   ceres::Solver::Options solver;
-  // Of several recordings each has few of the parameters.
+  // In a joint fit each recording depends on few of the parameters.
   solver.linear_solver_type = several ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
   solver.max_num_iterations = max_iterations;
-  // Start values of a recording are good: the first step is a whole one, not one that damping keeps 1 % short where two
-  // parameters nearly do the same.
+  // Start values of a recording are good, so the first step is not damped. Damping would leave it 1 % short if two
+  // parameters have nearly the same effect.
   if (!several) solver.initial_trust_region_radius = 1e6;
   solver.function_tolerance = kSameCost;
   solver.gradient_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-14;
   solver.logging_type = ceres::SILENT;
   solver.update_state_every_iteration = true;
-  // A line search along a cut step would cost a trajectory in every iteration.
+  // A line search along a shortened step would need one trajectory per iteration.
   solver.max_num_line_search_step_size_iterations = 0;
   return solver;
 }
 
-/// One run of Ceres over the parameters that are not held; ends at convergence or on a bound.
+/// One run of Ceres over the parameters that are not held. Ends at convergence or at a bound.
 void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -123,8 +123,8 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
   solution.message = summary.message;
 }
 
-/// Parameters that the Gauss-Newton step from here carries to a bound, and which one: a step that Ceres found too
-/// small to make leaves them short of it.
+/// Parameters that the next Gauss-Newton step would move to a bound, and which bound. Ceres does not make a step that
+/// is too small, and so leaves them short of it.
 std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& cost, const SolveOptions& options,
                                                            const std::vector<bool>& held, const Solution& solution) {
   const NewtonStep newton = StepFrom(cost, held, solution.parameters);
@@ -137,7 +137,7 @@ std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& c
   return carried;
 }
 
-/// Of the parameters held at their bound, the one the cost pulls inwards most; -1 when there is none.
+/// Among the parameters held at their bound, the one that the cost pulls inwards most; -1 if there is none.
 int PulledInwards(const LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held,
                   const Solution& solution) {
   Eigen::MatrixXd sums;
@@ -166,13 +166,13 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value) {
   return value >= options.upper[i] ? 1 : 0;
 }
 
-/// An active-set method: a parameter whose step lands on its bound, or would, is held there, and let go when the cost
-/// pulls it inwards at the others' optimum.
+/// An active-set method. A parameter whose step reaches its bound, or would reach it, is held there. It is freed if the
+/// cost pulls it inwards at the optimum of the others.
 Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;
   std::vector<bool> held = options.fixed;
-  // A parameter is held and let go once or twice; one that is so again and again lies on its bound to rounding.
+  // A parameter is held and freed once or twice; one that repeats this lies on its bound to rounding.
   const std::size_t most_runs = 4 * start.size();
   for (std::size_t run = 0; run < most_runs && !cost.is_stopped(); ++run) {
     Run(cost, options, held, solution);

@@ -6,7 +6,7 @@
 namespace pendulum {
 
 double MaxTraceError(const FitProblem& problem, const FitOptions& options) {
-  constexpr double kSmallestError = 1e-12;  // rad; rounding over a long recording comes near it
+  constexpr double kSmallestError = 1e-12;  // rad; near the rounding error of a long recording
   return std::max(std::min(options.search.max_trace_error, 1e-3 * problem.data.scale), kSmallestError);
 }
 

@@ -19,23 +19,23 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-/// From one frequency to the next the phase at the end of the scanned part moves by so many radians.
+/// Phase step [rad] at the end of the scanned part between neighbouring frequencies.
 constexpr double kPhaseStep = 0.6;
 
-/// The first samples tell the frequency well enough for the solver, which goes on to the others.
+/// The first samples determine the frequency well enough for the solver, which then uses the remaining ones.
 constexpr Index kMostScanSamples = 150;
 
 constexpr std::size_t kMostStarts = 12;
 
-/// How the amplitude falls over the scanned part: to a share `end` of its first value, exponentially (viscous friction)
-/// or along a line (dry friction; below 0 it stops before the end).
+/// Decay of the amplitude over the scanned part: to a share `end` of its first value, exponentially (viscous friction)
+/// or linearly (dry friction). If a linear `end` is below 0, the motion stops before the end.
 struct Envelope {
   bool exponential;
   double end;
 
-  /// At `part` of the scanned time, over the first amplitude.
+  /// Amplitude relative to the first amplitude at `part` of the scanned time.
   double At(double part) const {
-    constexpr double kLeast = 0.02;  // what has stopped has a phase no more
+    constexpr double kLeast = 0.02;  // a pendulum at rest has no phase
     return std::max(exponential ? std::pow(end, part) : 1 - (1 - end) * part, kLeast);
   }
 };
@@ -44,14 +44,15 @@ constexpr std::array kEnvelopes = {Envelope{true, 0.95}, Envelope{true, 0.75},  
                                    Envelope{true, 0.25}, Envelope{true, 0.08},  Envelope{false, 0.5},
                                    Envelope{false, 0.1}, Envelope{false, -0.5}, Envelope{false, -2.0}};
 
-/// A least squares at one frequency.
+/// A least-squares fit at one frequency.
 struct Candidate {
   double frequency = 0;  ///< rad/s
   Envelope envelope = kEnvelopes[0];
-  Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Of A cos φ, A sin φ and 1 with A = 1 at first.
+  Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Of A cos φ, A sin φ and 1; A = 1 at the first sample.
   double rss = kUnbounded;
 
-  double amplitude() const { return std::hypot(coefficients[0], coefficients[1]); }  ///< Of the reading, at first.
+  /// Amplitude of the reading at the first sample.
+  double amplitude() const { return std::hypot(coefficients[0], coefficients[1]); }
 };
 
 /// The samples to scan.
@@ -67,15 +68,15 @@ class Scan {
   double duration() const { return time_[time_.size() - 1]; }
   double half_range() const { return 0.5 * (value_.maxCoeff() - value_.minCoeff()); }
 
-  /// The best envelope at each frequency, when the reading's amplitude is about `amplitude` at first; unless it is
-  /// stopped.
+  /// The best envelope at each frequency, for a first reading amplitude of about `amplitude`. Incomplete after a stop
+  /// request.
   std::vector<Candidate> At(const std::vector<double>& frequencies, double amplitude) const {
     std::vector<Candidate> best(frequencies.size());
     for (const Envelope& envelope : kEnvelopes) {
       const ArrayXd decay = (time_ / duration()).unaryExpr([&](double part) { return envelope.At(part); });
       ArrayXd warped;
       for (std::size_t i = 0; i < frequencies.size() && !stop_.stop_requested(); ++i) {
-        // The amplitude that belongs to a rate depends on the frequency, that of an angle does not.
+        // The amplitude that corresponds to a rate depends on the frequency; that of an angle does not.
         if (i == 0 || quantity_ == Quantity::kRate) warped = WarpedTime(amplitude * decay, frequencies[i]);
         Candidate trial{frequencies[i], envelope};
         Solve(decay, frequencies[i] * warped, trial);
@@ -88,7 +89,7 @@ class Scan {
  private:
   static Index Count(const Recording& recording) { return std::min(recording.size(), kMostScanSamples); }
 
-  /// ∫ dt / PeriodRatio, s: the phase at 1 rad/s. amplitude: of the reading.
+  /// ∫ dt / PeriodRatio [s]: the phase at 1 rad/s. `amplitude` is in units of the reading.
   ArrayXd WarpedTime(const ArrayXd& amplitude, double frequency) const {
     if (gravity_ == Gravity::kLinear) return time_;
     const ArrayXd speed = amplitude.unaryExpr(
@@ -101,7 +102,7 @@ class Scan {
   }
 
   void Solve(const ArrayXd& decay, const ArrayXd& phase, Candidate& candidate) const {
-    constexpr double kRidge = 1e-6;  // sampled once a cycle two of the columns are one
+    constexpr double kRidge = 1e-6;  // if sampled once per cycle, two columns are equal
     Eigen::MatrixX3d basis(time_.size(), 3);
     basis << decay * phase.cos(), decay * phase.sin(), ArrayXd::Ones(time_.size());
     Eigen::Matrix3d normal = basis.transpose() * basis;
@@ -118,7 +119,7 @@ class Scan {
 };
 
 std::vector<double> Grid(const FrequencyRange& range, double duration) {
-  constexpr double kMostFrequencies = 20'000;  // beyond, the grid is coarser: such recordings tell no frequency
+  constexpr double kMostFrequencies = 20'000;  // more need a coarser grid: such recordings do not determine a frequency
   const double step = std::max(kPhaseStep / duration, (range.high - range.low) / kMostFrequencies);
   const auto count = static_cast<std::size_t>(std::ceil(std::max(range.high - range.low, 0.0) / step));
   std::vector<double> grid;
@@ -129,7 +130,8 @@ std::vector<double> Grid(const FrequencyRange& range, double duration) {
   return grid;
 }
 
-/// Local minima over frequency, the best first; what explains next to nothing only if nothing does better.
+/// Local minima over frequency, the best first. Minima that explain almost nothing are kept only if there are no
+/// others.
 std::vector<Candidate> LocalMinima(const std::vector<Candidate>& candidates) {
   std::vector<Candidate> minima;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -142,7 +144,7 @@ std::vector<Candidate> LocalMinima(const std::vector<Candidate>& candidates) {
   return minima;
 }
 
-/// The turning points that a candidate would have had: amplitudes of reading at half periods.
+/// The turning points that a candidate predicts: amplitudes of the reading, half a period apart.
 HalfSwingTable TurnsOf(const Candidate& candidate, Quantity quantity, Gravity gravity, double duration) {
   constexpr double kMostHalfSwings = 200;
   HalfSwingTable table;
@@ -158,7 +160,7 @@ HalfSwingTable TurnsOf(const Candidate& candidate, Quantity quantity, Gravity gr
   return table;
 }
 
-/// Angle and rate at the first sample, from the reading and its slope there as EstimateStartValues has it.
+/// Angle and rate at the first sample from the reading and its slope there, as in EstimateStartValues.
 std::array<double, 2> InitialState(const Candidate& candidate, Quantity quantity, Gravity gravity, double amplitude) {
   const double ratio = gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0;
   const double reading = candidate.coefficients[0];
@@ -188,10 +190,11 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
 
 }  // namespace
 
-/// Scanned twice: the samples' range tells the amplitude roughly, the best least squares well.
+/// Scans twice. The first scan estimates the amplitude from the range of the samples, the second takes it from the best
+/// fit.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop) {
-  constexpr double kMostAmplitude = 3;  // half ranges: samples seldom miss more of the swing
+  constexpr double kMostAmplitude = 3;  // half ranges: samples rarely miss a larger part of the swing
   const Scan scan(recording, model.gravity, stop);
   const std::vector<double> frequencies = Grid(range, scan.duration());
   const std::vector<Candidate> rough = scan.At(frequencies, scan.half_range());

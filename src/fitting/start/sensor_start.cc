@@ -16,13 +16,13 @@
 namespace pendulum {
 namespace {
 
-/// Largest amplitudes [rad] that readings in an unknown unit may stand for.
+/// Assumed largest amplitudes [rad] for readings in an unknown unit.
 constexpr std::array kAmplitudes = {0.15, 0.4, 0.8, 1.3};
 
-/// A view that would go beyond this [rad] is cut off there.
+/// Larger angles in a view are clipped to this [rad].
 constexpr double kLargestView = 1.5;
 
-/// What the options say of a parameter: its value, or where it is likely.
+/// The value that the options give for a parameter: fixed, initial, or the mean of a prior.
 std::optional<double> Known(const FitOptions& options, const ParameterInfo& info) {
   if (const auto found = options.fixed.find(info.name); found != options.fixed.end()) return found->second;
   if (const auto found = options.initial.find(info.name); found != options.initial.end()) return found->second;
@@ -30,17 +30,17 @@ std::optional<double> Known(const FitOptions& options, const ParameterInfo& info
   return std::nullopt;
 }
 
-/// The direction of an accelerometer: across the rod, or along it.
+/// Nominal direction of an accelerometer's axis: across the rod, or along it.
 double AxisOf(const Recording& recording) { return IsRadial(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
 
-/// The readings' view, with what its turning points tell.
+/// The readings' view and the results from its turning points.
 struct Turns {
   Recording view;
   double zero = 0;       ///< Of the view.
-  double amplitude = 0;  ///< The largest, of the view.
-  double frequency = 0;  ///< rad/s, of small swings if those of the recording were.
+  double amplitude = 0;  ///< The largest amplitude, of the view.
+  double frequency = 0;  ///< rad/s, as if the swings of the recording were small.
 
-  /// ω0, if the largest amplitude is that angle.
+  /// ω0, if the largest amplitude is `angle`.
   double NaturalFrequency(double angle) const { return frequency * PeriodRatio(angle); }
 };
 
@@ -56,13 +56,13 @@ Result<Turns> FindTurnsOf(const Recording& recording) {
   return turns;
 }
 
-/// Any of the amplitudes; one alone where the scale is known.
+/// The amplitudes to try; only `known` if the scale is known.
 std::vector<double> AmplitudesOf(std::optional<double> known) {
   if (known) return {std::clamp(*known, 0.01, kLargestView)};
   return {kAmplitudes.begin(), kAmplitudes.end()};
 }
 
-/// (reading - zero) / unit as the sine of an angle.
+/// Interprets (reading - zero) / unit as the sine of an angle.
 Recording AsSine(Recording view, double zero, double unit) {
   const double most = std::sin(kLargestView);
   for (double& value : view.value) value = std::asin(std::clamp((value - zero) / unit, -most, most));
@@ -101,7 +101,7 @@ std::vector<SensorStart> StartsOfRate(const Recording& recording, const Turns& t
   return starts;
 }
 
-/// Across the rod: k ((g - r ω0²) sin θ - r friction); friction is little.
+/// Across the rod: k ((g - r ω0²) sin θ - r friction), where friction is neglected.
 std::vector<SensorStart> StartsAcross(const SensorModel& sensor, const Turns& turns, const FitOptions& options) {
   const std::optional<double> known = Known(options, kRadius);
   const double scale = Known(options, kAccelerationScale).value_or(1);
@@ -197,7 +197,7 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
         info.name == kRadius.name || info.name == kRateScale.name || info.name == kAccelerationScale.name;
     const std::optional<double> value = Known(options, info);
     if (!is_size || !value) continue;
-    const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity, at the pivot
+    const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity is measured at the pivot too
     if (*value == 0 ? shows_at_0 : *value >= info.lower) continue;
     return Error(StatusCode::kInvalidArgument, std::string(info.name) + " cannot be " + NumberText(*value) +
                                                    ": with that the sensor would show no motion; it must be " +

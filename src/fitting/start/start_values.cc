@@ -19,14 +19,14 @@ namespace {
 
 using Eigen::Index;
 
-/// What the held part of a recording says.
+/// Properties of the held part of a recording.
 struct Hold {
   double angle = 0;           ///< rad, release angle
   double release_time = 0;    ///< s, on the recording's clock
   double latest_release = 0;  ///< s, on the recording's clock
 };
 
-/// The recording about its zero, with its time scale.
+/// The recording relative to its zero, with its time scale.
 struct Centred {
   const Recording& recording;
   const HalfSwingTable& table;
@@ -37,7 +37,7 @@ struct Centred {
   double Period(double amplitude) const {
     return 2 * kPi / natural_frequency * (table.gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
   }
-  /// The first sample from `from` on whose reading is on the other side of zero than `sign`; N if there is none.
+  /// The first sample from `from` on whose sign differs from `sign`; N if there is none.
   Index FirstOnOtherSide(Index from, double sign) const {
     while (from < recording.size() && Reading(from) * sign >= 0) ++from;
     return from;
@@ -56,8 +56,8 @@ Index SampleAt(const Recording& recording, double time) {
   return std::lower_bound(recording.time.begin(), recording.time.end(), time) - recording.time.begin();
 }
 
-/// Where the fall from the hold is beyond doubt, and how long after the release that is: for an angle the first passage
-/// through zero, a quarter period; for a rate the first turn, half a period.
+/// An instant at which the pendulum certainly falls, and its delay after the release. For an angle it is the first zero
+/// crossing (a quarter period), for a rate the first turn (half a period).
 struct Fall {
   double time;
   double periods;
@@ -85,9 +85,9 @@ std::optional<Fall> FirstFall(const Centred& data) {
   return Fall{time, is_rate ? 0.5 : 0.25, is_rate ? -sign * amplitude : sign * amplitude};
 }
 
-/// The held part at the start, if there is one: the reading stays within 5 % of the amplitude and five standard
-/// deviations of the noise until the release that the first fall dates, for a tenth of a period or longer. With `asked`
-/// whatever lies before that release.
+/// The held part at the start, if there is one. The first fall dates the release. Until then, for at least a tenth of a
+/// period, the reading must stay within 5 % of the amplitude plus five standard deviations of the noise. If `asked` is
+/// true, any samples before the release are accepted.
 std::optional<Hold> FindHold(const Centred& data, bool asked) {
   const std::optional<Fall> fall = FirstFall(data);
   if (!fall) return std::nullopt;
@@ -97,13 +97,13 @@ std::optional<Hold> FindHold(const Centred& data, bool asked) {
   constexpr Index kFewest = 3;
   const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest;
   if (held < 1 || (is_short && !asked)) return std::nullopt;
-  // Strong friction makes the release look later than it was: the first part of the hold speaks for it.
+  // Strong friction makes the release appear later than it was, so only the first part of the hold is used.
   const Index surely_held = std::max<Index>(7 * held / 10, 1);
   const auto [mean, spread] = MeanAndSpread(data, surely_held);
   const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
   const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
   if (spread > band && !asked) return std::nullopt;
-  // A pendulum at rest that is pushed was not released: the hold must be as far out as the first swing goes, or nearly.
+  // A pushed pendulum is not released: the held angle must be close to the amplitude of the first swing.
   const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
   if (is_push && !asked) return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
@@ -125,8 +125,8 @@ std::pair<double, double> InitialReading(const Centred& data) {
   return {c[0], c[1]};
 }
 
-/// Angle and rate at the first sample of a recording that begins in motion. Seen by a rate sensor the slope tells the
-/// sine of the angle, and what the rate lacks of its next peak the cosine.
+/// Angle and rate at the first sample of a recording that begins in motion. For a rate sensor, the slope gives the sine
+/// of the angle; the difference between the rate and its next peak gives the cosine.
 std::pair<double, double> InitialState(const Centred& data) {
   const auto [reading, slope] = InitialReading(data);
   if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
@@ -134,7 +134,7 @@ std::pair<double, double> InitialState(const Centred& data) {
   const double torque = -slope / square;  // θ'' = -ω0² g(θ)
   if (data.table.gravity == Gravity::kLinear) return {torque, reading};
   const double peak = data.table.half_swings.front().before;
-  const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // of the energy at the bottom
+  const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // from the kinetic energy at the bottom
   return {std::atan2(torque, cosine), reading};
 }
 
@@ -146,8 +146,8 @@ double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
 
 }  // namespace
 
-/// A held part gives release angle (its mean) and release time (a quarter period before the first crossing; half a
-/// period before the first turn of a rate); otherwise a parabola through the first samples gives angle and rate.
+/// A held part gives the release angle (its mean) and the release time: a quarter period before the first crossing, or
+/// half a period before the first turn of a rate. Otherwise a parabola through the first samples gives angle and rate.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
                                         std::optional<StartKind> choice) {
   Result<HalfSwingTable> table = TabulateHalfSwings(recording);

@@ -23,7 +23,7 @@ struct Run {
   double zero = 0;  // unit of the residuals
 };
 
-/// Whether rows were missed between edges i - 1 and i of those: it took far longer than before and behind.
+/// Whether rows are missing between edges i - 1 and i: the interval is far longer than its two neighbours.
 bool IsGap(const Eigen::VectorXd& time, const std::vector<Index>& edges, std::size_t i) {
   constexpr double kLonger = 1.6;
   if (i < 2 || i + 1 >= edges.size()) return false;
@@ -32,7 +32,7 @@ bool IsGap(const Eigen::VectorXd& time, const std::vector<Index>& edges, std::si
 }
 
 std::vector<Run> RunsOf(const Recording& recording) {
-  constexpr std::size_t kFewest = 3;  // edges that tell a zero of their own
+  constexpr std::size_t kFewest = 3;  // edges needed to determine a zero
   const Eigen::VectorXd directions = EdgeDirections(recording);
   std::vector<Index> edges;
   for (Index i = 0; i < directions.size(); ++i) {
@@ -72,7 +72,7 @@ RunRegression Regress(const FitResiduals& data, const std::vector<Run>& runs) {
   return {qr.solve(residual).cwiseQuotient(scale), residual.norm() / std::sqrt(static_cast<double>(size))};
 }
 
-/// Each run's mean of the residuals, once the parameters explain what they can of what differs within runs.
+/// The mean residual of each run, after the parameters are fitted to the differences within runs.
 void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
   const Eigen::VectorXd change = Regress(data, runs).change;
   for (Run& run : runs) {
@@ -80,7 +80,7 @@ void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
   }
 }
 
-/// What the zeros of two successive runs differ by, in counts, and how many counts that is beside the lag.
+/// Difference between the zeros of two successive runs in counts, and the whole number of counts without the lag.
 struct Step {
   double turn = 0;  // change of direction: 2, -2, or 0 within one
   double difference = 0;
@@ -89,8 +89,8 @@ struct Step {
   double Off() const { return difference - turn * lag - whole; }
 };
 
-/// The lag around each step: half of what zeros of runs upwards stand above those downwards, less the counts that were
-/// lost. A motion that is late against the readings, as a law makes it that does not quite hold, moves it slowly.
+/// The lag near each step: half of the difference between the zeros of upward and downward runs, minus the lost counts.
+/// A law that does not quite fit makes the motion late relative to the readings, so the lag changes slowly.
 void FindLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
   std::vector<double> lags(steps.size(), 0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -105,7 +105,8 @@ void FindLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].lag = lags[k];
 }
 
-/// Most turning points lose nothing, so that a median begins; what is left of whole counts then follows more closely.
+/// Most turning points lose no counts, so the first pass uses a median; later passes use the remainder after whole
+/// counts.
 std::vector<Step> CountSteps(const std::vector<Run>& runs, double resolution) {
   constexpr std::size_t kNear = 12, kNearer = 4;  // steps to either side
   constexpr int kPasses = 4;
@@ -130,7 +131,7 @@ RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& 
 
 std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges) {
   constexpr double kWithin = 0.35;   // counts
-  constexpr double kStdError = 0.1;  // counts, of what is not within that
+  constexpr double kStdError = 0.1;  // counts, for steps that are not within kWithin
   std::vector<Run> runs = RunsOf(edges);
   if (runs.size() < 2) return {};
   FindZeros(residuals, runs);

@@ -21,14 +21,14 @@ using Eigen::Index;
 constexpr int kMostJumps = 60;
 constexpr int kMostStepTraces = 200;
 
-/// What a fit to readings that are moved back leaves of them, and of those that are not.
+/// The residuals of the original readings about a fit to the corrected readings.
 struct Left {
   double rms = 0;
-  bool lacks = false;  // more than noise
+  bool lacks = false;  // more misfit than noise
   FitResiduals residuals;
 };
 
-/// What the recording has that readings at these parameters have not; false where there are none.
+/// Computes the residuals of the recording at these parameters. Returns false if the trajectory cannot be computed.
 bool LeaveOver(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
                const std::vector<double>& parameters, FitResiduals& residuals) {
   Eigen::VectorXd readings;
@@ -40,8 +40,8 @@ bool LeaveOver(const Recording& recording, const FitProblem& problem, const Traj
   return true;
 }
 
-/// Goes on to where the edges within runs are told best, whatever the counts between these: Gauss's steps, halved while
-/// they do not lead down.
+/// Moves the parameters to the least-squares fit of the edges within runs, regardless of the counts between runs. Uses
+/// Gauss-Newton steps, halved until the sum decreases.
 void SettleWithinRuns(const Recording& edges, const FitProblem& problem, const TrajectoryCost& cost,
                       std::vector<double> parameters, FitResiduals& residuals) {
   constexpr int kMostSteps = 12, kMostHalves = 5;
@@ -49,7 +49,7 @@ void SettleWithinRuns(const Recording& edges, const FitProblem& problem, const T
   RunRegression now = RegressWithinRuns(residuals, edges);
   for (int step = 0, halves = 0; step < kMostSteps && halves < kMostHalves; ++step) {
     std::vector<double> there = parameters;
-    // A bound would stand in the way of the others: what is found here is no estimate.
+    // Bounds are ignored: they would restrict the other parameters, and this result is not an estimate.
     for (std::size_t i = 0; i < there.size(); ++i) there[i] += now.change[static_cast<Index>(i)];
     FitResiduals left;
     const bool traced = LeaveOver(edges, problem, cost, there, left);
@@ -96,13 +96,13 @@ struct StepInCounts {
   }
 };
 
-/// Not a whole number of counts without levels, nor with a range, which would move along with the readings.
+/// Not a whole number without a resolution, or with a range, which would have to shift with the readings.
 StepInCounts InCounts(const ZeroStep& step, const Recording& recording) {
   if (!(recording.resolution > 0) || recording.range) return {};
   return {step.size / recording.resolution, step.std_error / recording.resolution};
 }
 
-/// Whether a step is more than rounding, of readings or of numbers.
+/// Whether a step is larger than the rounding of readings or numbers.
 bool Matters(const ZeroStep& step, const Recording& recording) {
   constexpr double kLeastCount = 0.75;
   constexpr double kSurely = 5;
@@ -125,7 +125,8 @@ bool AreSame(const ZeroStep& one, const ZeroStep& other) {
   return one.sample == other.sample && std::abs(one.size - other.size) < 0.2 * other.std_error;
 }
 
-/// The first sample from which on two searches do not agree, or a step is not of whole counts; nothing where all are.
+/// The first sample at which two searches disagree or a step is not a whole number of counts; std::nullopt if there is
+/// none.
 std::optional<Index> FirstDoubtful(const Recording& recording, const std::vector<ZeroStep>& before,
                                    const std::vector<ZeroStep>& now) {
   std::optional<Index> first;
@@ -167,7 +168,7 @@ std::string Jumps(const Recording& recording, const std::vector<ZeroStep>& steps
 bool MayJump(const FitReport& fit) {
   constexpr double kDeviations = 4;
   constexpr double kLeastCount = 0.4;
-  constexpr double kRounding = 1e-9;  // of the swing: residuals of numbers, not of a model
+  constexpr double kRounding = 1e-9;  // of the swing: rounding errors of the numbers, not of a model
   const Index count = fit.residual.size();
   if (fit.quantity != Quantity::kAngle || count < 2) return false;
   const double mean = fit.residual.mean();
@@ -178,7 +179,7 @@ bool MayJump(const FitReport& fit) {
     sum += fit.residual[i] - mean;
     const auto before = static_cast<double>(i + 1), after = static_cast<double>(count - i - 1);
     const double weight = before * after / static_cast<double>(count);
-    // Readings that hardly scatter repeat their rounding throughout a hold.
+    // With very little noise, readings repeat the same rounding error throughout a hold.
     const double least = std::max(kDeviations * scatter / std::sqrt(weight), kLeastCount * fit.noise.resolution);
     if (std::abs(sum) > least * weight) return true;
   }
@@ -187,15 +188,15 @@ bool MayJump(const FitReport& fit) {
 
 namespace {
 
-/// Steps that fit and search agree upon, with the readings they lead to.
+/// Steps on which fit and search agree, and the readings corrected by them.
 struct Settled {
   std::vector<ZeroStep> steps;
   Recording corrected;
   std::optional<Index> doubtful;  // sample
-  bool explain = false;           // what the fit lacked, or a good part of it
+  bool explain = false;           // the steps explain at least a good part of the misfit
 };
 
-/// Fits and looks for steps in turn. Nothing where a fit fails.
+/// Alternates between fitting and searching for steps. Returns std::nullopt if a fit fails.
 std::optional<Settled> SettleSteps(const Recording& recording, const FitOptions& options) {
   constexpr int kMostRounds = 8;
   constexpr double kGoodPart = 0.9;
@@ -249,7 +250,7 @@ std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOpti
 
 namespace {
 
-/// Errors of readings about several zeros are none.
+/// If readings have several zeros, the errors of the fit are not valid.
 void WithdrawJumping(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = why;
@@ -260,7 +261,7 @@ void WithdrawJumping(const std::string& why, FitReport& fit) {
 }  // namespace
 
 void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit) {
-  // Of events a misfit hides nothing: what lasts between two edges is a zero's.
+  // For events, a misfit cannot hide a jump: a lasting offset between two edges is a step of the zero.
   const bool may_tell =
       fit.noise.family == NoiseFamily::kEdges || (!lacks && fit.noise.family != NoiseFamily::kQuantized);
   if (!jumps && may_tell && MayJump(fit)) {

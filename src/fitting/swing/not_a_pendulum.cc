@@ -19,7 +19,7 @@ double NaturalFrequencyOf(const FitReport& report) {
   return found == report.derived.end() ? 0 : found->estimate;
 }
 
-/// The first swings, which are the largest, in so many samples that the line of a tenth of a period can be told.
+/// The first and largest swings, with enough samples to identify a mode with a tenth of the period.
 Recording FirstSwings(const Recording& recording, const FitReport& report) {
   constexpr Eigen::Index kMostSamples = 3000;
   constexpr double kPerPeriod = 24;
@@ -27,7 +27,7 @@ Recording FirstSwings(const Recording& recording, const FitReport& report) {
   return Excerpt(recording, kMostSamples, std::max(kPerPeriod * periods_per_second, 1e-9), false);
 }
 
-/// A fit of the richest friction with one law of gravity, or nothing when it cannot be fitted.
+/// A fit of the richest friction with one law of gravity. Returns std::nullopt if it fails.
 std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity, const std::stop_token& stop) {
   FitOptions options;
   options.model = "drag";
@@ -49,10 +49,10 @@ bool DescribesAll(const FitReport& report) {
   });
 }
 
-/// A mass on a spring swings with one period at every amplitude. pendulum: a fit with sine gravity.
+/// A mass on a spring has the same period at every amplitude. pendulum: a fit with sine gravity.
 std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum,
                                     const std::stop_token& stop) {
-  constexpr double kSmallest = 0.2;  // rad; below it the two can hardly be told apart
+  constexpr double kSmallest = 0.2;  // rad; for smaller amplitudes the two models hardly differ
   constexpr double kMuchLess = 0.7;
   constexpr double kSurely = 30;
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
@@ -71,15 +71,15 @@ std::optional<std::string> IsLinear(const Recording& recording, const FitReport&
          " rad (rms), a pendulum " + NumberText(left, 3) + " rad; --model linear describes the former";
 }
 
-/// One frequency's share of the residuals.
+/// A frequency and its share of the residuals.
 struct Line {
   double frequency = 0;  // rad/s
   double share = 0;      // of their variance
 };
 
-/// The strongest line among the frequencies up to ten times the pendulum's own, by Scargle's periodogram without its
-/// phase (Astrophys. J. 263:835, 1982), and the share of all within a fifth of it, for a mode that decays is no sharp
-/// line.
+/// The strongest line at frequencies up to ten times the pendulum's own. Uses Scargle's periodogram without its phase
+/// (Astrophys. J. 263:835, 1982). The share includes all lines within a fifth of it, because a decaying mode is not a
+/// sharp line.
 Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
   constexpr int kMostFrequencies = 1000;
   constexpr double kWidth = 0.2;
@@ -89,7 +89,7 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
   const double independent = 2 * kPi / t[count - 1];
   const double spacing = std::max(independent, 10 * natural / kMostFrequencies);
   std::vector<Line> lines;
-  // Beyond half the sampling rate there is nothing but mirror images.
+  // Above half the sampling rate there are only mirror images.
   const double highest = std::min(10 * natural, 0.5 * independent * static_cast<double>(count - 1));
   for (double frequency = spacing; frequency < highest; frequency += spacing) {
     const Eigen::ArrayXd phase = frequency * t;

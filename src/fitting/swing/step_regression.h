@@ -16,7 +16,7 @@
 
 namespace pendulum {
 
-/// Means over bins of neighbouring samples, about a hundred in a period. For M bins.
+/// Means over bins of neighbouring samples, about a hundred bins per period. M bins.
 struct Bins {
   std::vector<Eigen::Index> first;       // M + 1: bin i has samples first[i]..first[i + 1] - 1
   Eigen::VectorXd time, residual, rate;  // M, as in FitResiduals
@@ -24,7 +24,7 @@ struct Bins {
   std::vector<Stretch> stretches;        // of bins, without gaps in time
 };
 
-/// Where bins begin, and which of them follow each other without a gap in time.
+/// Divides the samples into bins, and groups the bins into stretches without a gap in time.
 inline Bins DivideIntoBins(const FitResiduals& data) {
   constexpr double kPerPeriod = 100;
   constexpr double kGap = 0.25;  // of a period
@@ -72,17 +72,17 @@ inline Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::
   return all;
 }
 
-/// Residuals explained by K columns and an autoregression.
+/// The result of a regression of residuals on K columns with an autoregression.
 struct Explained {
   std::vector<double> memory;       // φ_1..φ_p
   Eigen::MatrixXd basis;            // M x K, orthonormal: spans the whitened columns
-  Eigen::VectorXd rest;             // M, whitened, what these leave; 0 where a stretch begins
+  Eigen::VectorXd rest;             // M, whitened remaining residuals; 0 where a stretch begins
   Eigen::VectorXd size, std_error;  // K
   double sigma = 0;                 // of `rest`
-  double criterion = 0;             // -2 log L and what the order costs
+  double criterion = 0;             // -2 log L plus the penalty for the order
 };
 
-/// Generalised least squares with the residuals' own memory.
+/// Generalized least squares with the residuals' own autocorrelation.
 class StepRegression {
  public:
   explicit StepRegression(const FitResiduals& data) : bins_(MakeBins(data)) {
@@ -96,7 +96,7 @@ class StepRegression {
 
   Eigen::Index size() const { return bins_.time.size(); }
 
-  /// Whether there are samples to tell parameters, memory and a step from.
+  /// Whether there are enough samples to distinguish parameters, autocorrelation and a step.
   bool IsEnough() const { return kept_.sum() > 5.0 * static_cast<double>(bins_.jacobian.cols() + 1); }
 
   const Bins& bins() const { return bins_; }
@@ -115,7 +115,7 @@ class StepRegression {
     return explained;
   }
 
-  /// The same of residuals without memory.
+  /// The same for residuals without autocorrelation.
   Explained ExplainAsWhite(const Eigen::MatrixXd& columns) const {
     Explained explained;
     Regress(columns, &explained);
@@ -123,10 +123,10 @@ class StepRegression {
     return explained;
   }
 
-  /// The bin where one step more explains most, with that memory; -1: none.
+  /// The bin where one additional step explains most, for the given autocorrelation; -1: none.
   Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
-    constexpr Eigen::Index kEdge = 3;    // bins on either side of the recording
-    constexpr double kToldApart = 1e-6;  // of a step, beside the columns
+    constexpr Eigen::Index kEdge = 3;    // excluded bins at either end of the recording
+    constexpr double kToldApart = 1e-6;  // share of a step that the columns do not explain
     constexpr double kClearly = 6;       // in -2 log L
     Explained explained;
     explained.memory = std::move(memory);
@@ -145,7 +145,7 @@ class StepRegression {
       most = product[i] * product[i] / norm[i];
       best = i;
     }
-    // Samples are lost in gaps, and counts with them: such a place is taken unless another tells clearly more.
+    // Samples, and counts with them, are lost in gaps. Such a place is preferred unless another is clearly better.
     for (const Stretch& stretch : bins_.stretches) {
       const Eigen::Index i = stretch.begin;
       const bool holds_best = i >= kEdge && i < best && best < i + stretch.size;
@@ -156,7 +156,7 @@ class StepRegression {
   }
 
  private:
-  /// The order of least Schwarz criterion, by Burg's method.
+  /// The autoregression with the smallest Schwarz criterion, by Burg's method.
   std::vector<double> BestMemory(const Eigen::VectorXd& residual) const {
     const std::vector<double> reflection = ReflectionCoefficients(residual, bins_.stretches, longest_);
     const double samples = kept_.sum();
@@ -191,7 +191,7 @@ class StepRegression {
     explained->std_error = explained->sigma * RootVariances(qr).cwiseQuotient(scale);
   }
 
-  /// Standard errors of the coefficients at unit variance; infinite where a column tells nothing beside the others.
+  /// Standard errors of the coefficients for unit variance; infinite if a column depends on the others.
   static Eigen::VectorXd RootVariances(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
     const Eigen::Index rank = qr.rank();
     const Eigen::MatrixXd root = qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
@@ -201,14 +201,14 @@ class StepRegression {
     return errors;
   }
 
-  /// What the memory makes of a step: 1, 1 - φ_1, 1 - φ_1 - φ_2, ...
+  /// The whitened step of an autoregression: 1, 1 - φ_1, 1 - φ_1 - φ_2, ...
   static std::vector<double> Rise(const std::vector<double>& memory) {
     std::vector<double> rise = {1};
     for (const double phi : memory) rise.push_back(rise.back() - phi);
     return rise;
   }
 
-  /// Σ_t rise(t - i) value_t for each i, the rise staying as it ends.
+  /// Σ_t rise(t - i) value_t for each i; the rise stays at its last value.
   Eigen::VectorXd Along(const std::vector<double>& rise, const Eigen::VectorXd& value) const {
     Eigen::VectorXd sum(size());
     double after = 0;

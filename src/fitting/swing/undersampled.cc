@@ -19,27 +19,27 @@ namespace {
 
 using Eigen::Index;
 
-/// No pendulum whose motion is recorded is shorter than 3 cm.
+/// No recorded pendulum is shorter than 3 cm.
 constexpr double kFastestHz = 3;
 
-/// A difference of -2 log L that three standard deviations make.
+/// A difference of -2 log L that corresponds to three standard deviations.
 constexpr double kNearlyAsWell = 9;
 
-/// One that no misfit of a slightly wrong law makes either: ten standard deviations.
+/// A difference that even the misfit of a slightly wrong law does not cause: ten standard deviations.
 constexpr double kFar = 100;
 
 constexpr double kTurn = 2 * kPi;
 
-/// Of a fit that is only compared: those that explain the readings need tens.
+/// For fits that are only compared: fits that explain the readings need tens.
 constexpr int kMostAliasTraces = 300;
 
-/// Where a recording's frequency may lie.
+/// The frequencies that a recording may have.
 struct Allowed {
   FrequencyRange range;  ///< rad/s
-  bool bounded = false;  ///< By the rig or the user; else by what pendulums there are.
+  bool bounded = false;  ///< By the rig or the user; otherwise by the range of real pendulums.
 };
 
-/// rad/s, small swings, of an inertia as the options have it.
+/// Frequency of small swings in rad/s for an inertia in the units of the options.
 double FrequencyOf(double inertia, const FitOptions& options) {
   return std::sqrt((options.rig ? options.rig->gravity_torque.value : 1.0) / inertia);
 }
@@ -71,8 +71,8 @@ Allowed AllowedFrequencies(const Recording& used, const FitOptions& options) {
   return allowed;
 }
 
-/// Leaves out the readings at first that stay put, if they do: a release between two samples cannot be dated. The first
-/// may be one of them whatever the second is.
+/// Removes constant readings at the start, because a release between two samples cannot be dated. The first reading may
+/// belong to the hold even if the second does not.
 void LeaveOutHold(Recording& used, FreeSwing& swing) {
   const double range = used.value.maxCoeff() - used.value.minCoeff();
   const double band = 0.05 * range + 2 * used.resolution;
@@ -92,7 +92,7 @@ void LeaveOutHold(Recording& used, FreeSwing& swing) {
   used.value = used.value.tail(left).eval();
 }
 
-/// A fit from one of the scan's minima.
+/// A fit from one local minimum of the scan.
 struct Alias {
   StartValues start;
   FitReport fit;
@@ -100,10 +100,10 @@ struct Alias {
   double likelihood() const { return fit.statistics.log_likelihood; }
 };
 
-/// All minima whose frequency is allowed, the likeliest first, each once.
+/// Fits from all local minima with a permitted frequency, the likeliest first, without duplicates.
 Result<std::vector<Alias>> FitAliases(const Recording& used, const Allowed& allowed, FitOptions options) {
   constexpr double kSame = 0.1;     // cycles over the recording
-  constexpr double kBeyond = 1.02;  // a range is no exact bound
+  constexpr double kBeyond = 1.02;  // the limits of a range are not exact bounds
   Result<MotionModel> model = FindMotionModel(options.model);
   if (!model) return tl::unexpected(model.error());
   model->gravity = options.gravity.value_or(model->gravity);
@@ -145,7 +145,7 @@ std::string ListOf(const std::vector<const Alias*>& aliases) {
   return list;
 }
 
-/// The likeliest and those that explain the readings nearly as well.
+/// The likeliest fit and those that explain the readings nearly as well.
 std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double within) {
   std::vector<const Alias*> near;
   for (const Alias& alias : aliases) {
@@ -154,7 +154,7 @@ std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double
   return near;
 }
 
-/// What does not describe the readings may seem noise, for nothing follows from one sample to the next.
+/// With few samples per period, a misfit may look like noise, because successive residuals are independent.
 std::optional<std::string> WhyNotDescribed(const Recording& used, const FitReport& fit) {
   constexpr double kMostUnexplained = 0.02;
   constexpr Index kFewestPerParameter = 2;
@@ -170,11 +170,11 @@ std::optional<std::string> WhyNotDescribed(const Recording& used, const FitRepor
          " parameters and a choice among frequencies; record for longer";
 }
 
-/// Where nothing bounds the frequency only the slowest pendulum may be trusted, and only where it is sampled well and
-/// no faster one is possible.
+/// If nothing bounds the frequency, only the slowest pendulum is accepted, and only if it is well sampled and no faster
+/// one is possible.
 std::optional<std::string> WhyUnbounded(const std::vector<Alias>& aliases, double rate) {
   constexpr double kWell = 8;         // samples a period
-  constexpr double kTurnsShow = 4.5;  // where no pendulum could alias so
+  constexpr double kTurnsShow = 4.5;  // if no pendulum could alias to this frequency
   const double frequency = aliases.front().frequency;
   const bool slowest = frequency < 0.5 * rate;
   const bool alone = NearlyAsGood(aliases, kFar).size() == 1;
@@ -186,16 +186,16 @@ std::optional<std::string> WhyUnbounded(const std::vector<Alias>& aliases, doubl
          "or sample at 6 Hz or faster";
 }
 
-/// Whether even samples come at nearly the same two phases of a swing, over all of the recording.
+/// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
 bool StandsStill(const Recording& used, double frequency) {
   constexpr double kTooNear = 1;  // cycles over the recording
-  constexpr double kEven = 0.02;  // cycles; stamps that scatter by more show other phases
+  constexpr double kEven = 0.02;  // cycles; time stamps with more jitter show other phases
   const double jitter = used.clock_scale * DescribeSampling(used, std::nullopt, std::nullopt).jitter;
   const double apparent = 0.5 * ApparentFrequency(2 * frequency, SampleRateOf(used));
   return apparent * DurationOf(used) < kTooNear && jitter * frequency < kEven;
 }
 
-/// What the samples leave open, or nothing.
+/// The reason for an ambiguous result, or std::nullopt.
 std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector<Alias>& aliases,
                                         const Allowed& allowed) {
   const double rate = SampleRateOf(used);
@@ -212,7 +212,7 @@ std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector
   return allowed.bounded ? std::nullopt : WhyUnbounded(aliases, rate);
 }
 
-/// What rests on an assumption though it is told alone.
+/// The assumption on which an unambiguous result depends.
 std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed, double rate) {
   const std::string chosen = ListOf({&aliases.front()});
   if (!allowed.bounded) {
@@ -224,7 +224,7 @@ std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed
          " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";
 }
 
-/// Whether the readings fit far better at a frequency that the rig does not let expect.
+/// Whether the readings fit far better at a frequency that contradicts the rig.
 std::optional<std::string> WhyBeyondTheRig(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const auto expected = ExpectedFrequency(options.rig);
   if (!expected || options.bounds.contains(kInertia.name) || options.fixed.contains(kInertia.name)) return std::nullopt;
@@ -237,7 +237,7 @@ std::optional<std::string> WhyBeyondTheRig(const Recording& used, const FitRepor
          " that the rig lets expect; check the rig, or give --bounds of inertia";
 }
 
-/// Why a fit does not stand, whatever its own errors.
+/// The reason to reject a fit, independent of its own errors.
 struct Refusal {
   Termination termination;
   std::string why;
@@ -251,7 +251,7 @@ std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>
   return why ? std::optional(Refusal{Termination::kNotIdentifiable, *why}) : std::nullopt;
 }
 
-/// Takes a fit for what the samples can tell.
+/// Sets the termination and warnings of a fit from the information in the samples.
 void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
               const std::optional<Refusal>& refusal, FitReport& fit) {
   const double rate = SampleRateOf(used);
@@ -259,7 +259,7 @@ void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Al
   const bool ambiguous = refusal && refusal->termination == Termination::kNotIdentifiable;
   if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", refusal->why});
   if (!refusal && mirrors) fit.warnings.push_back({"ambiguous_frequency", Assumption(aliases, allowed, rate)});
-  // A start from a scan is no estimate in closed form.
+  // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!refusal) return;
   fit.termination = refusal->termination;
@@ -267,7 +267,7 @@ void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Al
   WithdrawErrors("the fit is " + std::string(TerminationName(fit.termination)), fit);
 }
 
-/// What is expected of the rig, or else found beyond doubt, beside the sampling.
+/// Warns about the sampling, with the frequency that the rig predicts or that a converged fit found.
 void WarnOfSampling(const Recording& used, double frequency, const FitOptions& options, FitReport& fit) {
   auto expected = ExpectedFrequency(options.rig);
   if (expected && fit.termination == Termination::kConverged) expected = frequency;
@@ -279,10 +279,10 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
-/// What makes a recording that shows each swing seem undersampled; empty where it may be.
+/// The reason why a recording with well-sampled swings looks undersampled; empty if it may be undersampled.
 std::string AbsurdPeriod(const Recording& recording) {
-  constexpr double kLongest = 300;  // s: twenty kilometres of string
-  constexpr double kSeen = 20;      // samples a period, which a faster swing would hardly look like
+  constexpr double kLongest = 300;  // s: a string of twenty kilometres
+  constexpr double kSeen = 20;      // samples per period; aliasing rarely looks this smooth
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
   if (!swings || swings->empty()) return "";
   const double period = 2 * swings->front().half_period * recording.clock_scale;
@@ -300,8 +300,8 @@ std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
 }
 
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
-  // Measured: with 7.2 samples a period of the reference rig FindFreeSwings finds 600 of 600 swings, with 6.6 it misses
-  // 31 and with 5.9 most, from 0.1 to 1.2 rad.
+  // Measured from 0.1 to 1.2 rad: with 7.2 samples per period of the reference rig FindFreeSwings finds 600 of 600
+  // swings. With 6.6 it misses 31, with 5.9 most of them.
   constexpr double kFewestPerPeriod = 7;
   const auto expected = ExpectedFrequency(rig);
   const double rate = SampleRateOf(recording);

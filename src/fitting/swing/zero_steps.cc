@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Powers of time, from -1 to 1, without the zeroth.
+/// Powers of time, scaled to -1 to 1, from the first degree on.
 Eigen::MatrixXd Drift(const Bins& bins, int degree) {
   const Index size = bins.time.size();
   const Eigen::ArrayXd t = (bins.time.array() - bins.time[0]) / (bins.time[size - 1] - bins.time[0]) * 2 - 1;
@@ -24,8 +24,8 @@ Eigen::MatrixXd Drift(const Bins& bins, int degree) {
   return drift;
 }
 
-/// Other explanations of what looks like a step at a bin: a zero that drifts, a spike, a kink, a pendulum that was
-/// touched then, a clock that slipped.
+/// Alternative explanations of an apparent step at a bin: a drifting zero, a spike, a kink, a touched pendulum, a clock
+/// slip.
 std::vector<Eigen::MatrixXd> Rivals(const Bins& bins, Index bin) {
   const Index size = bins.time.size();
   const Eigen::ArrayXd t = bins.time.array() - bins.time[0];
@@ -43,8 +43,8 @@ std::vector<Eigen::MatrixXd> Rivals(const Bins& bins, Index bin) {
   return rivals;
 }
 
-/// The sample of a step that was found at a bin: where residuals change from their mean in the bin before those next to
-/// it to that and the step.
+/// The exact sample of a step that was found at a bin. Searches the two neighbouring bins for the change from the mean
+/// residual of the bin before them to that mean plus the step.
 Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double size) {
   const auto first = [&](Index k) {
     return bins.first[static_cast<std::size_t>(std::clamp<Index>(k, 0, bins.time.size()))];
@@ -52,7 +52,7 @@ Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double siz
   const Index begin = first(bin - 1), end = first(bin + 1);
   if (end - begin <= 2 || bin < 2) return first(bin);
   const double before = bins.residual[bin - 2];
-  double sum = 0;  // of squares, over those if the step were at `begin`
+  double sum = 0;  // of squared residuals, relative to a step at `begin`
   double least = 0;
   Index best = begin;
   for (Index i = begin; i < end; ++i) {
@@ -63,7 +63,7 @@ Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double siz
   return best;
 }
 
-/// Steps found one after the other, and what they and the fit's parameters leave.
+/// Searches for steps one after the other, with the remaining residuals of fit and steps.
 class Pursuit {
  public:
   explicit Pursuit(const StepRegression& regression)
@@ -71,11 +71,11 @@ class Pursuit {
 
   std::size_t size() const { return places_.size(); }
 
-  /// -2 log L, with what memory and steps cost.
+  /// -2 log L plus the penalties for autocorrelation and steps.
   double criterion() const { return now_.criterion + kPerStep * static_cast<double>(size()); }
 
-  /// Takes all at once the steps that leave white noise; false where none do. Steps that are many hide each other: each
-  /// alone is no more than part of a slow memory.
+  /// Adds several steps at once if they leave white noise; otherwise returns false. Many steps hide each other: each
+  /// alone looks like part of a slow autocorrelation.
   bool AddAll(int most) {
     if (!AddAsWhite(most)) return false;
     EraseDoubtful();
@@ -83,7 +83,7 @@ class Pursuit {
     return size() > 0 && now_.memory.empty() && BeatDrift();
   }
 
-  /// Adds the step that explains most, if it is one.
+  /// Adds the step that explains most, if it is significant.
   bool Add() {
     const std::optional<Trial> best = BestTrial();
     if (!best) return false;
@@ -109,8 +109,8 @@ class Pursuit {
 
  private:
   static constexpr double kSure = 36;     // in -2 log L
-  static constexpr double kClearly = 10;  // likewise
-  static constexpr double kPerStep = 20;  // likewise
+  static constexpr double kClearly = 10;  // in -2 log L
+  static constexpr double kPerStep = 20;  // in -2 log L
 
   struct Trial {
     Index place = 0;
@@ -127,7 +127,7 @@ class Pursuit {
     return columns;
   }
 
-  /// Steps that explain most one after the other; false where so many are not enough.
+  /// Adds the steps that explain most one after the other. Returns false if `most` steps are not enough.
   bool AddAsWhite(int most) {
     Explained white = regression_.ExplainAsWhite(Columns(places_));
     while (static_cast<int>(size()) < most) {
@@ -144,7 +144,7 @@ class Pursuit {
     return false;
   }
 
-  /// Takes steps out again that are not told from none beside the others, one by one.
+  /// Removes, one by one, steps that are not significant in the presence of the others.
   void EraseDoubtful() {
     now_ = regression_.Explain(Columns(places_));
     while (size() > 0) {
@@ -157,7 +157,7 @@ class Pursuit {
     }
   }
 
-  /// Whether all steps together explain more than a zero that drifts slowly, which small ones imitate.
+  /// Whether all steps together explain more than a slowly drifting zero, which small steps imitate.
   bool BeatDrift() const {
     constexpr int kDegree = 6;
     const Bins& bins = regression_.bins();
@@ -166,7 +166,7 @@ class Pursuit {
     return criterion() + kClearly < drift + each * kDegree;
   }
 
-  /// What the best of the other explanations gains, by Schwarz's criterion beside a step's.
+  /// The gain of the best alternative explanation, with Schwarz's penalty relative to that of a step.
   double BestRival(Index place) const {
     const Eigen::MatrixXd columns = Columns(places_);
     const double each = std::log(static_cast<double>(regression_.size()));
@@ -178,7 +178,7 @@ class Pursuit {
     return most;
   }
 
-  /// One step more, at the best place for independent residuals or for those with the memory that is left now.
+  /// One additional step at the best place, either for independent residuals or for the present autocorrelation.
   std::optional<Trial> BestTrial() const {
     const Eigen::MatrixXd columns = Columns(places_);
     std::optional<Trial> best;
@@ -191,7 +191,7 @@ class Pursuit {
     return best;
   }
 
-  /// Moves the newest step and its neighbours where they explain most beside the others.
+  /// Moves the newest step and its neighbours to the places where they explain most in the presence of the others.
   void Settle() {
     constexpr int kMostPasses = 3;
     for (int pass = 0; pass < kMostPasses; ++pass) {

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Samples in a block: a few times what the variance of a mean is inflated by, and 1 without memory.
+/// Samples per block: a few times the variance inflation of a mean; 1 for white residuals.
 Index BlockLength(const Autocorrelation& correlation, Index samples) {
   if (correlation.kind == Autocorrelation::Kind::kWhite) return 1;
   constexpr double kMemories = 5;
@@ -49,7 +49,7 @@ class Replicas {
     Differentiate();
   }
 
-  /// Estimates of replica number `index`; empty when it cannot be solved, is stopped, or runs out of memory.
+  /// Estimates of replica number `index`. Empty if it cannot be solved, a stop is requested, or memory is exhausted.
   std::vector<double> Estimate(std::uint64_t index) const {
     if (options_.stop.stop_requested()) return {};
     try {
@@ -76,14 +76,14 @@ class Replicas {
     cost->set_noise(replica.noise);
     Solution solution = Solve(*cost, FirstStep(replica), replica.solve);
     if (!solution.usable) solution = Solve(*cost, solution_.parameters, replica.solve);
-    // Where least squares say everything σ changes no estimate.
+    // If least squares is the exact likelihood, σ does not change the estimates.
     if (!solution_.noise.IsPlain() || !replica.priors.empty()) {
       MaximizeLikelihood(*cost, replica, options_, solution);
     }
     return solution.usable ? solution.parameters : std::vector<double>{};
   }
 
-  /// What the readings at the solution tell of its free parameters, all replicas alike.
+  /// Computes the derivatives of the readings by the free parameters at the solution, once for all replicas.
   void Differentiate() {
     const auto cost = MakeTrajectoryCost(problem_.model, problem_.start.start, problem_.data);
     cost->set_tolerance(tolerance_);
@@ -103,7 +103,7 @@ class Replicas {
     to_step_ = inverse.matrix * jacobian(Eigen::all, free_).transpose() / (scale * scale);
   }
 
-  /// The solution, moved by the least-squares step that a replica's noise asks for: it needs no trajectory.
+  /// The solution plus the least-squares step for a replica's noise. It needs no trajectory.
   std::vector<double> FirstStep(const FitProblem& replica) const {
     std::vector<double> parameters = solution_.parameters;
     if (to_step_.size() == 0) return parameters;
@@ -116,9 +116,9 @@ class Replicas {
     return parameters;
   }
 
-  /// Noise of N samples: from its model (parametric bootstrap), or circular blocks of the residuals as they are, with
-  /// outliers, rounding and memory in them (D. N. Politis and J. P. Romano, "A circular block-resampling procedure",
-  /// 1992).
+  /// Noise of N samples: drawn from the noise model (parametric bootstrap), or circular blocks of the residuals, which
+  /// keep outliers, rounding and autocorrelation (D. N. Politis and J. P. Romano, "A circular block-resampling
+  /// procedure", 1992).
   Eigen::VectorXd Draw(std::mt19937_64& generator) const {
     const Index samples = residuals_.size();
     Eigen::VectorXd noise(samples);
@@ -135,7 +135,8 @@ class Replicas {
     return noise;
   }
 
-  /// What the sensor shows of a value: one of its levels, on which `other` stands, within its range.
+  /// The reading that the sensor shows for a value: rounded to its levels, of which `other` is one, and within its
+  /// range.
   double Shown(double value, double other) const {
     const double q = problem_.resolution;
     const bool edges = solution_.noise.family == NoiseFamily::kEdges;
@@ -153,7 +154,7 @@ class Replicas {
   bool parametric_;
   double tolerance_;         // of the trajectories
   std::vector<int> free_;    // F parameters
-  Eigen::MatrixXd to_step_;  // F x N, from residuals; empty where the data do not tell them all
+  Eigen::MatrixXd to_step_;  // F x N, maps residuals to a step; empty if the data do not determine all parameters
 };
 
 }  // namespace

@@ -59,10 +59,10 @@ std::vector<PowerProduct> PowerProducts(const std::vector<ParameterInfo>& infos,
   return products;
 }
 
-/// Signed distances from the estimate, of the ends of a derived quantity's interval.
+/// Signed distances from the estimate to the ends of a derived quantity's interval.
 class Distances {
  public:
-  /// Carries one end of parameter i over; an end that is missing is infinitely far on the side it lies on.
+  /// Propagates both ends of parameter i's interval. A missing end is at infinite distance on its side.
   void Add(const PowerProduct& product, std::vector<double> p, int i, const IntervalEnds& ends) {
     const double at = Estimate(product, p);
     const double power = i == 0 ? product.inertia_power : product.other_power;
@@ -103,7 +103,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
   return derived;
 }
 
-/// Each end of a parameter is carried over with the others at their estimates, and the distances are added in squares.
+/// Propagates each end of a parameter with the others at their estimates, and adds the distances in quadrature.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
   const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
@@ -113,7 +113,7 @@ void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vec
     distances.Add(product, parameters, 0, intervals[0]);
     if (product.other_power != 0) distances.Add(product, parameters, product.other, intervals[product.other]);
     derived[k].lower95 = distances.Below(derived[k].estimate);
-    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // of what is not negative
+    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // the quantity is never negative
     derived[k].upper95 = distances.Above(derived[k].estimate);
   }
 }

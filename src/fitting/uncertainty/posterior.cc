@@ -60,14 +60,14 @@ Result<void> CheckValues(const LinearizedFit& fit) {
   return {};
 }
 
-/// Coordinates in which the posterior is about white: δ = centre + root · w.
+/// Coordinates w in which the posterior is approximately white: δ = centre + root · w.
 struct Frame {
   Eigen::VectorXd centre;
   Eigen::MatrixXd root;  // F x F
 };
 
-/// From the information that the readings would have at a σ no smaller than a tenth of a count. As at the fitted values
-/// there may be next to none, a little is added for every level.
+/// Computes the frame from the information of the readings at a σ of at least a tenth of a count. At the fitted values
+/// the information may be almost zero, so a small weight is added for every level.
 Result<Frame> FirstFrame(const LinearizedFit& fit) {
   constexpr double kLeastSigma = 0.1;
   constexpr double kLeastWeight = 0.01;
@@ -92,22 +92,22 @@ Result<Frame> FirstFrame(const LinearizedFit& fit) {
   return Frame{Eigen::VectorXd::Zero(fit.lower.size()), inverse.matrix.llt().matrixL()};
 }
 
-/// A stretch of a line, and where on it to begin.
+/// An interval of a line, and the start point in it.
 struct Stretch {
   double from = -kInfinity;
   double to = kInfinity;
   double start = 0;
-  double width = 1;  // typical of a slice
+  double width = 1;  // typical width of a slice
 };
 
 using Generator = std::mt19937_64;
 
-/// Where on a line, and the log-density there.
+/// A position on a line, and the log-density there.
 struct Point {
   double x, log;
 };
 
-/// One step of slice sampling. density(x, floor) may return anything less than `floor` where it is less.
+/// One step of slice sampling. For a density below `floor`, density(x, floor) may return any value below `floor`.
 template <typename LogDensity>
 Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDensity density) {
   constexpr int kMostSteps = 40;
@@ -131,20 +131,20 @@ Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDe
   return {stretch.start, log_here};
 }
 
-/// R x (F + 1): δ and σ, the latter in units of the resolution.
+/// R x (F + 1): draws of δ and of σ, σ in units of the resolution.
 using Draws = Eigen::MatrixXd;
 
-constexpr double kMostSigma = 2;  // prior: flat to here, in units of the resolution
+constexpr double kMostSigma = 2;  // prior: flat up to here, in units of the resolution
 
-/// The Markov chain: slice sampling along orthogonal directions, turned at random before every round, of coordinates in
-/// which earlier draws are white, for without noise the posterior is uniform on a polytope; then along log σ. Lengths
-/// of readings in units of the resolution.
+/// The Markov chain. It uses slice sampling along orthogonal directions, which are rotated at random before every
+/// round, and then along log σ. The coordinates are those in which earlier draws are white, because without noise the
+/// posterior is uniform on a polytope. Readings are in units of the resolution.
 class Chain {
  public:
   Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop);
-  Draws Run(int rounds);  ///< Without meaning when stopped.
+  Draws Run(int rounds);  ///< Undefined after a stop request.
 
-  /// Turns to coordinates in which these draws are white.
+  /// Changes to coordinates in which these draws are white.
   void Whiten(const Draws& draws);
 
   double work() const { return likelihood_.work(); }
@@ -163,11 +163,11 @@ class Chain {
   const LinearizedFit& fit_;
   const std::stop_token& stop_;
   Generator generator_;
-  LevelSamples samples_;  // slopes by δ
+  LevelSamples samples_;  // derivatives by δ
   Frame frame_;
-  LevelSamples whitened_;       // slopes by w
-  LevelSamples active_;         // those of them that may leave their level within these:
-  double most_distance_ = 1e9;  // of w from 0
+  LevelSamples whitened_;       // derivatives by w
+  LevelSamples active_;         // the samples that may leave their level within these limits:
+  double most_distance_ = 1e9;  // norm of w
   double most_sigma_ = kMostSigma;
   LineLikelihood likelihood_;
   Eigen::VectorXd w_;
@@ -181,7 +181,7 @@ Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const st
       stop_(stop),
       generator_(seed),
       samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
-  constexpr double kLeastStart = 0.05;  // a smaller one would hold the chain where it begins
+  constexpr double kLeastStart = 0.05;  // from a smaller one, the chain would hardly move
   log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kLeastStart, kMostSigma));
   EnterFrame(std::move(frame), Eigen::VectorXd::Zero(fit.jacobian.cols()));
 }
@@ -192,7 +192,7 @@ void Chain::EnterFrame(Frame frame, const Eigen::VectorXd& delta) {
   whitened_ = samples_;
   whitened_.position += samples_.slope * frame_.centre;
   whitened_.slope = samples_.slope * frame_.root;
-  constexpr double kCertain = 8.5;  // σ within the edge: the probability is 1 to rounding
+  constexpr double kCertain = 8.5;  // in σ inside the edge: the probability is 1 to rounding
   active_ = whitened_.Near(kCertain * most_sigma_, most_distance_);
   likelihood_.SetSigma(std::exp(log_sigma_));
   log_ = LogEverywhere(w_, -kInfinity);
@@ -249,7 +249,7 @@ void Chain::MoveSigma() {
   const auto density = [&](double log_sigma, double floor) {
     const double sigma = std::exp(log_sigma);
     likelihood_.SetSigma(sigma);
-    floor -= log_sigma;  // flat in σ is σ in log σ
+    floor -= log_sigma;  // a flat prior in σ has density σ in log σ
     log = near && sigma <= most_sigma_ ? prior + likelihood_.Sum(active_, positions_, positions_, 0, floor - prior)
                                        : LogEverywhere(w_, floor);
     return log + log_sigma;
@@ -282,7 +282,7 @@ Draws Chain::Run(int rounds) {
 }
 
 void Chain::Whiten(const Draws& draws) {
-  constexpr double kAsDraws = 2;  // as many draws tell the old coordinates
+  constexpr double kAsDraws = 2;  // weight of the old coordinates, in draws
   const Eigen::Index parameters = w_.size();
   const Eigen::MatrixXd deltas = draws.leftCols(parameters);
   const Eigen::VectorXd mean = deltas.colwise().mean().transpose();
@@ -299,7 +299,7 @@ void Chain::Whiten(const Draws& draws) {
   EnterFrame({mean, root}, Delta());
 }
 
-/// Of one quantity's draws: the initial monotone sequence (C. J. Geyer, Stat. Sci. 7:473, 1992).
+/// Effective number of draws of one quantity, by the initial monotone sequence (C. J. Geyer, Stat. Sci. 7:473, 1992).
 double EffectiveDraws(const Eigen::VectorXd& draws) {
   const Eigen::Index n = draws.size();
   const Eigen::VectorXd centred = draws.array() - draws.mean();
@@ -324,7 +324,7 @@ double LeastEffectiveDraws(const Draws& draws) {
   return least;
 }
 
-/// Between sorted values, so that of n independent draws the next one is below it with probability p.
+/// Quantile by interpolation between sorted values: the next of n independent draws is below it with probability p.
 double Quantile(const std::vector<double>& values, double p) {
   const auto n = static_cast<double>(values.size());
   const double rank = std::clamp(p * (n + 1) - 1, 0.0, n - 1);
@@ -357,17 +357,17 @@ Posterior Summarize(Draws draws, double resolution) {
   return posterior;
 }
 
-// Samples looked at. It is little for 1e5 samples with a σ that leaves few of them certain, but the posterior is then
-// normal, and need not be sampled.
+// Maximum number of samples evaluated. For 1e5 samples with few certain ones it is low, but then the posterior is
+// normal and needs no sampling.
 constexpr double kMostWork = 1e9;
 
-/// Runs ever longer, whitening in between, until the coordinates fit; what was drawn on the way is not used.
+/// Runs of increasing length, each followed by whitening, until the coordinates fit. These draws are discarded.
 void WarmUp(Chain& chain) {
   for (const int rounds : {10, 20, 40, 80, 160}) {
     const Draws draws = chain.Run(rounds);
     if (chain.is_stopped()) return;
     chain.Whiten(draws.bottomRows(rounds * 3 / 4));
-    if (chain.work() > kMostWork / 8) break;  // where samples are that many, the first coordinates are good
+    if (chain.work() > kMostWork / 8) break;  // with so many samples, the first coordinates are good
   }
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Index;
 
-/// The likelihood along one parameter, the others following. The interval ends where the deviance, the others solved
-/// anew, has risen by Student's t², as MINOS does, times the variance of ComputeErrors over that of the likelihood at
-/// fixed σ, which accounts for σ and for residuals that remember.
+/// The profile likelihood of one parameter. The interval ends where the deviance, with the other parameters solved
+/// again, has risen by Student's t² times a factor, as in MINOS. The factor is the variance of ComputeErrors divided by
+/// the variance of the likelihood at fixed σ. It accounts for the estimate of σ and for autocorrelated residuals.
 class Profile {
  public:
   Profile(LeastSquares& cost, const SolveOptions& options, const Solution& solution, Optimum optimum,
@@ -39,7 +39,7 @@ class Profile {
 
   bool is_defined() const { return threshold_ > 0 && std::isfinite(threshold_); }
 
-  /// How far the likelihood reaches on a side (-1 or 1), or nothing.
+  /// Distance to the end of the interval on a side (-1 or 1). Returns std::nullopt if there is no end.
   std::optional<double> Reach(double side) {
     const auto index = static_cast<std::size_t>(k_);
     const double bound = side < 0 ? options_.lower[index] : options_.upper[index];
@@ -48,16 +48,16 @@ class Profile {
     return Find(side, farthest);
   }
 
-  /// Whether the solves took so many trajectories that the ends are not known.
+  /// Whether the budget of trajectories is spent, so the ends are unknown.
   bool is_exhausted() const { return cost_.traces() >= last_trace_; }
 
-  /// Whether the profile came below the optimum: it belongs to another minimum.
+  /// Whether the profile fell below the optimum: it then belongs to another local minimum.
   bool found_lower() const { return found_lower_; }
 
-  /// The points so far and those that make them even between the ends, which are so far below and above the estimate;
-  /// those that the search for the ends left far beyond them apart.
+  /// The points of the profile, with points added until they are even between the ends, `down` and `up` from the
+  /// estimate. Points far beyond the ends, left by the search, are removed.
   std::vector<ProfilePoint> SpreadPoints(double down, double up) {
-    constexpr double kFarBeyond = 4;  // thresholds
+    constexpr double kFarBeyond = 4;  // in thresholds
     last_trace_ = cost_.traces() + Budget();
     SpreadOver(-down);
     SpreadOver(up);
@@ -66,7 +66,7 @@ class Profile {
     return points_;
   }
 
-  /// How far the search for the end on a side went.
+  /// The largest distance that the search on a side reached.
   double Sought(double side) const {
     double farthest = 0;
     for (const ProfilePoint& point : points_) farthest = std::max(farthest, side * (point.value - At()));
@@ -78,17 +78,17 @@ class Profile {
   double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
 
  private:
-  static constexpr double kFarthest = 100;  // lengths
+  static constexpr double kFarthest = 100;  // in units of length_
   static constexpr double kNegligible = 0.05;
 
-  /// Trajectories for one parameter: a profile that can be followed takes some tens of each recording.
+  /// Budget of trajectories for one parameter. A well-behaved profile needs some tens for each recording.
   int Budget() const {
     constexpr double kSamples = 2e6;
     const double runs = cost_.runs();
     return static_cast<int>(runs * std::clamp(kSamples * runs / samples_, 100.0, 400.0));
   }
 
-  /// Root of the rise over the threshold, which is 1 where the interval ends; the farther along, the larger.
+  /// Square root of the rise relative to the threshold. It is 1 at the end of the interval and grows with the distance.
   double RootAt(double distance, double side) {
     SolveOptions options = options_;
     options.fixed[static_cast<std::size_t>(k_)] = true;
@@ -108,10 +108,10 @@ class Profile {
     return root;
   }
 
-  /// Points on one side up to a distance (signed) from the estimate, where none is near yet.
+  /// Adds points on one side up to a signed distance from the estimate, except near existing points.
   void SpreadOver(double farthest) {
     constexpr int kParts = 4;
-    constexpr double kNear = 0.25;  // parts
+    constexpr double kNear = 0.25;  // in parts
     if (farthest == 0) return;
     const double part = farthest / kParts;
     for (int i = 1; i <= kParts; ++i) {
@@ -121,7 +121,8 @@ class Profile {
     }
   }
 
-  /// Where the root is 1, by regula falsi between points on both sides; nothing when it stays below.
+  /// Finds the distance where RootAt is 1, by regula falsi between points on both sides. Returns std::nullopt if it
+  /// stays below 1.
   std::optional<double> Find(double side, double farthest) {
     constexpr int kMostSolves = 25;
     constexpr double kAccuracy = 0.01;
@@ -163,11 +164,11 @@ class Profile {
   int k_;
   bool found_lower_ = false;
   int last_trace_ = 0;
-  double length_ = 0;     // of half the interval, were the likelihood a parabola
-  double threshold_ = 0;  // of the deviance's rise
+  double length_ = 0;     // of half the interval, if the likelihood were a parabola
+  double threshold_ = 0;  // of the rise of the deviance
   double t95_ = 0;
   std::vector<ProfilePoint> points_;
-  Eigen::VectorXd direction_;  // how the free parameters follow
+  Eigen::VectorXd direction_;  // change of the free parameters along the profile
 };
 
 }  // namespace
@@ -200,7 +201,8 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   }
   if (profile.is_exhausted() || profile.found_lower()) return interval;
   interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));
-  if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();  // no curve, but the ends hold
+  // There is no curve, but the ends are valid.
+  if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();
   interval.threshold = profile.threshold();
   return interval;
 }

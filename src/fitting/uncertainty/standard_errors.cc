@@ -28,7 +28,7 @@ Eigen::MatrixXd PriorInformation(std::span<const PriorTerm> priors, const std::v
   return information;
 }
 
-/// What the samples say, one by one: derivatives of their log-likelihood.
+/// Derivatives of the log-likelihood of each sample.
 struct SampleTerms {
   Eigen::VectorXd score;        // N
   Eigen::VectorXd information;  // N
@@ -51,22 +51,23 @@ SampleTerms TermsOf(const FitProblem& problem, const Solution& solution) {
   return terms;
 }
 
-/// The inverse of a symmetric matrix scaled to unit diagonal; empty when it has none.
+/// The inverse of a symmetric matrix, computed after scaling to unit diagonal; empty if it is singular.
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& matrix) {
   std::vector<int> all(static_cast<std::size_t>(matrix.rows()));
   std::iota(all.begin(), all.end(), 0);
   return InvertInformation(matrix, all).matrix;
 }
 
-/// The covariance of the scores, Σ_ij ∇m_i cov(s_i, s_j) ∇m_j'. Of different samples it is that of their quantile
-/// residuals over σ²: what randomizes these within a level is independent. Of one sample it is its information.
+/// The covariance of the scores, Σ_ij ∇m_i cov(s_i, s_j) ∇m_j'. For two different samples, cov is the covariance of
+/// their quantile residuals divided by σ², because the randomization within a level is independent. For one sample it
+/// is the information.
 Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
                        const Eigen::MatrixXd& jacobian, const Autocorrelation& correlation) {
   if (noise.IsRobust() && problem.censored > 0) {
     return CorrelatedSum(correlation, problem.data.times(), terms.score.cwiseAbs().asDiagonal() * jacobian);
   }
   if (noise.family == NoiseFamily::kEdges) {
-    const Eigen::VectorXd deviation = terms.information.cwiseSqrt();  // of the scores: each edge its own
+    const Eigen::VectorXd deviation = terms.information.cwiseSqrt();  // of the scores: it differs between edges
     return CorrelatedSum(correlation, problem.data.times(), deviation.asDiagonal() * jacobian);
   }
   const Eigen::MatrixXd correlated = CorrelatedSum(correlation, problem.data.times(), jacobian);
@@ -76,8 +77,9 @@ Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const
   return (correlated - jacobian.transpose() * lost.asDiagonal() * jacobian) / variance;
 }
 
-/// Jᵀ W J. A robust family's information is that of the mean, for its meat is that of the mean square score (P. J.
-/// Huber, Robust Statistics, Wiley 1981, section 7.6); readings at an end of the range say less than the mean.
+/// Jᵀ W J. For a robust family W is the mean information, because its meat uses the mean square score (P. J. Huber,
+/// Robust Statistics, Wiley 1981, section 7.6). With censored readings W is per sample, because these carry less
+/// information.
 Eigen::MatrixXd InformationOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
                               const Eigen::MatrixXd& jacobian) {
   const bool by_mean = noise.IsRobust() && problem.censored == 0;
@@ -88,20 +90,20 @@ Eigen::MatrixXd InformationOf(const FitProblem& problem, const NoiseModel& noise
 
 bool IsWhite(const FittedRun& run) { return run.correlation.kind == Autocorrelation::Kind::kWhite; }
 
-/// Whether least squares say everything: normal noise without memory.
+/// Whether least squares is the exact likelihood: normal noise without autocorrelation.
 bool IsSimple(const FittedRun& run) { return run.solution.noise.IsPlain() && IsWhite(run); }
 
-/// What one recording says of those F of its parameters that are free.
+/// The contribution of one recording to the information about its F free parameters.
 struct Part {
-  std::vector<Index> rows;       // F: where they stand among all free ones
-  Eigen::MatrixXd bread, meat;   // F x F: information, and the covariance of the scores
+  std::vector<Index> rows;       // F: indices among all free parameters
+  Eigen::MatrixXd bread, meat;   // F x F, of the sandwich: information, and covariance of the scores
   Eigen::VectorXd mixed;         // F: information of a parameter and log σ
   double sigma_information = 0;  // of log σ
-  bool beside_sigma = false;     // the bread is what is left of the information beside log σ
+  bool beside_sigma = false;     // whether the bread is the information after log σ is eliminated
   double samples = 0;            // N
 };
 
-/// A recording's parameters that are free, and where those stand among all free ones.
+/// The free parameters of a recording; `rows` receives their indices among all free parameters.
 std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std::vector<Index>& rows) {
   std::vector<Index> columns;
   for (std::size_t j = 0; j < run.at.size(); ++j) {
@@ -113,14 +115,15 @@ std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std
   return columns;
 }
 
-/// The optimum was traced: unless the fit was stopped since, this can be, too. Then the part has no information.
+/// Sets a part without information. The trajectory at the optimum was computed before, so this happens only after a
+/// stop.
 void SetNothing(const std::vector<Index>& columns, Part& part) {
   const auto size = static_cast<Index>(columns.size());
   part.bread = part.meat = Eigen::MatrixXd::Zero(size, size);
   part.mixed = Eigen::VectorXd::Zero(size);
 }
 
-/// The sums say it all, and the cost has them ready.
+/// Takes the information from the sums, which the cost has cached.
 void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
   Eigen::MatrixXd sums, priors;
   if (!run.cost.Sums(run.solution.parameters, &sums)) {
@@ -132,8 +135,9 @@ void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& pa
   part.bread = part.meat = (sums - priors)(columns, columns);
 }
 
-/// The meat, in no direction less than the bread. A slow misfit taken for continuous noise has next to nothing at the
-/// swing's frequency: by its sandwich alone readings would tell more than independent ones of the same scatter.
+/// The meat, enlarged so that it is not below the bread in any direction. A slow misfit that is taken for continuous
+/// noise has almost no power at the swing's frequency. Without the limit, such readings would carry more information
+/// than independent readings with the same scatter.
 Eigen::MatrixXd NoLessThan(const Eigen::MatrixXd& bread, const Eigen::MatrixXd& meat) {
   const Eigen::VectorXd scale = bread.diagonal().cwiseSqrt();
   if (!(scale.array() > 0).all()) return meat;
@@ -171,7 +175,7 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
     part.meat = MeatOf(run.problem, noise, terms, jacobian, run.correlation);
     if (run.correlation.kind == Autocorrelation::Kind::kContinuous) part.meat = NoLessThan(part.bread, part.meat);
   } else {
-    // σ is estimated beside the parameters.
+    // σ is estimated together with the parameters.
     part.beside_sigma = !noise.IsPlain();
     if (part.beside_sigma) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
     part.meat = part.bread;
@@ -189,7 +193,8 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
   return "inverse observed information of the parameters and sigma, readings taken as independent";
 }
 
-/// A parameter's own number of effective samples: memory that inflates a mean may leave a swing's phase alone.
+/// Each parameter has its own number of effective samples. Autocorrelation that inflates the variance of a mean may not
+/// affect a swing's phase.
 Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& optimum, const Eigen::VectorXd& samples,
                            bool white) {
   const auto free = static_cast<double>(optimum.free.size());
@@ -202,8 +207,8 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   return t95;
 }
 
-/// σ's standard error beside parameters of inverse information C, by the blocks of the inverse of the information of
-/// both.
+/// Standard error of σ when it is estimated together with parameters of inverse information C, from the blocks of the
+/// inverse of the joint information.
 std::optional<double> SigmaError(const FittedRun& run, const Part& part, const Eigen::MatrixXd& inverse) {
   const NoiseModel& noise = run.solution.noise;
   if (noise.IsRobust()) return RobustSigmaError(noise, run.problem.data.values(), run.solution.readings);
@@ -218,8 +223,8 @@ NoiseErrors NoiseErrorsOf(const FittedRun& run) {
           MethodOf(run.solution.noise, run.correlation)};
 }
 
-/// The sandwich of all recordings' information and covariance of scores; each recording's share of the parameters is
-/// what its σ and its residuals' memory are short of.
+/// The sandwich of the information and the scores' covariance of all recordings. Each recording's scores are scaled up
+/// for the degrees of freedom that its share of the parameters takes from σ and from the autocorrelation.
 void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& parts, const Eigen::MatrixXd& prior,
                    Errors& errors) {
   Eigen::MatrixXd information = prior;
@@ -242,7 +247,7 @@ void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& par
 
 Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum) {
   Errors errors;
-  Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Index>(optimum.free.size()));  // that tell the parameter
+  Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Index>(optimum.free.size()));  // per parameter
   for (const FittedRun& run : runs) {
     std::vector<Index> rows;
     FreeColumns(run, optimum, rows);
@@ -267,7 +272,7 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     const NoiseModel& noise = runs[k].solution.noise;
     if (noise.IsPlain()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
     if (own.sigma) *own.sigma *= std::sqrt(runs[k].correlation.SquaredInflation());
-    // A memory that alternates may leave less than nothing of a direction.
+    // Alternating autocorrelation can make the variance in a direction negative.
     if (!sound) own.method = "inverse information, residuals taken as independent: with their memory it has no inverse";
   }
   errors.t95 = StudentT95(errors.covariance, optimum, samples, std::ranges::all_of(runs, IsWhite));

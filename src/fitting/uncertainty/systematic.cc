@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index;
 
-/// The power of the clock's scale in a parameter's estimate. A rate sensor's clock is its own: what follows from its
-/// readings alone does not scale, and angles, which it tells as rate times time, do.
+/// The power of the clock's scale in a parameter's estimate. A rate sensor's rate does not depend on the recording's
+/// clock. Estimates that follow from its readings alone do not scale; angles, which it measures as rate times time, do.
 int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
   const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
   const bool rate = quantity == Quantity::kRate;
@@ -28,7 +28,7 @@ int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
   return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
 }
 
-/// How the scores (P) change with the calibration's K coefficients: Σ w ∇m ∂value/∂c.
+/// Derivatives of the scores (P) by the calibration's K coefficients: Σ w ∇m ∂value/∂c.
 Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem& problem, const TrajectoryCost& cost,
                                 const Solution& solution) {
   const auto size = static_cast<Index>(calibration.coefficients.size());
@@ -46,7 +46,8 @@ Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem
   return pull;
 }
 
-/// How the scores follow ε, where what parameter i means is multiplied by 1 + n_i ε: A n p, A of the samples alone.
+/// Derivative of the scores by ε if parameter i is multiplied by 1 + n_i ε: A n p, where A is the information of the
+/// samples alone.
 Eigen::VectorXd ScalePull(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
   const Index size = powers.size();
   Eigen::MatrixXd sums;
@@ -57,8 +58,8 @@ Eigen::VectorXd ScalePull(const Eigen::VectorXd& powers, const TrajectoryCost& c
   return (sums - priors).topLeftCorner(size, size) * powers.cwiseProduct(p);
 }
 
-/// How the estimates follow such a factor, were it that of all recordings: n_i p_i, were all of them free. A value that
-/// is held, or known beforehand, in the report's units stays where it is and draws the others along.
+/// Change of the estimates with a scale factor common to all recordings: n_i p_i if all parameters are free. A value
+/// that is fixed or has a prior in reported units does not scale, and changes the others as well.
 Eigen::VectorXd FollowScale(const Eigen::VectorXd& powers, const SourceContext& context) {
   const auto size = static_cast<Index>(context.parameters.size());
   const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
@@ -81,8 +82,8 @@ Eigen::VectorXd FollowScale(const Eigen::VectorXd& powers, const SourceContext& 
 
 }  // namespace
 
-/// The rig's gravity torque is a common factor of inertia and friction; the clock's scale enters by the powers of time
-/// in a parameter; the calibration's coefficients move every reading.
+/// The rig's gravity torque is a common factor of inertia and friction. The clock's scale enters with the power of time
+/// in each parameter. The calibration's coefficients change every reading.
 std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
                                                 const FitProblem& problem, const TrajectoryCost& cost,
                                                 const Solution& solution) {

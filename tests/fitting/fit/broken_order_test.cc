@@ -30,7 +30,7 @@ TEST(BrokenOrder, KnowsNoOrderOfOtherLaws) {
   EXPECT_THAT(BrokenOrder(problem, {0.04, 0.001, -1, 0, 0, 0}), IsEmpty());
 }
 
-// Dry and viscous friction alone: in many recordings stiction comes out below coulomb, and never is.
+// With dry and viscous friction only, many recordings would estimate a stiction below coulomb; a fit never reports one.
 TEST(FitRecording, NeverReportsAStictionBelowCoulomb) {
   int tied = 0;
   for (const std::uint64_t seed : {1, 2, 3}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in datasets/, fitted as a user would, against the truth that lies beside each recording.
+// Fits the recordings in datasets/ as a user would, and compares with the true values stored beside each recording.
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -37,10 +37,11 @@ TEST_P(Datasets, TruthIsRecoveredWithinFourStandardErrors) {
         parameter.at_bound ? parameter.upper95.value() - parameter.estimate : 4 * parameter.std_error.value();
     EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, tolerance)) << parameter.info.name;
   }
-  EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));  // + q²/12
+  // Rounding adds q²/12 to the variance.
+  EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));
 }
 
-/// What came from the logger, with calibration, clock and rig of limited accuracy: the errors to be counted are both.
+/// From the logger, with calibration, clock and rig of limited accuracy: statistical and systematic errors both count.
 TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
   const Recording recording = Must(ReadRecording("datasets/recorded.csv"));
   FitOptions options = ModelOptions("coulomb");
@@ -58,7 +59,7 @@ TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
   }
 }
 
-/// It was recorded until the pendulum had rested for five seconds. Its last turning points are a few counts high.
+/// Recorded until the pendulum had rested for five seconds. Its last turning points are a few counts high.
 TEST(RecordedRun, EndsAtRest) {
   const ChosenSwings swings = Must(ChooseSwings(Must(ReadRecording("datasets/recorded.csv")), {}));
   ASSERT_THAT(swings.found, testing::SizeIs(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are the standard errors true? Against the scatter of estimates over seeds, and against ceres::Covariance.
+// Compares the standard errors with the scatter of estimates over seeds, and with ceres::Covariance.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -89,7 +89,7 @@ TEST(StandardErrors, AreTheScatterOfEstimatesOfARateSensor) {
 
 // ---- ceres::Covariance ---------------------------------------------------------------------------------------------
 
-/// The N residuals of a fit one by one, as Ceres' own users would write them.
+/// The N residuals of a fit as separate residuals, as a user of Ceres would write them.
 class PlainResiduals : public ceres::DynamicCostFunction {
  public:
   PlainResiduals(const TrajectoryCost& cost, const TrajectoryData& data, int parameters) : cost_(cost), data_(data) {

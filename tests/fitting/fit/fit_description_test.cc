@@ -32,7 +32,8 @@ TEST(Describe, HasResidualsAndTheirStatistics) {
   ASSERT_EQ(report.fitted.size(), 400);  // 8 s at 50 Hz
   EXPECT_EQ(report.residual, fitted.recording.value - report.fitted);
   const FitStatistics& statistics = report.statistics;
-  EXPECT_NEAR(statistics.rms_residual, std::sqrt(report.residual.squaredNorm() / 400), 1e-16);  // summed otherwise
+  // Summed in another order.
+  EXPECT_NEAR(statistics.rms_residual, std::sqrt(report.residual.squaredNorm() / 400), 1e-16);
   EXPECT_EQ(statistics.log_likelihood, fitted.solution.log_likelihood);
   EXPECT_NEAR(statistics.aic, 2 * 7 - 2 * statistics.log_likelihood, 1e-9);  // six parameters and σ
   EXPECT_NEAR(statistics.bic, 7 * std::log(400) - 2 * statistics.log_likelihood, 1e-9);
@@ -59,7 +60,7 @@ TEST(Describe, TellsWhetherResidualsFollowEachOther) {
 
 // ---- SetParameters -------------------------------------------------------------------------------------------------
 
-/// The parameters of a fit of which viscous is fixed and coulomb said to be at its bound.
+/// The parameters of a fit with viscous fixed and coulomb marked as at its bound.
 std::vector<ParameterEstimate> ParametersOf(Termination termination, const std::string& unit, bool rig) {
   FitOptions options = ModelOptions("coulomb");
   if (rig) options.rig = Rig{{kTextbookTorque, 0}, {}, {}};
@@ -108,7 +109,7 @@ TEST(SetParameters, HasTheUnitsOfRigAndReadings) {
 
 // ---- Covariances ---------------------------------------------------------------------------------------------------
 
-/// Of three parameters in units of 2, 1 and 10.
+/// Three parameters in units of 2, 1 and 10.
 struct ByHand {
   FitProblem problem;
   FitReport report;

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 using testing::Le;
 using testing::Not;
 
-/// What is fitted, for messages.
+/// The kind of run, for messages.
 std::string Describe(const SyntheticOptions& run) {
   return std::string(run.model.name) + (run.start == StartKind::kRelease ? ", released" : ", moving") +
          (run.quantity == Quantity::kRate ? ", rate" : ", angle") + ", seed " + std::to_string(run.seed);
@@ -48,7 +48,7 @@ void ExpectConverged(const FitReport& report) {
   EXPECT_FALSE(report.reason.empty());
 }
 
-/// How near a fit without noise comes: what a Stribeck rate trades for other friction is hardly told.
+/// Accuracy of a noise-free fit: a Stribeck rate is hardly distinguishable from other friction.
 double Nearness(const MotionModel& model) { return OrderOf(model).larger < 0 ? 1e-7 : 1e-4; }
 
 void ExpectTruth(const FitReport& report, const std::vector<double>& truth, double relative) {
@@ -74,7 +74,7 @@ TEST(FitRecording, RecoversTheTruthOfEveryModelFromNoiseFreeData) {
 TEST(FitRecording, RecoversTheTruthAtLargeAmplitudes) {
   for (SyntheticOptions run : EveryKindOfRun()) {
     if (run.model.gravity == Gravity::kLinear) continue;
-    if (OrderOf(run.model).larger >= 0) continue;  // friction of slow motion: swings so large hardly tell it
+    if (OrderOf(run.model).larger >= 0) continue;  // friction of slow motion: large swings hardly determine it
     for (const double degrees : {90.0, 150.0}) {
       SCOPED_TRACE(Describe(run) + ", " + std::to_string(degrees) + " deg");
       run.release_angle = run.initial_angle = degrees * kRadFromDeg;
@@ -105,7 +105,7 @@ TEST(FitRecording, EstimatesOfNoisyDataAreWithinFourStandardErrors) {
 }
 
 TEST(FitRecording, ConvergesWhereARateIsReleasedAtTheInstantOfASample) {
-  // A rate's first moving sample makes a kink in the cost where the release passes it, and the minimum may lie there.
+  // A rate's first moving sample causes a kink of the cost when the release passes it; the minimum may lie there.
   SyntheticOptions run = TextbookRun("coulomb");
   run.quantity = Quantity::kRate;
   run.parameters[2] *= 3;
@@ -194,7 +194,7 @@ TEST(FitRecording, ARigWithoutAStandardDeviationGivesNoSystematicError) {
   }
 }
 
-// ---- What the report holds -----------------------------------------------------------------------------------------
+// ---- Contents of the report ----------------------------------------------------------------------------------------
 
 TEST(FitRecording, ReportsSeriesAndStatisticsOfTheSameResiduals) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
@@ -204,7 +204,8 @@ TEST(FitRecording, ReportsSeriesAndStatisticsOfTheSameResiduals) {
   EXPECT_THAT(report.noise.sigma, DoubleNear(std::sqrt(sum / (1000 - 6)), 1e-9));
   EXPECT_THAT(report.noise.sigma, DoubleNear(0.002, 2e-4));
   EXPECT_THAT(report.statistics.rms_residual, DoubleNear(std::sqrt(sum / 1000), 1e-15));
-  EXPECT_THAT(report.statistics.aic + 2 * report.statistics.log_likelihood, DoubleNear(14, 1e-9));  // 6 and sigma
+  // Six parameters and sigma.
+  EXPECT_THAT(report.statistics.aic + 2 * report.statistics.log_likelihood, DoubleNear(14, 1e-9));
   EXPECT_THAT(report.solver.evaluations, Gt(report.solver.iterations));
   EXPECT_FALSE(report.solver.termination.empty());
   EXPECT_EQ(report.quantity, Quantity::kAngle);
@@ -237,11 +238,12 @@ TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
   EXPECT_NEAR(*report.Find("inertia")->closed_form, 0.079 / kTextbookTorque, 2e-4);
   EXPECT_NEAR(*report.Find("release_time")->closed_form, 1.9, 0.02);
   SyntheticOptions moving = MovingRun("coulomb");
-  EXPECT_FALSE(FitOwnModel(moving).Find("initial_rate")->closed_form);  // a parabola through samples is none
+  // A parabola through samples is not a closed form.
+  EXPECT_FALSE(FitOwnModel(moving).Find("initial_rate")->closed_form);
 }
 
 TEST(FitRecording, TakesATurningPointAtTheStartForNoRelease) {
-  // In motion just before a turning point and sampled slowly: for a sixth of a period the reading hardly moves.
+  // In motion just before a turning point and sampled slowly: for a sixth of a period the reading hardly changes.
   SyntheticOptions run;
   run.parameters = {0.48493, 0.069953, 0.003533};
   run.start = StartKind::kMoving;

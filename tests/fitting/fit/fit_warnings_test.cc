@@ -42,7 +42,7 @@ TEST(FitWarnings, SayNothingOfAGoodFit) {
 
 TEST(FitWarnings, CountSaturatedReadingsInTheWindowOnly) {
   SyntheticOptions run = TextbookRun("coulomb");
-  run.range = SensorRange{-0.42, 0.42};  // held at 0.435 until 1.9 s; the first turns back are at -0.40 and 0.40
+  run.range = SensorRange{-0.42, 0.42};  // held at 0.435 until 1.9 s; the next turning points are -0.40 and 0.40
   const Recording recording = Must(SimulateRecording(run));
   const FitReport whole = Fit(recording, ModelOptions("coulomb"));
   ASSERT_THAT(Codes(whole), testing::Contains("saturated"));
@@ -62,7 +62,7 @@ TEST(FitWarnings, TellAModelThatDoesNotDescribeTheData) {
   EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit"));
   const std::string& message = poor.warnings[0].message;
   EXPECT_THAT(message, HasSubstr("the error bars are conditional on a model that may be wrong"));
-  // Beyond the noise, and in its share of the residuals: two digits.
+  // Part beyond the noise, and its share of the residuals: two digits.
   const double rms = poor.statistics.rms_residual;
   EXPECT_THAT(NumberAfter("the residuals are ", message) / (rms / 0.002), testing::DoubleNear(1, 0.05));
   EXPECT_THAT(NumberAfter("each other, by ", message) / std::sqrt(rms * rms - 0.002 * 0.002),
@@ -94,9 +94,9 @@ TEST(FitWarnings, TellASensorWhoseNoiseDoesNotReachItsResolution) {
     options.noise = NoiseFamily::kGaussian;
     const std::vector<std::string> codes = Codes(Fit(Must(SimulateRecording(run)), options));
     const bool warned = std::find(codes.begin(), codes.end(), "quiet_sensor") != codes.end();
-    // Rounding adds a twelfth to the variance: half a count of rms is 0.41 counts of noise.
+    // Rounding adds a twelfth to the variance: an rms of half a count corresponds to noise of 0.41 counts.
     EXPECT_EQ(warned, counts < 0.4) << counts;
-    // Left to itself the fit takes the readings for what they are.
+    // By default the fit treats the readings as quantized.
     EXPECT_THAT(Codes(FitOwnModel(run)), testing::Not(testing::Contains("quiet_sensor"))) << counts;
   }
 }
@@ -188,7 +188,7 @@ TEST(FitWarnings, TellAZeroThatDriftsByHowMuchAndWhichWay) {
       const bool angle = quantity == Quantity::kAngle;
       const std::string before = "the reading's zero drifts, by about ";
       ASSERT_THAT(warning->message, testing::StartsWith(before));
-      // From the middle of the first period to that of the last whole one 28 s, of which the hold takes a part.
+      // The middle of the last whole period is 28 s after that of the first; the hold covers a part of it.
       EXPECT_THAT(std::stod(warning->message.substr(before.size())) / drift, testing::DoubleNear(28, 4.2));
       EXPECT_THAT(warning->message,
                   testing::EndsWith(

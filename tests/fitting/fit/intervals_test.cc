@@ -36,7 +36,7 @@ TEST(SetIntervals, AreOfTheCovarianceFarFromBounds) {
   }
 }
 
-/// The first seed at which a fit of no dry friction has some, or none.
+/// Fits data without dry friction, with the first seed for which its estimate is, or is not, at the bound.
 FitReport OfNoDryFriction(bool at_bound, const FitOptions& options) {
   for (std::uint64_t seed = 1; seed < 50; ++seed) {
     FitReport report = Fit(Must(SimulateRecording(NoisyRun("viscous", seed))), options);
@@ -72,7 +72,7 @@ TEST(SetIntervals, ReportProfilesInTheUnitsAndOrderOfTheParameters) {
     ASSERT_EQ(curve.value.size(), curve.statistic.size());
     EXPECT_GE(curve.value.size(), 9) << curve.name;
     EXPECT_TRUE(std::ranges::is_sorted(curve.value)) << curve.name;
-    // Near the optimum the likelihood of a fine recording is a parabola.
+    // Near the optimum the likelihood of an accurate recording is a parabola.
     for (std::size_t k = 0; k < curve.value.size(); ++k) {
       const double distance = (curve.value[k] - parameter.estimate) / *parameter.std_error;
       EXPECT_NEAR(curve.statistic[k], distance * distance, 0.05 * curve.threshold) << curve.name;
@@ -92,7 +92,7 @@ TEST(SetIntervals, OfTheCovarianceLeaveTheOtherEndOfABoundOpenAndSayWhatGivesIt)
   EXPECT_THAT(report.interval_method, StartsWith("estimate ± "));
 }
 
-/// The short swing in counts, let go a little differently each time: the counts are all there is of noise.
+/// The short swing in counts, released slightly differently in each take. The counts are the main noise.
 SyntheticOptions Counted(int take, double noise) {
   SyntheticOptions run = ShortSwing();
   run.resolution = kCount;
@@ -123,7 +123,7 @@ TEST(UsePosterior, IsNotForCountsThatScatterNorWhereAnotherMethodIsAskedFor) {
   EXPECT_EQ(report.interval_method, "profile likelihood");
 }
 
-// ---- What a recording can tell -------------------------------------------------------------------------------------
+// ---- Identifiability -----------------------------------------------------------------------------------------------
 
 TEST(SetIdentifiability, OfTwentySecondsOfTheTextbookRigIsThatOfAll) {
   SyntheticOptions run = TextbookRun("coulomb");
@@ -139,7 +139,7 @@ TEST(SetIdentifiability, IsWeakOfWhatReachesABound) {
     const FitReport report = OfNoDryFriction(at_bound, ModelOptions("coulomb"));
     for (const Identifiability& known : report.identifiability) {
       const bool is_weak = known.parameter == "coulomb";
-      if (known.parameter == "viscous") continue;  // traded for dry friction, more or less
+      if (known.parameter == "viscous") continue;  // partly interchangeable with dry friction
       EXPECT_EQ(known.verdict, is_weak ? Verdict::kWeakly : Verdict::kIdentifiable) << known.parameter;
       EXPECT_EQ(known.advice.empty(), !is_weak) << known.parameter;
     }
@@ -156,7 +156,8 @@ TEST(SetIdentifiability, IsWeakOfWhatReachesTheUsersUpperBound) {
   EXPECT_EQ(report.identifiability.back().verdict, Verdict::kWeakly);
 }
 
-/// Verdicts on viscous and coulomb whose information has that correlation, standard errors a fifth of the estimates.
+/// Verdicts on viscous and coulomb if their information has that correlation and standard errors are a fifth of the
+/// estimates.
 std::vector<Identifiability> VerdictsAt(double correlation) {
   const Fitted fitted = FitOpenly(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
   Optimum optimum;
@@ -180,7 +181,7 @@ TEST(SetIdentifiability, NamesTheCombinationThatLeavesNoTrace) {
   EXPECT_EQ(verdicts[0].verdict, Verdict::kIdentifiable);
 }
 
-/// 1 / (1 - ρ²) is what a variance has grown by: 100 at ρ = .995.
+/// Correlation multiplies the variance by 1 / (1 - ρ²): 100 at ρ = .995.
 TEST(SetIdentifiability, IsWeakOfWhatCanBeTradedForAnother) {
   for (const double correlation : {0.996, -0.999}) {
     const std::vector<Identifiability> verdicts = VerdictsAt(correlation);

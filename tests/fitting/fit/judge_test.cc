@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Judges parameters that no solver has touched.
+/// Judges parameters that no solver has changed.
 FitReport Judged(const SyntheticOptions& run, const std::vector<double>& parameters, bool usable = true) {
   const Recording recording = Must(SimulateRecording(run));
   const FitOptions options = ModelOptions(run.model.name);
@@ -38,7 +38,7 @@ FitReport Judged(const SyntheticOptions& run, const std::vector<double>& paramet
   if (usable) {
     EXPECT_TRUE(cost->SumOfSquares(parameters, &solution.sum));
   }
-  MaximizeLikelihood(*cost, problem, options, solution);  // Gaussian noise: finds sigma, moves nothing
+  MaximizeLikelihood(*cost, problem, options, solution);  // Gaussian noise: finds sigma, changes no parameter
   EXPECT_EQ(solution.parameters, parameters);
   return Judge(recording, options, problem, *cost, solution);
 }
@@ -68,7 +68,7 @@ TEST(Judge, CallsAPointAStandardErrorFromTheMinimumNotConverged) {
   EXPECT_THAT(report.reason, HasSubstr("standard errors is left to make"));
   EXPECT_EQ(report.parameters[1].estimate, parameters[1]);
   ExpectNoErrors(report);
-  EXPECT_GT(report.statistics.rms_residual, 0.0015);  // statistics there are
+  EXPECT_GT(report.statistics.rms_residual, 0.0015);  // statistics are present
 }
 
 TEST(Judge, CallsASolutionThatIsNotUsableFailed) {
@@ -82,7 +82,7 @@ TEST(Judge, CallsASolutionThatIsNotUsableFailed) {
 TEST(Judge, AFitCutShortIsNotConverged) {
   FitOptions options = ModelOptions("coulomb");
   options.search.max_iterations = 1;
-  options.initial = {{"inertia", 0.08}};  // from the data's own start values one iteration is enough
+  options.initial = {{"inertia", 0.08}};  // the default start values need only one iteration
   const FitReport report = Fit(Must(SimulateRecording(NoisyRun())), options);
   EXPECT_EQ(report.termination, Termination::kNotConverged);
   EXPECT_EQ(ExitCode(report.termination), 1);
@@ -94,7 +94,7 @@ TEST(Judge, AFitCutShortIsNotConverged) {
 TEST(Judge, AParameterAtItsBoundIsSaidToBeSoAndLeavesTheCovariance) {
   constexpr int kSeeds = 200;
   int at_bound = 0;
-  constexpr std::uint64_t kProfiles = 40;  // each as much work as 36 fits
+  constexpr std::uint64_t kProfiles = 40;  // each costs as much as 36 fits
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     FitOptions options = ModelOptions("coulomb");
     if (seed > kProfiles) options.interval = IntervalMethod::kCovariance;
@@ -118,7 +118,7 @@ TEST(Judge, AParameterAtItsBoundIsSaidToBeSoAndLeavesTheCovariance) {
     EXPECT_EQ(report.covariance.rows(), 5);
     EXPECT_TRUE(report.Find("viscous")->std_error);
   }
-  // An unbounded estimate would be below 0 in half of the seeds; four standard deviations of a binomial count.
+  // An unbounded estimate would be below 0 for half of the seeds; four standard deviations of a binomial count.
   EXPECT_NEAR(at_bound, kSeeds / 2, 4 * std::sqrt(kSeeds * 0.25));
 }
 
@@ -137,9 +137,9 @@ TEST(Judge, TheIntervalAtABoundEndsWhereTheProfileHasRisenByChiSquare) {
   EXPECT_GT(at_bound, 3);
 }
 
-// ---- What the data cannot tell -------------------------------------------------------------------------------------
+// ---- Not identifiable ----------------------------------------------------------------------------------------------
 
-/// A cost whose data see parameters only through `seen` * p: what an experiment without enough in it looks like.
+/// A cost whose data depend on the parameters only through `seen` * p, as in an experiment with too little information.
 class BlindCost final : public TrajectoryCost {
  public:
   BlindCost(TrajectoryCost& cost, Eigen::MatrixXd seen)
@@ -205,7 +205,7 @@ TEST(Judge, SaysInWordsWhatTheDataDoNotDependOn) {
 // ---- Noise ---------------------------------------------------------------------------------------------------------
 
 TEST(Judge, SaysWhyTheNoiseIsOfItsFamilyOfReadingsWithinTheRange) {
-  // 0.58 counts of noise, and a hold that seems to be 30 counts off.
+  // 0.58 counts of noise, and a hold that appears to be 30 counts off.
   SyntheticOptions run = NoisyRun();
   run.resolution = kCount;
   run.range = SensorRange{-0.32, 0.32};
@@ -216,7 +216,7 @@ TEST(Judge, SaysWhyTheNoiseIsOfItsFamilyOfReadingsWithinTheRange) {
 }
 
 TEST(Judge, StatisticsOfQuietReadingsAreThoseOfTheResidualsShown) {
-  // Estimates are means of the posterior here, not the likeliest.
+  // Here the estimates are means of the posterior, not the likeliest values.
   SyntheticOptions run = TextbookRun("viscous");
   run.resolution = kCount;
   run.noise = 0.05 * kCount;
@@ -249,7 +249,7 @@ TEST(Judge, AFixedParameterKeepsItsValueAndHasNoError) {
       if (other.fixed) continue;
       EXPECT_LE(*other.std_error, 1.01 * *free.Find(other.info.name)->std_error) << other.info.name;
     }
-    // One standard error along a parameter costs 1 in χ², with the others free to follow.
+    // A shift of a parameter by one standard error costs 1 in χ², if the others are free to follow.
     const double rise = report.residual.squaredNorm() - free.residual.squaredNorm();
     EXPECT_THAT(rise / (free.noise.sigma * free.noise.sigma), DoubleNear(1, 0.05));
   }
@@ -262,7 +262,7 @@ TEST(Judge, AFixedInertiaIsInTheRigsUnits) {
   const FitReport report = Fit(Must(SimulateRecording(NoisyRun())), options);
   EXPECT_EQ(report.termination, Termination::kConverged) << report.reason;
   EXPECT_DOUBLE_EQ(report.Find("inertia")->estimate, options.fixed["inertia"]);
-  EXPECT_FALSE(report.Find("inertia")->systematic_std_error);  // who fixes it knows it
+  EXPECT_FALSE(report.Find("inertia")->systematic_std_error);  // a fixed value is taken as exact
   EXPECT_TRUE(report.Find("viscous")->systematic_std_error);
 }
 

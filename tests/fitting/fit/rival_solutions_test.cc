@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two solutions of an accelerometer across the rod: both are said, and what is known of the radius settles it.
+// Two solutions of an accelerometer across the rod: both are reported, and prior knowledge of the radius decides.
 #include "pendulum/fitting/fit/rival_solutions.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit) {
   return Must(FitRecording(Must(SimulateRecording(options)), fit));
 }
 
-/// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m looks the same but for friction, and here is little.
+/// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m gives the same readings except for friction, which is small here.
 SyntheticOptions WithLittleFriction(std::uint64_t seed) {
   SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
   options.model = FindMotionModel("viscous").value();
@@ -61,7 +61,7 @@ TEST(RivalSolutions, FindsTheRadiusAcrossTheRodWithWhatIsKnownOfIt) {
     known.model = "viscous";
     known.priors["radius"] = {0.31, 0.02};
     ExpectTruth(WithLittleFriction(seed), Fit(WithLittleFriction(seed), known));
-    // A prior that has room for both tells neither.
+    // A prior wide enough for both radii does not decide.
     known.priors["radius"] = {0.45, 0.2};
     EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kNotIdentifiable);
     known.priors.clear();
@@ -70,7 +70,7 @@ TEST(RivalSolutions, FindsTheRadiusAcrossTheRodWithWhatIsKnownOfIt) {
   }
 }
 
-// The other radius has the same small-angle frequency, so a second recording that is as ambiguous settles nothing.
+// The other radius has the same small-angle frequency, so a second recording with the same ambiguity does not decide.
 TEST(RivalSolutions, AreNotSettledByASecondRecordingLikeIt) {
   FitOptions viscous;
   viscous.model = "viscous";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is stopped, at every evaluation of a trajectory in turn: deterministic, for the cost itself requests the stop.
+// Stops computations at every evaluation of a trajectory in turn. This is deterministic, because the cost itself
+// requests the stop.
 #include <atomic>
 #include <limits>
 #include <memory>
@@ -37,7 +38,7 @@ std::stop_token Requested() {
   return source.get_token();
 }
 
-/// The cost of a problem that requests a stop of its data with the evaluation after so many.
+/// The cost of a problem that requests a stop after `evaluations` evaluations.
 class StoppingCost final : public TrajectoryCost {
  public:
   StoppingCost(const FitProblem& problem, std::stop_source stop, int evaluations)
@@ -75,7 +76,7 @@ class StoppingCost final : public TrajectoryCost {
   int traces() const override { return cost_->traces(); }
   bool is_stopped() const override { return cost_->is_stopped(); }
 
-  /// Evaluations that were asked for.
+  /// Number of evaluations requested.
   int evaluations() const { return evaluations_; }
 
  private:
@@ -96,7 +97,7 @@ class StoppingCost final : public TrajectoryCost {
   mutable int evaluations_ = 0;
 };
 
-/// A fit by hand from its problem to its report, stopped with the evaluation after so many.
+/// A fit with explicit steps from its problem to its report, stopped after `evaluations` evaluations.
 struct HandmadeFit {
   HandmadeFit(const Recording& recording, FitOptions options, int evaluations) {
     std::stop_source stop;
@@ -117,7 +118,8 @@ struct HandmadeFit {
   int asked = 0;
 };
 
-/// Stops a fit at each of its evaluations, or at 300 of them: it ends, and never asks for much more than the whole fit.
+/// Stops a fit at each of its evaluations, or at 300 of them. It must end, and never request many more evaluations than
+/// the whole fit.
 void StopEverywhere(const Recording& recording, const FitOptions& options) {
   const HandmadeFit whole(recording, options, std::numeric_limits<int>::max());
   ASSERT_FALSE(whole.is_stopped);
@@ -127,7 +129,7 @@ void StopEverywhere(const Recording& recording, const FitOptions& options) {
   for (int k = 0; k < whole.asked; k += step) {
     const HandmadeFit fit(recording, options, k);
     EXPECT_TRUE(fit.is_stopped) << k;
-    // Loops over restarts, neighbouring minima and points of profiles still turn, each with nothing in it.
+    // Loops over restarts, neighbouring minima and points of profiles still run, but without work.
     EXPECT_LE(fit.asked, 4 * whole.asked + 1000) << k;
   }
 }

@@ -25,8 +25,8 @@ using testing::StartsWith;
 
 // ---- Recovery ------------------------------------------------------------------------------------------------------
 
-/// Without noise: an angle after a release, a gyro's rate of a start in motion, and an angle whose file's seconds are
-/// 1.02 true ones.
+/// Without noise: an angle after a release, a gyro's rate of a start in motion, and an angle whose file's seconds last
+/// 1.02 true seconds.
 Recordings NoiseFreeRecordings() {
   SyntheticOptions gyro = MovingRun("coulomb");
   gyro.quantity = Quantity::kRate;
@@ -60,7 +60,7 @@ TEST(FitJointly, RecoversTheTruthFromNoiseFreeRecordingsOfDifferentKinds) {
   std::vector<double> first = kTruthInSi, second = kTruthInSi, third = kTruthInSi;
   first.insert(first.end(), {0.423, 1.9, 0.012});
   second.insert(second.end(), {-0.2, 1.5, 0.012});
-  third.insert(third.end(), {1.1, 1.9 / 1.02, 0.012});  // its release on the file's clock
+  third.insert(third.end(), {1.1, 1.9 / 1.02, 0.012});  // release on the file's clock
   ExpectTruth(fit.runs[0], first, 1e-7);
   ExpectTruth(fit.runs[1], second, 1e-7);
   ExpectTruth(fit.runs[2], third, 1e-7);
@@ -76,12 +76,12 @@ TEST(FitJointly, EstimatesOfNoisyRecordingsAreWithinFourStandardErrors) {
 
 TEST(FitJointly, RecoversAZeroThatDriftsInEachRecordingAsItDoes) {
   Recordings recordings = NoiseFreeRecordings();
-  const double drifts[] = {2e-4, -1e-3, 5e-4};  // rad/s, rad/s²; of true seconds
+  const double drifts[] = {2e-4, -1e-3, 5e-4};  // rad/s, rad/s², in true seconds
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::VectorXd since = recordings[k].time.array() - recordings[k].time[0];
     recordings[k].value += drifts[k] * recordings[k].clock_scale * since;
   }
-  recordings.erase(recordings.begin() + 1);  // the gyro's is called otherwise
+  recordings.erase(recordings.begin() + 1);  // the gyro's drift parameter has another name
   FitOptions options = RigOptions();
   options.initial = {{"zero_drift", 0.0}};
   const JointFit fit = FitAllJointly(recordings, options);
@@ -91,7 +91,7 @@ TEST(FitJointly, RecoversAZeroThatDriftsInEachRecordingAsItDoes) {
   EXPECT_NEAR(fit.runs[1].Find("zero_drift")->estimate, drifts[2], 1e-9);
 }
 
-// Dry friction stops it after some 40 s of the 60.
+// Dry friction stops it after some 40 s of the 60 s.
 TEST(FitJointly, RecoversTheTruthFromRecordingsThatComeToRest) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.duration = 60;
@@ -129,8 +129,8 @@ TEST(FitJointly, IsTheWeightedMeanOfSeparateFits) {
   }
 }
 
-// A recording twice tells as much as twice as many samples: errors of what is shared by √2 smaller, of what is not,
-// not.
+// A recording used twice has the information of twice as many samples: errors of shared parameters shrink by √2, those
+// of the others do not.
 TEST(FitJointly, OfARecordingTwiceHasErrorsSmallerByTheRootOfTwo) {
   const Recording recording = Must(SimulateRecording(Released(0.5, 3)));
   const FitReport alone = Fit(recording, RigOptions());
@@ -144,7 +144,7 @@ TEST(FitJointly, OfARecordingTwiceHasErrorsSmallerByTheRootOfTwo) {
   EXPECT_GT(*release.std_error, 0.8 * *alone.Find("release_angle")->std_error);
 }
 
-// σ² = RSS / (N - share): all recordings together lose as many degrees of freedom as there are parameters.
+// σ² = RSS / (N - share): together, all recordings lose one degree of freedom per parameter.
 TEST(FitJointly, LosesADegreeOfFreedomForEachParameter) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2))),
                                  Must(SimulateRecording(Released(0.7, 3)))};
@@ -154,7 +154,7 @@ TEST(FitJointly, LosesADegreeOfFreedomForEachParameter) {
   EXPECT_NEAR(left, 3000 - (3 + 3 * 3), 0.01);
 }
 
-// Outliers of one sample in fifty, by fifty times the noise.
+// One sample in fifty is an outlier of fifty times the noise.
 TEST(FitJointly, IsTheWeightedMeanOfSeparateRobustFits) {
   Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   for (Recording& recording : recordings) {
@@ -177,13 +177,14 @@ TEST(FitJointly, AddsUpLikelihoodsAndCountsParameters) {
     sum += fit.runs[k].statistics.log_likelihood;
     samples += static_cast<double>(recordings[k].size());
   }
-  EXPECT_EQ(fit.parameters, 15);  // inertia and two frictions; three of start and zero, and σ, of each
+  EXPECT_EQ(fit.parameters, 15);  // inertia and two frictions; start, zero and σ of each: 3 + 1
   EXPECT_NEAR(fit.whole.statistics.log_likelihood, sum, 1e-9 * std::abs(sum));
   EXPECT_NEAR(fit.whole.statistics.aic, 30 - 2 * sum, 1e-6);
   EXPECT_NEAR(fit.whole.statistics.bic, 15 * std::log(samples) - 2 * sum, 1e-6);
 }
 
-// By hand: (3 · 2² + 1 · 4²) / 4 = 7; k = 2 and N = 5: AIC 4 - 2 L, AICc 12 / (5 - 3) more, BIC 2 ln 5 - 2 L.
+// By hand: (3 · 2² + 1 · 4²) / 4 = 7. With k = 2 and N = 5, AIC is 4 - 2 L, AICc is larger by 12 / (5 - 3), BIC is 2 ln
+// 5 - 2 L.
 TEST(SumStatistics, WeighsResidualsThatAreNotCensoredAndCountsAllSamples) {
   FitReport first, second;
   first.residual = Eigen::VectorXd::Zero(3);
@@ -211,8 +212,8 @@ TEST(SumStatistics, OfNothingAreFinite) {
   EXPECT_EQ(none.bic, 0);
 }
 
-// With nothing in common but inertia each recording's friction follows it as its own covariance says:
-// f + C_fI / C_II (I - I_k), and inertia is the mean with weights 1 / C_II.
+// If only inertia is shared, each recording's friction follows it according to its own covariance: f + C_fI / C_II (I -
+// I_k). Inertia is the mean with weights 1 / C_II.
 TEST(FitJointly, LeavesEachRecordingWhatIsNotShared) {
   const Recordings recordings = MixedRecordings(5);
   const std::vector<FitReport> alone = FitAlone(recordings, RigOptions());
@@ -239,13 +240,13 @@ TEST(FitJointly, LeavesEachRecordingWhatIsNotShared) {
 
 // ---- Priors, fixed values, bounds ----------------------------------------------------------------------------------
 
-/// A prior five of their joint errors from the truth and as wide as one.
+/// A prior that is five joint standard errors from the estimate and one wide.
 ParameterPrior InertiaPrior(const Estimates& combined) {
   const double error = std::sqrt(combined.covariance(0, 0));
   return {combined.value[0] + 5 * error, error};
 }
 
-/// With the prior as one recording more, of inertia alone.
+/// Adds the prior as if it were another recording, which measures only inertia.
 Estimates WithPrior(const Estimates& combined, const ParameterPrior& prior) {
   Eigen::MatrixXd precision = combined.covariance.inverse();
   Eigen::VectorXd sum = precision * combined.value;
@@ -265,7 +266,8 @@ TEST(FitJointly, CountsAPriorOnWhatIsSharedOnce) {
   ExpectSame(FitAllJointly(recordings, options).whole, kPhysical, WithPrior(Combine(parts), prior));
 }
 
-// A prior on what each recording has for itself is in each fit alone; their weighted mean needs nothing more.
+// Each separate fit includes its own prior on a parameter that is not shared; their weighted mean needs no further
+// prior.
 TEST(FitJointly, CountsAPriorOnWhatIsNotSharedOnceInEachRecording) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions options = RigOptions();
@@ -275,7 +277,7 @@ TEST(FitJointly, CountsAPriorOnWhatIsNotSharedOnceInEachRecording) {
   ExpectSame(FitAllJointly(recordings, options).whole, kPhysical, Combine(parts));
 }
 
-// Released at 1.9 s (fit_support.h), which the second prior is far from.
+// Released at 1.9 s (fit_support.h), which the second prior contradicts.
 TEST(FitJointly, WarnsOfEachRecordingsPriorsThatDoNotFit) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions near = RigOptions(), far = near;
@@ -312,7 +314,7 @@ Recordings WithoutViscous(std::uint64_t seed) {
   return recordings;
 }
 
-// Half of all recordings of no viscous friction would have it negative: these two are such.
+// Without viscous friction, half of all recordings would give a negative estimate; these two do.
 TEST(FitJointly, HasAProfileIntervalAtABound) {
   FitOptions options = RigOptions();
   options.interval = IntervalMethod::kAuto;
@@ -340,7 +342,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
   EXPECT_LE(at_bound, 5);
 }
 
-// ---- What cannot be fitted -----------------------------------------------------------------------------------------
+// ---- Recordings that cannot be fitted ------------------------------------------------------------------------------
 
 TEST(FitJointly, OfRigsOfDifferentInertiaDoesNotConvergeAndSaysSo) {
   SyntheticOptions heavy = Released(0.5, 2);

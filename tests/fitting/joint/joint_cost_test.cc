@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against all residuals of all recordings, one below the other.
+// Compares the joint cost with the stacked residuals of all recordings.
 #include "pendulum/fitting/joint/joint_cost.h"
 
 #include <cmath>
@@ -22,7 +22,8 @@ using testing::ElementsAre;
 constexpr int kParameters = 10;
 constexpr int kOwnRelease = 5;  // release_time of the first recording
 
-/// A release seen as an angle and a moving start seen as a rate share inertia (0) and dry friction (1) of ten.
+/// A release measured as an angle and a moving start measured as a rate. They share inertia (0) and dry friction (1) of
+/// ten parameters.
 struct Case {
   Example released{Must(FindMotionModel("coulomb")), StartKind::kRelease, Quantity::kAngle, 900};
   Example moving{Must(FindMotionModel("coulomb")), StartKind::kMoving, Quantity::kRate, 700};
@@ -32,7 +33,7 @@ struct Case {
   JointCost cost{terms, kParameters, priors};
   std::vector<double> trial = Trial();
 
-  /// What the examples are tried at, and what is shared between them.
+  /// The trial values of both examples, with common values for the shared parameters.
   std::vector<double> Trial() const {
     std::vector<double> all(kParameters);
     for (std::size_t i = 0; i < released.trial.size(); ++i) {
@@ -57,7 +58,7 @@ Eigen::MatrixXd RowsOf(const Example& example, const std::vector<int>& at, const
   return rows / example.data.scale;
 }
 
-/// [J'J, J'r; r'J, r'r] of all residuals, those of the priors once each.
+/// [J'J, J'r; r'J, r'r] of all residuals; each prior counts once.
 Eigen::MatrixXd ExpectedSums(const Case& joint, const std::vector<double>& all) {
   const Eigen::MatrixXd first = RowsOf(joint.released, joint.terms[0].at, all);
   const Eigen::MatrixXd second = RowsOf(joint.moving, joint.terms[1].at, all);
@@ -91,7 +92,7 @@ TEST(JointCost, HasTheSumsOfAllResidualsAndOfEachPriorOnce) {
   EXPECT_THAT(sum / expected(kParameters, kParameters), DoubleNear(1, 1e-12));
 }
 
-// Own parameters of different recordings meet in no residual.
+// No residual depends on own parameters of two different recordings.
 TEST(JointCost, HasNothingBetweenOwnParametersOfDifferentRecordings) {
   const Case joint;
   Eigen::MatrixXd sums;
@@ -128,7 +129,7 @@ TEST(JointCost, GivesCeresTheSameCostAndGradient) {
   }
 }
 
-// The gradient by the shared inertia is half the slope of the sum of both, by differences.
+// The gradient by the shared inertia is half the slope of the total sum, by finite differences.
 TEST(JointCost, MovesAllRecordingsWithWhatTheyShare) {
   const Case joint;
   Eigen::MatrixXd sums;
@@ -151,7 +152,7 @@ TEST(JointCost, IsNoneWhereOneMotionCannotBeTraced) {
   EXPECT_FALSE(joint.cost.SumOfSquares(joint.trial, &sum));
   EXPECT_FALSE(joint.cost.Sums(joint.trial, &sums));
   joint.trial = joint.Trial();
-  joint.trial[6] = -1e3;  // the other's friction drives it
+  joint.trial[6] = -1e3;  // negative friction drives the other pendulum
   EXPECT_FALSE(joint.cost.SumOfSquares(joint.trial, &sum));
   EXPECT_FALSE(joint.cost.Sums(joint.trial, &sums));
 }
@@ -179,12 +180,12 @@ TEST(JointCost, CountsReversalsTracesAndRecordingsOfAll) {
   EXPECT_EQ(joint.cost.traces(), before + 2);
 }
 
-// Dry friction of τ takes 4 τ / G of the amplitude of each swing: 0.01 rad is soon gone, a radian is not.
+// Dry friction τ reduces the amplitude by 4 τ / G per swing: 0.01 rad is soon lost, a radian is not.
 TEST(JointCost, ComesToRestWhereAnyRecordingDoes) {
   const Case joint;
   EXPECT_FALSE(joint.cost.ComesToRest(joint.trial, 0));
   std::vector<double> short_swing = joint.trial;
-  short_swing[7] = 0.01;  // the moving one: 0.01 rad at 0.01 rad/s
+  short_swing[7] = 0.01;  // the moving start: 0.01 rad at 0.01 rad/s
   short_swing[8] = 0.01;
   EXPECT_TRUE(joint.cost.ComesToRest(short_swing, 0));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of joint fits beyond those of parabolas: profiles, what rig and clock leave open, posteriors.
+// Errors of joint fits beyond the covariance: profiles, systematic errors of rig and clock, posteriors.
 #include "pendulum/fitting/joint/joint_errors.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::DoubleNear;
 
-/// The rig released at several angles, with noise on no levels.
+/// The rig released at several angles, with noise and without quantization.
 Recordings SeveralReleases(std::size_t count, std::uint64_t seed = 1) {
   Recordings recordings;
   for (std::size_t k = 0; k < count; ++k) {
@@ -35,7 +35,7 @@ FitOptions ProfileOptions() {
   return options;
 }
 
-/// 2 (log L of the estimate - log L) with one shared parameter held in a joint fit of its own.
+/// 2 (log L of the estimate - log L) with one shared parameter fixed in a separate joint fit.
 double DevianceRise(const Recordings& recordings, const JointFit& best, const std::string& name, double value) {
   FitOptions options = RigOptions();
   options.fixed = {{name, value}};
@@ -43,8 +43,8 @@ double DevianceRise(const Recordings& recordings, const JointFit& best, const st
   return 2 * (best.whole.statistics.log_likelihood - held.whole.statistics.log_likelihood);
 }
 
-// Of independent residuals the interval ends where the deviance has risen by 1.96² = 3.8415. Held parameters keep their
-// σ among the parameters to estimate, which makes the rise of 1000 samples larger by less than a hundredth.
+// For independent residuals the interval ends where the deviance has risen by 1.96² = 3.8415. Fits with a fixed
+// parameter still estimate σ, which makes the rise for 1000 samples larger by less than a hundredth.
 TEST(JointProfile, EndsWhereTheJointDevianceHasRisenByChiSquare) {
   const Recordings recordings = SeveralReleases(2);
   const JointFit best = FitAllJointly(recordings, ProfileOptions());
@@ -71,13 +71,13 @@ TEST(JointProfile, IsTheSameInEveryReport) {
 
 // ---- Rig and clock -------------------------------------------------------------------------------------------------
 
-/// What rig and clock leave open of a shared parameter, over its estimate.
+/// Systematic error of a shared parameter from rig and clock, relative to its estimate.
 double RelativeSystematic(const JointFit& fit, const std::string& name) {
   const ParameterEstimate& parameter = *fit.whole.Find(name);
   return parameter.systematic_std_error.value_or(0) / parameter.estimate;
 }
 
-// Torques and inertia are told in units of G: 1 % in G is 1 % of each, from however many recordings.
+// Torques and inertia are computed in units of G: 1 % in G is 1 % of each, for any number of recordings.
 TEST(JointSystematic, OfARigIsItsCommonFactor) {
   FitOptions options = RigOptions();
   options.rig = RigOfTorque(0.01 * kTextbookTorque);
@@ -89,7 +89,7 @@ TEST(JointSystematic, OfARigIsItsCommonFactor) {
   }
 }
 
-/// Recordings by clocks of that error each; `apart`: each has another scale, a clock of its own.
+/// Recordings with clock errors of 1e-3; if `apart`, each has another scale and so its own clock.
 Recordings WithClocks(Recordings recordings, bool apart) {
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     recordings[k].clock_scale_std_dev = 1e-3;
@@ -100,7 +100,7 @@ Recordings WithClocks(Recordings recordings, bool apart) {
   return recordings;
 }
 
-// Inertia goes with the square of time, viscous friction with time, dry friction with none: 2, 1 and 0 thousandths.
+// Inertia scales with time squared, viscous friction with time, dry friction not at all: 2, 1 and 0 thousandths.
 TEST(JointSystematic, OfACommonClockIsThatOfTime) {
   for (const std::size_t count : {2, 4}) {
     const JointFit fit = FitAllJointly(WithClocks(SeveralReleases(count), false), RigOptions());
@@ -110,7 +110,7 @@ TEST(JointSystematic, OfACommonClockIsThatOfTime) {
   }
 }
 
-// Two clocks err independently: of two recordings that weigh about alike inertia has 2e-3 / √2.
+// Two clocks have independent errors: for two recordings of about equal weight, the error of inertia is 2e-3 / √2.
 TEST(JointSystematic, OfTwoClocksIsSmallerThanOfOne) {
   const Recording recording = Must(SimulateRecording(Released(0.5, 3)));
   const JointFit fit = FitAllJointly(WithClocks({recording, recording}, true), RigOptions());
@@ -120,8 +120,9 @@ TEST(JointSystematic, OfTwoClocksIsSmallerThanOfOne) {
   EXPECT_GT(RelativeSystematic(uneven, "inertia"), 1.35e-3);
 }
 
-/// An angle and a gyro's rate, little noise, by one clock of that scale; or the rate first. The gyro's swings are so
-/// small, a tenth of a radian, that powers of the scale are what their estimates follow: a rate's sine does not scale.
+/// An angle and a gyro's rate with little noise and a common clock of that scale, in either order. The gyro's swings
+/// are small, a tenth of a radian, so its estimates follow powers of the scale: the sine in a rate's equation does not
+/// scale.
 Recordings AngleAndRate(double scale, bool rate_first) {
   SyntheticOptions angle = Released(0.8, 1), gyro = MovingRun("coulomb");
   gyro.quantity = Quantity::kRate;
@@ -138,8 +139,8 @@ Recordings AngleAndRate(double scale, bool rate_first) {
   return recordings;
 }
 
-// A gyro's rate does not change with the clock that an angle's would change with, so that they follow a wrong one
-// differently: as fits by a faster and a slower clock do, whichever comes first.
+// A gyro's rate does not depend on the clock, an angle does. Their estimates therefore follow a wrong clock
+// differently, as fits with a faster and a slower clock do. The order of the recordings does not matter.
 TEST(JointSystematic, OfOneClockOfAngleAndRateIsThatOfFitsByFasterAndSlowerClocks) {
   for (const bool rate_first : {false, true}) {
     SCOPED_TRACE(rate_first ? "rate first" : "angle first");
@@ -147,7 +148,8 @@ TEST(JointSystematic, OfOneClockOfAngleAndRateIsThatOfFitsByFasterAndSlowerClock
     const JointFit fast = FitAllJointly(AngleAndRate(1.0005, rate_first), RigOptions());
     const JointFit slow = FitAllJointly(AngleAndRate(0.9995, rate_first), RigOptions());
     for (const std::string& name : kPhysical) {
-      const double moved = std::abs(fast.whole.Find(name)->estimate - slow.whole.Find(name)->estimate);  // by 1e-3
+      // Change of the estimate for a relative change of the clock by 1e-3.
+      const double moved = std::abs(fast.whole.Find(name)->estimate - slow.whole.Find(name)->estimate);
       const ParameterEstimate& parameter = *fit.whole.Find(name);
       EXPECT_THAT(parameter.systematic_std_error.value_or(0),
                   DoubleNear(moved, 0.05 * moved + 0.1 * *parameter.std_error))
@@ -158,7 +160,7 @@ TEST(JointSystematic, OfOneClockOfAngleAndRateIsThatOfFitsByFasterAndSlowerClock
 
 // ---- Posteriors ----------------------------------------------------------------------------------------------------
 
-/// Counts without noise of the rig at several angles and phases of the levels.
+/// Noise-free counts of the rig at several angles and positions within a level.
 Recordings QuietRecordings(std::size_t count, std::uint64_t seed) {
   Recordings recordings;
   for (std::size_t k = 0; k < count; ++k) {
@@ -211,7 +213,7 @@ TEST(JointPosterior, IsTheWeightedMeanOfPosteriors) {
   ExpectCombined(fit.whole, Combine(PartsOf(alone)), 1e-4);
 }
 
-// A prior as narrow as the joint error of inertia, at the joint estimate: the error is smaller by √2, not by √(1 + K).
+// A prior as narrow as the joint error of inertia, at the joint estimate, reduces the error by √2, not by √(1 + K).
 TEST(JointPosterior, CountsAPriorOnWhatIsSharedOnce) {
   const Recordings recordings = QuietRecordings(3, 1);
   const Estimates combined = Combine(PartsOf(FitAlone(recordings, QuietOptions())));
@@ -221,7 +223,7 @@ TEST(JointPosterior, CountsAPriorOnWhatIsSharedOnce) {
   const JointFit fit = FitAllJointly(recordings, options);
   EXPECT_EQ(fit.whole.std_error_method, "posteriors of the recordings alone, combined as parabolas");
   ASSERT_TRUE(fit.whole.Find("inertia")->std_error);
-  // Posteriors are no parabolas, from which a prior could be taken out exactly. Counted twice it would leave 0.58.
+  // Posteriors are not exact parabolas, so a prior cannot be removed exactly. If counted twice it would leave 0.58.
   EXPECT_THAT(*fit.whole.Find("inertia")->std_error / error, DoubleNear(std::sqrt(0.5), 0.06));
 }
 

@@ -13,7 +13,7 @@
 namespace pendulum::joint_parabolas_test {
 namespace {
 
-// Of independent estimates with normal errors the best combination is the mean weighted with inverse covariances.
+// For independent estimates with normal errors, the best combination is the mean weighted with inverse covariances.
 TEST(CombineParabolas, IsTheWeightedMeanOfTheFitsAlone) {
   const TwoRuns runs;
   const Estimates mean = Combine({EstimatesOf(runs.alone[0], kPhysical), EstimatesOf(runs.alone[1], kPhysical)});

@@ -17,14 +17,14 @@ using testing::Pointwise;
 
 using Samples = BlockSamples<double, false, 1, double>;
 
-/// What the blocks read, in their order, and the sums they gave in the order they were added.
+/// The readings of the blocks in sample order, and their sums in the order of addition.
 struct Collected {
   std::vector<double> readings;
   std::vector<double> sums;
   bool is_complete = false;
 };
 
-/// Lays the line 3 t + 1 through all times in segments that begin at multiples of `length`, up to `end`.
+/// Passes segments of the line 3 t + 1 that begin at multiples of `length`, up to `end`.
 Collected LayLine(Samples& samples, const std::vector<double>& time, int threads, double length, double end) {
   Collected collected;
   collected.readings.resize(time.size());
@@ -71,7 +71,7 @@ TEST(BlockSamples, ReadsEachSampleFromItsSegmentWhateverTheSegments) {
   }
 }
 
-// More segments than are kept before they are worked on, and more blocks than one thread takes.
+// More segments than are kept before evaluation, and more blocks than one thread takes.
 TEST(BlockSamples, SumsInTheSameOrderOnAnyNumberOfThreads) {
   const std::vector<double> time = Times(150'000);
   for (const double length : {0.013, 7.7}) {

@@ -54,7 +54,7 @@ TEST(EdgeNoise, OfASampleHasItsOwnSpread) {
   EXPECT_DOUBLE_EQ(edges.From(1).ForSample(0).sigma, 6e-4);
 }
 
-/// Edges of 0.4 sin 5t with normal errors of edges [rad] and stamps [s].
+/// Edges of 0.4 sin 5t with normal errors of the edges [rad] and of the time stamps [s].
 struct Wave {
   Eigen::VectorXd time, value, readings;
 
@@ -72,10 +72,11 @@ struct Wave {
 
 TEST(EdgeNoise, TellsErrorsOfStampsFromThoseOfEdges) {
   NoiseModel noise = Edges(1);
-  noise.edge.reset();  // every value is one
+  noise.edge.reset();  // every value is an edge
   for (const double stamp : {5e-5, 1e-4, 4e-4}) {
     const Wave wave(1e-4, stamp);
-    // Each variance is known to some 4 % (2 / sqrt(N) and what they trade), their ratio's root to as much; four of it.
+    // The error of each variance is some 4 % (2 / sqrt(N) and their correlation), and so is that of the ratio's root;
+    // four times that is allowed.
     EXPECT_THAT(LikeliestStampRatio(noise, wave.value, wave.readings, RatesOf(wave.time, wave.readings)) / stamp * 1e-4,
                 DoubleNear(1, 0.16))
         << stamp;
@@ -88,7 +89,7 @@ TEST(EdgeNoise, LeavesASlowMisfitToTheEdges) {
   NoiseModel noise = Edges(1);
   noise.edge.reset();
   const Wave wave(1e-4, 0);
-  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // by 2 ms
+  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // late by 2 ms
   EXPECT_LT(LikeliestStampRatio(noise, wave.value, late, RatesOf(wave.time, late)), 0.5);
 }
 
@@ -154,7 +155,7 @@ TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
   }
 }
 
-/// A lag of a third of a count taken for none would be friction: it is told from it.
+/// A lag of a third of a count, if ignored, would look like friction; the fit distinguishes them.
 TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
   SyntheticOptions run = Encoder(7);
   run.edge_lag = 0.35 * kResolution;
@@ -183,7 +184,7 @@ TEST(RatesOf, AreFiniteWhereStampsAreAllButTheSame) {
   for (const double rate : rates) EXPECT_THAT(rate, DoubleNear(2, 0.05));
 }
 
-/// One row is all that an encoder shows of a hold.
+/// An encoder records only one row during a hold.
 TEST(EdgeNoise, OfACoarseEncoderFindsTheReleaseBehindOneRow) {
   SyntheticOptions run = Encoder(7);
   run.start = StartKind::kRelease;

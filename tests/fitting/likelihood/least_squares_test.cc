@@ -12,7 +12,7 @@
 namespace pendulum::least_squares_test {
 namespace {
 
-// Of parameters 0 and 2 out of three. By hand at (1, 7, 3): residuals (1 - 2) · 3 = -3 and (3 + 1) · 0.5 = 2.
+// Priors on parameters 0 and 2 of three. By hand at (1, 7, 3): residuals (1 - 2) · 3 = -3 and (3 + 1) · 0.5 = 2.
 const std::vector<PriorTerm> kPriors = {{0, 2.0, 3.0}, {2, -1.0, 0.5}};
 const std::vector<double> kParameters = {1, 7, 3};
 
@@ -37,7 +37,8 @@ TEST(AddPriors, AddsNothingWithoutPriors) {
   EXPECT_EQ(sums, Eigen::MatrixXd::Constant(4, 4, 2.5));
 }
 
-// Two measurements of one quantity, 2 ± 1/3 and 1 ± 1/4, about 0: 9 + 16 of information, pulls -3 · 6 and -4 · 4.
+// Two measurements of one quantity, 2 ± 1/3 and 1 ± 1/4, evaluated at 0: information 9 + 16, gradients -3 · 6 and -4 ·
+// 4.
 TEST(AddPriors, AddsUpWhatIsSaidTwiceOfAParameter) {
   const std::vector<PriorTerm> twice = {{0, 2.0, 3.0}, {0, 1.0, 4.0}};
   const std::vector<double> at = {0};
@@ -49,7 +50,7 @@ TEST(AddPriors, AddsUpWhatIsSaidTwiceOfAParameter) {
   EXPECT_DOUBLE_EQ(sums(1, 1), 52);
 }
 
-// A sum of squares is a parabola, so that central differences are exact: ∂/∂p Σ r² = 2 J'r.
+// A sum of squares is a parabola, so central differences are exact: ∂/∂p Σ r² = 2 J'r.
 TEST(AddPriors, HasHalfTheGradientOfThePriorSum) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(4, 4);
   AddPriors(kPriors, kParameters, &sums);
@@ -78,7 +79,7 @@ Compressed Compress(const Eigen::MatrixXd& sums) {
   return compressed;
 }
 
-/// Products of residuals and derivatives, as Sums gives them.
+/// Products of residuals and derivatives, in the form of Sums.
 Eigen::MatrixXd SumsOf(const Compressed& of) {
   Eigen::MatrixXd rows(of.jacobian.rows(), of.jacobian.cols() + 1);
   rows << of.jacobian, of.residuals;
@@ -101,14 +102,14 @@ TEST(CompressResiduals, HaveTheSameProductsAsAllResidualsOfAnyScale) {
   }
 }
 
-// The second parameter does what the first does, twice; the third does nothing.
+// The second parameter has twice the effect of the first; the third has no effect.
 TEST(CompressResiduals, OfWhatTheDataDoNotTellHaveTheSameProductsAndNoInfinity) {
   Compressed all{Eigen::Vector3d(1, 2, 4), Eigen::Matrix3d{{1, 2, 0}, {3, 6, 0}, {-1, -2, 0}}};
   const Compressed compressed = Compress(SumsOf(all));
   EXPECT_TRUE(SumsOf(compressed).isApprox(SumsOf(all), 1e-12)) << SumsOf(compressed);
 }
 
-// A gradient that so small a deviance cannot have, as the information of a likelihood may: 4² / 1 > 9.
+// A gradient too large for the deviance, as the information of a likelihood can produce: 4² / 1 > 9.
 TEST(CompressResiduals, KeepDevianceAndGradientAndShortenTheStepWhereTheyDoNotFit) {
   const Compressed compressed = Compress(Eigen::Matrix2d{{1, 4}, {4, 9}});
   const Eigen::MatrixXd sums = SumsOf(compressed);

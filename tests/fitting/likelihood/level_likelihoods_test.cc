@@ -22,7 +22,7 @@ NoiseModel Levels(double sigma) {
   return noise;
 }
 
-/// The exact likelihood is NoiseModel's, which has tests of its own.
+/// The exact likelihood is that of NoiseModel, which has its own tests.
 void ExpectNear(const NoiseLikelihood& actual, const NoiseLikelihood& exact, double sigma) {
   EXPECT_THAT(actual.log, DoubleNear(exact.log, 1e-6));
   EXPECT_THAT(actual.score * sigma, DoubleNear(exact.score * sigma, 1e-5));

@@ -21,7 +21,7 @@ TEST(DepthTable, AgreesWithTheExactProbability) {
       for (int i = 0; i <= 1000; ++i) {
         const double depth = -10 * sigma + i / 1000.0 * (last + 10 * sigma);
         const double exact = GaussianInterval(-depth / sigma, (width - depth) / sigma).log;
-        // The remainder of a quintic: (1/4)⁶ / 46080 of a sixth derivative of a few.
+        // Remainder of a quintic: (1/4)⁶ / 46080 times a sixth derivative of a few units.
         ASSERT_NEAR(table(depth), exact, 1e-7) << sigma << " " << width << " " << depth;
         ASSERT_EQ(table(depth), table.At(depth).log);
       }
@@ -39,14 +39,15 @@ TEST(DepthTable, HasTheDerivativesOfTheNoiseModel) {
     table.Build(sigma);
     for (int i = 1; i < 1000; ++i) {
       const double depth = -8 * sigma + i / 1000.0 * (0.5 + 8 * sigma);
-      const NoiseLikelihood exact = noise.LikelihoodAt(0, depth - 0.5);  // below the level: deeper is more
+      // The reading is 0: a value below it lies deeper as it increases.
+      const NoiseLikelihood exact = noise.LikelihoodAt(0, depth - 0.5);
       ASSERT_NEAR(table.At(depth).slope, exact.score, 1e-6 / sigma) << sigma << " " << depth;
       ASSERT_NEAR(-table.At(depth).curvature, exact.information, 1e-4 / (sigma * sigma)) << sigma << " " << depth;
     }
   }
 }
 
-/// Six samples, resolution 0.1, range 0 to 1; the second to the fourth have one model.
+/// Six samples, resolution 0.1, range 0 to 1; samples two to four have the same model.
 LevelSamples Samples() {
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
@@ -74,11 +75,11 @@ TEST(MergeSamples, CountsEqualSamplesAndPutsCensoredOnesLast) {
 }
 
 TEST(LevelSamples, NearAreThoseThatMayComeNearAnEdgeTheNearestFirst) {
-  // Depths .2, .2, -.2, and .2, -.3 of the censored.
+  // Depths .2, .2, -.2; for the censored samples .2, -.3.
   const LevelSamples none_moves = Samples().Near(0.1, 0);
   EXPECT_EQ(none_moves.levels, 1);
   EXPECT_EQ(none_moves.size(), 2);
-  const LevelSamples some_move = Samples().Near(0.1, 0.006);  // the first one too little
+  const LevelSamples some_move = Samples().Near(0.1, 0.006);  // the first sample does not move far enough
   EXPECT_EQ(some_move.slope.col(0), (Eigen::VectorXd(4) << 20, 20, 40, -30).finished());
   EXPECT_EQ(some_move.count, (Eigen::VectorXd(4) << 1, 2, 1, 1).finished());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the likelihood of rounded readings must obey whatever it is computed with: over all readings a sensor can show,
-// by their true probabilities, scores are 0 in the mean and have the information as their variance (R. A. Fisher, Phil.
-// Trans. R. Soc. A 222:309, 1922). And the likeliest σ.
+// Properties of the likelihood of quantized readings that hold for any implementation. Averaged over all possible
+// readings with their true probabilities, the scores have mean 0 and their variance is the information (R. A. Fisher,
+// Phil. Trans. R. Soc. A 222:309, 1922). Also tests the likeliest σ.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -24,7 +24,7 @@ namespace {
 
 // ---- The kernel ----------------------------------------------------------------------------------------------------
 
-/// Probability that a normal variable lies in [from, to], by the tail it lies in.
+/// Probability that a normal variable lies in [from, to], computed from the tail that contains the interval.
 double Probability(const boost::math::normal& normal, double from, double to) {
   using boost::math::cdf;
   using boost::math::complement;
@@ -35,7 +35,7 @@ double Probability(const boost::math::normal& normal, double from, double to) {
   return 1 - below - above;
 }
 
-/// Means over the readings k, of a sensor whose levels are 1 apart and end at lowest and highest.
+/// Means over the readings k of a sensor with levels 1 apart, between lowest and highest.
 struct KernelSums {
   double probability = 0;
   double score = 0, score_size = 0, score_square = 0, information = 0;
@@ -81,7 +81,7 @@ void ExpectKernel(const KernelSums& sums) {
   EXPECT_NEAR(sums.product, sums.mixed, 1e-8 * std::sqrt(sums.information * sums.sigma_information));
 }
 
-/// At noises from a fiftieth of a level to five, and truths from the middle of a level to its edge.
+/// For noise from a fiftieth of a level to five levels, and true values from the middle of a level to its edge.
 void ForEachNoiseAndPhase(const std::function<void(double sigma, double phase)>& body) {
   for (const double sigma : {0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0}) {
     for (const double phase : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}) {
@@ -93,7 +93,7 @@ void ForEachNoiseAndPhase(const std::function<void(double sigma, double phase)>&
 
 TEST(QuantizedLikelihood, HasScoresOfMeanZeroWhoseVarianceIsTheInformation) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
-    const int reach = static_cast<int>(std::ceil(12 * sigma)) + 2;  // 12 σ: what lies beyond is 1e-33
+    const int reach = static_cast<int>(std::ceil(12 * sigma)) + 2;  // 12 σ: the probability beyond is 1e-33
     ExpectKernel(SumOver(sigma, phase, -reach, reach));
   });
 }
@@ -106,7 +106,7 @@ TEST(QuantizedLikelihood, HasTheKernelOfASensorThatEndsNearby) {
   });
 }
 
-/// A wrong σ is no truth: the sums must not hold for any numbers.
+/// With a wrong σ the sums must not hold.
 TEST(QuantizedLikelihood, DoesNotHaveTheKernelOfAnotherNoise) {
   const boost::math::normal normal(0.3, 0.5);
   NoiseModel noise;
@@ -122,7 +122,7 @@ TEST(QuantizedLikelihood, DoesNotHaveTheKernelOfAnotherNoise) {
 
 // ---- The likeliest σ -----------------------------------------------------------------------------------------------
 
-/// Readings about a slow swing of the model.
+/// Readings of a slow swing of the model.
 struct Sample {
   NoiseModel noise;
   Eigen::VectorXd value;
@@ -146,7 +146,7 @@ Sample Drawn(NoiseFamily family, double sigma, double resolution, Distribution d
 
 using Normal = boost::random::normal_distribution<double>;
 
-/// The σ of the largest likelihood by Brent's method in its logarithm.
+/// The maximum likelihood σ by Brent's method in ln σ.
 double SigmaOfBrent(const Sample& sample, double low, double high) {
   const auto minus_log = [&](double lambda) {
     NoiseModel noise = sample.noise;
@@ -174,7 +174,7 @@ TEST(LikeliestSigma, OfLevelsIsWhereBrentFindsTheLargestLikelihood) {
       sample.noise.sigma = start;
       EXPECT_NEAR(LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-3) / expected, 1, 1e-3) << start;
     }
-    // Four standard errors, of 600 readings of which a share of σ / q lies near an edge and tells of σ.
+    // Four standard errors. Of 600 readings, only a share of σ / q lies near an edge and carries information about σ.
     EXPECT_NEAR(expected / sigma, 1, 4 / std::sqrt(600 * std::min(2 * sigma, 1.0)));
   }
 }
@@ -202,7 +202,7 @@ TEST(LikeliestSigma, OfHubersNoiseIsHisProposalTwo) {
     const double sigma = LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-6);
     const Eigen::ArrayXd z = (sample.value - sample.readings).array() / sigma;
     EXPECT_NEAR(z.square().min(width * width).mean() / expected, 1, 1e-3) << start;
-    EXPECT_NEAR(sigma / 0.2, 1, 4 / std::sqrt(2 * 600 * 0.8)) << start;  // its efficiency on normal noise is above .8
+    EXPECT_NEAR(sigma / 0.2, 1, 4 / std::sqrt(2 * 600 * 0.8)) << start;  // its efficiency for normal noise is above .8
   }
 }
 

@@ -24,7 +24,7 @@ struct KnownInterval {
   double log, lower, upper;
 };
 
-/// By mpmath, from erfc with 500 digits; densities below 1e-300 are 0.
+/// From mpmath, by erfc with 500 digits; densities below 1e-300 are 0.
 std::vector<KnownInterval> KnownIntervals() {
   return {
       {0, 1, -1.07486232686207138, 1.16873713451363329, 0.708874905227206789},
@@ -57,7 +57,7 @@ std::vector<KnownInterval> KnownIntervals() {
   };
 }
 
-/// Difference, relative to the expected value where that is larger than 1.
+/// Difference, relative to the expected value if that exceeds 1.
 double AbsoluteOrRelative(double value, double expected) {
   return std::abs(value - expected) / std::max(std::abs(expected), 1.0);
 }
@@ -86,14 +86,14 @@ TEST(GaussianInterval, IsItsOwnMirrorImage) {
   }
 }
 
-/// Where one way to compute it takes over from another, the log-probability and its slopes go on: ∂log/∂b = upper.
+/// The log-probability and its slope are continuous where two formulas meet: ∂log/∂b = upper.
 TEST(GaussianInterval, HasNoStepsWhereItsFormulasMeet) {
   for (const double a : {-1.0, -1e-9, 0.0, 0.3, 9.0, 10.0, 11.0, 20.0, 40.0}) {
     for (double length = 1e-5; length < 2; length *= 1.01) {
       const double b = a + length;
       const double step = 1e-3 * length;
       const double slope = (GaussianInterval(a, b + step).log - GaussianInterval(a, b - step).log) / (2 * step);
-      // The third derivative is 2 / length³ or less, and log is good to 1e-13.
+      // The third derivative is at most 2 / length³, and log is accurate to 1e-13.
       const double allowed = 1e-6 / length + 1e-13 * (1 + a * a) / step;
       EXPECT_NEAR(GaussianInterval(a, b).upper, slope, allowed) << a << ", " << length;
     }
@@ -102,7 +102,7 @@ TEST(GaussianInterval, HasNoStepsWhereItsFormulasMeet) {
 
 // ---- Families ------------------------------------------------------------------------------------------------------
 
-/// A noise and where it is looked at.
+/// A noise model, a reading and a modelled value.
 struct Case {
   std::string what;
   NoiseModel noise;
@@ -118,8 +118,8 @@ NoiseModel Noise(NoiseFamily family, double sigma, double resolution = 0) {
   return noise;
 }
 
-/// All families, readings from 0.2 to 6 σ off on both sides, and readings at both ends of a range; Huber's corners
-/// aside.
+/// All families, with readings 0.2 to 6 σ away on both sides, and readings at both ends of a range. The corners of
+/// Huber's function are left out.
 std::vector<Case> Cases() {
   std::vector<Case> cases;
   for (const double z : {-6.0, -1.9, -1.2, -0.2, 0.3, 1.1, 2.5, 5.0}) {
@@ -142,21 +142,21 @@ std::vector<Case> Cases() {
 
 using Function = std::function<double(double)>;
 
-/// f'(0) and f''(0) by central differences of five points, an error of the step to the fourth power.
+/// f'(0) and f''(0) by five-point central differences, with an error of fourth order in the step.
 double FirstDerivative(const Function& f, double h) { return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h); }
 
 double SecondDerivative(const Function& f, double h) {
   return (16 * (f(h) + f(-h)) - (f(2 * h) + f(-2 * h)) - 30 * f(0)) / (12 * h * h);
 }
 
-/// l at m + σ u and a σ that is e^v times as large.
+/// l at m + σ u and with σ multiplied by e^v.
 double LogAt(Case at, double u, double v) {
   at.m += u * at.noise.sigma;
   at.noise.sigma *= std::exp(v);
   return at.noise.LikelihoodAt(at.y, at.m).log;
 }
 
-// A step of 2e-3 leaves 1e-11 of a derivative, and the rounding of l, some 1e-15, over the step's square.
+// A step of 2e-3 has a truncation error of 1e-11; the rounding error is that of l, some 1e-15, over the squared step.
 constexpr double kStep = 2e-3;
 constexpr double kRounding = 1e-8;
 
@@ -183,7 +183,7 @@ TEST(NoiseModel, HasTheDerivativesOfItsLogLikelihood) {
   }
 }
 
-/// The largest l a reading has at any m.
+/// The maximum of l over m for a reading.
 double BestLog(const Case& at) {
   const NoiseModel& noise = at.noise;
   if (noise.IsCensored(at.y)) return 0;
@@ -214,7 +214,7 @@ TEST(NoiseModel, HasNoDevianceWhereTheModelIsTheReading) {
   }
 }
 
-/// In pieces between corners.
+/// The integral, computed piecewise between corners.
 double Integral(const Function& f, const std::vector<double>& corners) {
   using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
   double sum = 0;
@@ -227,7 +227,7 @@ TEST(NoiseModel, OfADensityIsOneInSumAndItsScoresVarianceIsItsInformation) {
   for (const auto family : {NoiseFamily::kGaussian, NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     SCOPED_TRACE(std::string(NoiseFamilyName(family)));
     const NoiseModel noise = Noise(family, 1);
-    // Along z = x / (1 - |x|), which reaches infinity.
+    // Integrates over z = x / (1 - |x|), which reaches infinity.
     const auto mean = [&](double NoiseLikelihood::*term, double NoiseLikelihood::*times) {
       return Integral(
           [&](double x) {
@@ -238,7 +238,7 @@ TEST(NoiseModel, OfADensityIsOneInSumAndItsScoresVarianceIsItsInformation) {
           {-1 + 1e-12, -corner / (1 + corner), corner / (1 + corner), 1 - 1e-12});
     };
     using L = NoiseLikelihood;
-    // The quadrature ends at the root of the machine's epsilon.
+    // The quadrature is accurate to the square root of machine epsilon.
     EXPECT_NEAR(mean(nullptr, nullptr), 1, 1e-8);
     EXPECT_NEAR(mean(&L::score, nullptr), 0, 1e-8);
     EXPECT_NEAR(mean(&L::sigma_score, nullptr), 0, 1e-8);

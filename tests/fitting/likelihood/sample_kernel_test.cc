@@ -19,7 +19,7 @@ constexpr int kRows = 7;
 constexpr int kFull = kBlock;
 constexpr double kStart = 1.25;  // s
 
-/// Coefficients of both signs that fall off as those of a swing do.
+/// Coefficients of both signs that decrease like those of a swing.
 template <typename T>
 Segment<T> Swing() {
   Segment<T> segment;
@@ -48,7 +48,7 @@ struct Block {
   double* rows() { return block.row[0].data(); }
 };
 
-/// Σ coefficient(k) τ^k, plainly.
+/// Σ coefficient(k) τ^k, computed directly.
 template <typename Coefficient>
 double Polynomial(const Coefficient& coefficient, int order, double tau) {
   double sum = 0;
@@ -56,7 +56,7 @@ double Polynomial(const Coefficient& coefficient, int order, double tau) {
   return sum;
 }
 
-/// What row w has at τ: partial derivatives at fixed time, for a release -θ', the angle.
+/// Value of row w at τ: partial derivatives at fixed time, for a release -θ', then the angle.
 template <bool kRelease, typename T>
 double Expected(const Segment<T>& swing, int w, double tau) {
   if (w + 1 == kSegmentRows<T, kRelease>) return Polynomial([&](int k) { return swing.angle[k]; }, swing.order, tau);
@@ -116,7 +116,7 @@ TEST(SumProducts, AreTheSumsOverTheSamplesAlone) {
 }
 
 #ifdef PENDULUM_HAS_AVX
-/// Columns and sums of products by two forms of the kernel.
+/// Compares the columns and sums of products of two kernels.
 template <typename Narrow, typename Wide>
 void ExpectAgreement(const Narrow& narrow, const Wide& wide) {
   for (const int count : {3, 12, 255, kFull}) {

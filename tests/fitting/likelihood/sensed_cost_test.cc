@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The derivatives of a motion, and of what each sensor shows of it.
+// The derivatives of a motion, and of each sensor's readings of it.
 #include "fitting/likelihood/sensed_cost.h"
 
 #include <array>
@@ -21,7 +21,7 @@ using testing::Le;
 
 constexpr std::size_t kSamples = 5000;
 
-/// A sensor with parameters of which none is 0.
+/// A sensor with nonzero parameters.
 struct Example {
   SensorModel sensor;
   Quantity quantity;
@@ -40,7 +40,7 @@ std::vector<Example> Examples() {
   return examples;
 }
 
-/// Largest difference of a column to central differences, over its own largest.
+/// Largest difference between a column and its central difference, relative to the column's largest entry.
 double ColumnError(const Eigen::VectorXd& column, const Eigen::VectorXd& difference,
                    const std::vector<Eigen::Index>& quiet) {
   EXPECT_FALSE(quiet.empty());
@@ -104,7 +104,7 @@ TEST(SensedReadings, HaveTheJacobianOfCentralDifferencesForEverySensorThroughRev
   }
 }
 
-/// J'J, minus J'r and r'r by the readings and derivatives above, with the noise's standard deviation.
+/// J'J, minus J'r and r'r, computed from the readings and derivatives above and the noise's standard deviation.
 TEST(SensedSums, AreThoseOfReadingsAndJacobian) {
   const MotionModel model = FindMotionModel("coulomb").value();
   for (const Example& example : Examples()) {

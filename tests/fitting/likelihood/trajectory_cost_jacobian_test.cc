@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The derivatives of the readings, of every model, start and quantity.
+// The derivatives of the readings for every model, start and quantity.
 
 #include <algorithm>
 #include <array>
@@ -87,7 +87,7 @@ TEST(Readings, OfAZeroThatDriftsHaveTheJacobianOfCentralDifferences) {
   });
 }
 
-// Undamped and linear: A cos(ω0 (t - t_r)) + zero, and its derivatives, by hand.
+// Undamped and linear: A cos(ω0 (t - t_r)) + zero, and its derivatives, calculated by hand.
 TEST(Readings, AreThoseOfTheUndampedLinearPendulum) {
   for (const Quantity quantity : kQuantities) {
     const TrajectoryData data = Samples(quantity, 1001);

@@ -31,7 +31,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // ---- Sums and the compressed residuals ---------------------------------------------------------------------------
 
-/// [J'J, J'r; r'J, r'r] of r = (value - reading) / scale, from Readings.
+/// [J'J, J'r; r'J, r'r] of r = (value - reading) / scale, computed from Readings.
 Eigen::MatrixXd ExpectedSums(const TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& p) {
   Eigen::VectorXd readings;
   Eigen::MatrixXd jacobian;
@@ -68,7 +68,7 @@ TEST(Sums, AreThoseOfReadingsAndJacobian) {
   });
 }
 
-/// What Evaluate gives: P + 1 residuals and, for each block asked for, its column.
+/// Result of Evaluate: P + 1 residuals and the requested Jacobian columns.
 struct Evaluation {
   bool valid = false;
   Eigen::VectorXd residuals;
@@ -135,7 +135,8 @@ TEST(Evaluate, AskedForResidualsAloneGivesTheirNorm) {
   EXPECT_THAT(whole.residuals.norm() / std::sqrt(sum), DoubleNear(1, 1e-12));
 }
 
-/// Coulomb data held for 50 samples of 0.01 s and, unless `moving` is 0, one sample so long [s] after the release.
+/// Coulomb data held for 50 samples of 0.01 s; unless `moving` is 0, one more sample `moving` seconds after the
+/// release.
 void ExpectRank(double moving, Eigen::Index rank) {
   const MotionModel model = FindMotionModel("coulomb").value();
   const std::vector<double> p = TypicalParameters(model, StartKind::kRelease);
@@ -155,15 +156,16 @@ void ExpectRank(double moving, Eigen::Index rank) {
   EXPECT_THAT((all.transpose() * all - expected).lpNorm<Eigen::Infinity>(), Le(1e-12 * expected.norm())) << moving;
 }
 
-// Held throughout, only the sum of release angle and zero is seen; one sample more, and all else acts on that sample.
+// During the hold only the sum of release angle and zero is determined. One later sample determines one combination of
+// all others.
 TEST(Evaluate, GivesADirectionThatTheDataDoNotSeeARowOfZeros) {
   ExpectRank(0, 1);
   for (int i = 1; i <= 30; ++i) ExpectRank(0.003 * i, 2);
 }
 
-// ---- What is refused ---------------------------------------------------------------------------------------------
+// ---- Refused trials ----------------------------------------------------------------------------------------------
 
-/// How many of the ways to evaluate a cost accept the trial: all five or none.
+/// The number of evaluation methods that accept the trial: all five or none.
 int Acceptances(const TrajectoryCost& cost, const std::vector<double>& p) {
   double sum = 0;
   Eigen::MatrixXd matrix;
@@ -176,7 +178,7 @@ int Acceptances(const TrajectoryCost& cost, const std::vector<double>& p) {
   return accepted;
 }
 
-/// Acceptances of a coulomb model's trial: inertia, viscous, coulomb, release angle and time, zero.
+/// Acceptances for a trial of the coulomb model: inertia, viscous, coulomb, release angle and time, zero.
 int AcceptancesOfARelease(const std::vector<double>& p, Quantity quantity = Quantity::kAngle) {
   const TrajectoryData data = Samples(quantity, 300);
   return Acceptances(*MakeTrajectoryCost(FindMotionModel("coulomb").value(), StartKind::kRelease, data), p);
@@ -219,7 +221,7 @@ TEST(TrajectoryCost, RefusesNumbersThatAreNotFinite) {
   }
 }
 
-// ---- Which samples -----------------------------------------------------------------------------------------------
+// ---- Samples in use ----------------------------------------------------------------------------------------------
 
 TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
   Example example(FindMotionModel("coulomb").value(), StartKind::kRelease, Quantity::kAngle);
@@ -243,7 +245,7 @@ TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
   EXPECT_EQ(whole, again);
 }
 
-// A sample may fall on the release, and several on one instant of the trace's own steps.
+// A sample may coincide with the release, and several with one step boundary of the trace.
 TEST(TrajectoryCost, TakesSamplesWhereverTheyFall) {
   TrajectoryData data = Samples(Quantity::kAngle, 0);
   data.time = {0, 0.2, 0.5, std::nextafter(0.5, 1.0), 0.50001, 0.7, 3, 3.5, 3.50001, 20};
@@ -268,12 +270,12 @@ TEST(TrajectoryCost, GivesTheTraceOfItsParameters) {
 
 // ---- Across a change in the number of half swings before the stop ------------------------------------------------
 
-/// A recording to rest: inertia, viscous, coulomb, release angle and time, zero.
+/// A recording that ends at rest: inertia, viscous, coulomb, release angle and time, zero.
 std::vector<double> ToRest(double coulomb) { return {kReferenceInertia, 0.003 / 1.803, coulomb, 0.423, 0.5, 0.013}; }
 
 constexpr int kCoulombIndex = 2;
 
-/// Two neighbouring numbers near 0.006 on whose sides the number of reversals differs.
+/// Two neighbouring numbers near 0.006 between which the number of reversals changes.
 std::pair<double, double> ChangeOfHalfSwings(const TrajectoryCost& cost) {
   double low = 0.006, high = 0.0064;
   const int reversals = cost.Trace(ToRest(low)).reversals;
@@ -302,7 +304,7 @@ TEST(TrajectoryCost, IsContinuousWhereTheNumberOfHalfSwingsChanges) {
   }
 }
 
-/// τ_c [units of G] by Ceres, all other parameters known.
+/// τ_c [units of G] fitted by Ceres, with all other parameters known.
 double FittedCoulomb(TrajectoryCost& cost, double from) {
   std::vector<double> p = ToRest(from);
   std::vector<double*> blocks;
@@ -325,7 +327,7 @@ double FittedCoulomb(TrajectoryCost& cost, double from) {
   return p[kCoulombIndex];
 }
 
-/// τ_c fitted to a noise-free recording of so many samples; truth and start are given relative to the change, minus 1.
+/// τ_c fitted to a noise-free recording of `samples` samples. Truth and start are relative to the change, minus 1.
 double FitAcrossTheChange(std::size_t samples, double truth, double from) {
   const MotionModel model = FindMotionModel("coulomb").value();
   TrajectoryData data = Samples(Quantity::kAngle, 2500);
@@ -344,7 +346,8 @@ TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChangeWhenItEndsSoonAfterThe
   }
 }
 
-// Why there is a Search in search.h: over 5 s of rest at the other side's angle the true number does not win at once.
+// The reason for Search in search.h: during 5 s of rest at the wrong angle the true number of half swings is not the
+// lower minimum at once.
 TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwingsWhenItEndsLongAfterTheStop) {
   for (const double side : {-1.0, 1.0}) {
     EXPECT_THAT(side * FitAcrossTheChange(2500, side * 3e-4, side * 2e-3), DoubleNear(3e-4, 1e-8));

@@ -16,10 +16,10 @@
 namespace pendulum::trajectory_cost_threads_test {
 namespace {
 
-/// More blocks than a thread takes at a time, the last one not full.
+/// More blocks than one thread takes at a time; the last one is not full.
 constexpr std::size_t kSamples = 100'001;
 
-/// All that a cost says of a trajectory over 40 s.
+/// All results of a cost for a trajectory of 40 s.
 struct Evaluated {
   Eigen::MatrixXd sums;
   double sum = 0;

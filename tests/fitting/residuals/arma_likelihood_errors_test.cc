@@ -12,7 +12,7 @@ namespace {
 
 using testing::DoubleNear;
 
-/// Residuals of AR(p) noise of variance 1 by its recursion, for many samples.
+/// Residuals of AR(p) noise of variance 1 from its recursion, for large sample numbers.
 Eigen::VectorXd Recursion(const Autocorrelation& memory, Eigen::Index count, std::uint64_t seed) {
   constexpr Eigen::Index kBefore = 2000;
   Eigen::VectorXd noise = std::sqrt(memory.innovation_variance) * NormalNumbers(count + kBefore, seed);
@@ -34,14 +34,14 @@ TEST(MaximizeCorrelatedLikelihood, RecoversASecondOrderMemoryWithinItsErrors) {
     ASSERT_TRUE(found);
     for (int j : {0, 1}) squares[j] += std::pow(found->memory.autoregressive[j] - memory.autoregressive[j], 2);
   }
-  // Box & Jenkins, section 7.2: var φ_1 = var φ_2 = (1 - φ_2²) / N; its own error, three times over.
+  // Box & Jenkins, section 7.2: var φ_1 = var φ_2 = (1 - φ_2²) / N; the tolerance is three of its own errors.
   const double expected = (1 - 0.8 * 0.8) / kSamples;
   for (int j : {0, 1}) {
     EXPECT_THAT(squares[j] / kSeeds / expected, DoubleNear(1, 3 * std::sqrt(2.0 / kSeeds))) << j;
   }
 }
 
-/// Rounding of noise of half a count hides a fourth of the correlation of neighbours: 0.9 / (1 + 1/3) = 0.675.
+/// With noise of half a count, rounding reduces the correlation of neighbours by a fourth: 0.9 / (1 + 1/3) = 0.675.
 TEST(MaximizeCorrelatedLikelihood, SeesTheMemoryUnderRounding) {
   constexpr int kSeeds = 40;
   constexpr Eigen::Index kSamples = 2000;
@@ -57,7 +57,8 @@ TEST(MaximizeCorrelatedLikelihood, SeesTheMemoryUnderRounding) {
     phi += found->memory.autoregressive[0] / kSeeds;
     sigma += found->sigma / kSeeds;
   }
-  // Of one recording some 0.014 and 0.06, so of the mean 0.002 and 0.01; three of these, and a bias of 1 / N.
+  // Errors of one recording are some 0.014 and 0.06, of the mean 0.002 and 0.01. Allowed: three of these plus a bias of
+  // 1 / N.
   EXPECT_THAT(phi, DoubleNear(0.9, 0.008));
   EXPECT_THAT(sigma, DoubleNear(1, 0.03));
 }
@@ -82,10 +83,10 @@ TEST(MaximizeCorrelatedLikelihood, GainsAsChiSquaredByAShiftThatIsKnown) {
     statistic += 2 * (found->log_likelihood - at_truth->log_likelihood) / kSeeds;
     shift += found->shift / kSeeds;
   }
-  // Three degrees of freedom, each of variance 2; three errors of the mean.
+  // Three degrees of freedom, each with variance 2; three standard errors of the mean.
   EXPECT_THAT(statistic, DoubleNear(3, 3 * std::sqrt(6.0 / kSeeds)));
-  // Each seed's errors by the spectrum S of noise and rounding: S(0.048) = 5.77 and S(0) = 5.87, so sqrt(2 S / (N
-  // 0.82)) = 0.118 of a sine whose envelope has the mean square 0.82, and sqrt(S / N) = 0.077 of the mean.
+  // Errors for one seed, from the spectrum S of noise and rounding: S(0.048) = 5.77 and S(0) = 5.87. For a sine whose
+  // envelope has the mean square 0.82, sqrt(2 S / (N 0.82)) = 0.118; for the mean, sqrt(S / N) = 0.077.
   for (int i = 0; i < 3; ++i)
     EXPECT_THAT(shift[i], DoubleNear(truth[i], 3 * (i < 2 ? 0.118 : 0.077) / std::sqrt(kSeeds))) << i;
 }

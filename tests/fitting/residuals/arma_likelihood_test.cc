@@ -38,7 +38,7 @@ std::vector<Autocorrelation> EvenMemories() {
 
 // ---- Tests ---------------------------------------------------------------------------------------------------------
 
-/// Rounding of 240 terms of some units each.
+/// Rounding error of 240 terms of some units each.
 constexpr double kRounding = 1e-8;
 
 void ExpectDense(const Autocorrelation& memory, double sigma, double rounding_variance, const Eigen::VectorXd& time) {
@@ -51,7 +51,7 @@ void ExpectDense(const Autocorrelation& memory, double sigma, double rounding_va
   EXPECT_THAT(found->log_likelihood, DoubleNear(DenseLogLikelihood(data, *found), kRounding)) << memory.Name();
   const double truth = DenseLogLikelihood(data, memory, sigma, Eigen::Vector3d::Zero());
   EXPECT_THAT(found->log_likelihood, Ge(truth)) << memory.Name();
-  // Twice the gain is about χ² of as many degrees of freedom as there are parameters: at most 15 here.
+  // Twice the gain is about χ² with as many degrees of freedom as parameters: at most 15 here.
   EXPECT_THAT(found->log_likelihood, Le(truth + 20)) << memory.Name();
 }
 
@@ -88,7 +88,7 @@ TEST(MaximizeCorrelatedLikelihood, OfWhiteResidualsIsTheTextbooks) {
   EXPECT_THAT(found->log_likelihood, DoubleNear(-2 * (std::log(2 * kPi * 2.5) + 1), 1e-14));
   EXPECT_EQ(found->parameters, 1);
   EXPECT_EQ(found->memory.Name(), "white");
-  data.rounding_variance = 4;  // more than there is: σ = 0; log L = -N/2 ln 2π 4 - 10 / 8
+  data.rounding_variance = 4;  // more than the total: σ = 0; log L = -N/2 ln 2π 4 - 10 / 8
   found = MaximizeCorrelatedLikelihood(data, {});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->sigma, 0);
@@ -105,8 +105,7 @@ TEST(MaximizeCorrelatedLikelihood, CountsTheParametersOfMemoryAndScale) {
   EXPECT_EQ(parameters(Continuous(0.1, 0.2)), 3);
 }
 
-/// Places about half a standard error (1 / sqrt(N), and some) from where the likelihood is largest, one way and
-/// another.
+/// Checks points about half a standard error (1 / sqrt(N) and more) from the maximum in several directions.
 TEST(MaximizeCorrelatedLikelihood, IsLowerAllAround) {
   for (const Autocorrelation& memory : {Autoregressive({0.8}), Mixed(0.8, -0.3), Continuous(0.1, 0.2)}) {
     CorrelatedResiduals data = Drawn(memory, 1, 0.1, WithGaps(300), 3);
@@ -184,7 +183,7 @@ TEST(MaximizeCorrelatedLikelihood, TakesColumnsThatDependOnEachOther) {
   EXPECT_EQ(deficient->shift[4], 0);
 }
 
-// ---- What tells nothing --------------------------------------------------------------------------------------------
+// ---- Degenerate data ------------------------------------------------------------------------------------------------
 
 std::vector<Autocorrelation> AllKinds() {
   std::vector<Autocorrelation> kinds = EvenMemories();
@@ -199,7 +198,7 @@ TEST(MaximizeCorrelatedLikelihood, OfResidualsThatAreZeroIsNothingOrThatOfTheirR
     data.rounding_variance = 1e-6;
     const auto rounded = MaximizeCorrelatedLikelihood(data, memory);
     ASSERT_TRUE(rounded) << memory.Name();
-    // σ comes as near to 0 as makes no difference.
+    // σ approaches 0 until the difference is negligible.
     EXPECT_THAT(rounded->log_likelihood, DoubleNear(-50 * std::log(2 * kPi * 1e-6), 1e-3)) << memory.Name();
   }
 }
@@ -229,7 +228,8 @@ TEST(MaximizeCorrelatedLikelihood, OfFewSamplesIsNothingOrANumber) {
   }
 }
 
-/// A memory of many samples under noise settles late, a curve without noise leaves next to nothing to innovations.
+/// With noise, a filter with long autocorrelation converges slowly. A curve without noise leaves almost nothing to
+/// innovations.
 TEST(MaximizeCorrelatedLikelihood, HoldsForVeryLongMemories) {
   const Eigen::VectorXd time = EvenTimes(1200);
   for (const Autocorrelation& memory : {Autoregressive({0.995}), Autoregressive({1.98, -0.985}), Mixed(0.99, -0.9)}) {

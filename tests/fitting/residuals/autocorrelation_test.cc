@@ -20,7 +20,7 @@ using Kind = Autocorrelation::Kind;
 
 // ---- Processes with their correlations from the textbook -----------------------------------------------------------
 
-/// ρ of a step in time [s].
+/// ρ as a function of the lag [s].
 using Correlation = std::function<double(double)>;
 
 struct Process {
@@ -38,7 +38,7 @@ Process FirstOrder(double phi) {
           [=](double step) { return std::pow(phi, std::round(step / kInterval)); }};
 }
 
-/// Correlations by the Yule-Walker equations, and from there by the recursion that they obey.
+/// Correlations from the Yule-Walker equations, continued by their recursion.
 Process ThirdOrder(double a, double b, double c) {
   const Eigen::Matrix3d equations{{1 - b, -c, 0}, {-a - c, 1, 0}, {-b, -a, 1}};
   const Eigen::Vector3d first = equations.inverse() * Eigen::Vector3d(a, b, c);
@@ -76,7 +76,7 @@ std::vector<Process> EvenProcesses() {
           MixedOrder(-0.4, 0.8),     MixedOrder(0.95, -0.95), MixedOrder(0, -0.9)};
 }
 
-/// W' R W with R written out.
+/// W' R W with an explicit matrix R.
 Eigen::MatrixXd DenseSum(const Correlation& correlation, const Eigen::VectorXd& time, const Eigen::MatrixXd& weights) {
   Eigen::MatrixXd dense(time.size(), time.size());
   for (Eigen::Index i = 0; i < time.size(); ++i) {
@@ -88,13 +88,13 @@ Eigen::MatrixXd DenseSum(const Correlation& correlation, const Eigen::VectorXd& 
 void ExpectDenseSum(const Process& process, const Eigen::VectorXd& time) {
   Eigen::MatrixXd weights(time.size(), 4);
   weights << SwingColumns(time), FirstOrderNoise(time.size(), 0, 0, 1);
-  weights.col(1) *= 1e6;  // columns of very different size must not harm each other
+  weights.col(1) *= 1e6;  // columns of very different size must not affect each other
   const Eigen::MatrixXd expected = DenseSum(process.correlation, time, weights);
   const Eigen::MatrixXd sum = CorrelatedSum(process.model, time, weights);
   const Eigen::VectorXd scale = expected.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < 4; ++i) {
     for (Eigen::Index j = 0; j < 4; ++j) {
-      // Rounding of 700² products, and innovations left out when their share is 1e-24.
+      // Rounding of 700² products, and innovations whose share of 1e-24 is neglected.
       EXPECT_THAT(sum(i, j) / (scale[i] * scale[j]), DoubleNear(expected(i, j) / (scale[i] * scale[j]), 1e-9))
           << process.model.Name() << ": " << i << ", " << j;
     }
@@ -150,7 +150,7 @@ TEST(CorrelatedSum, OfWhiteResidualsIsTheInformation) {
 
 TEST(CorrelatedSum, IsPositiveDefiniteForAMemoryBeyondTheRecording) {
   const Eigen::MatrixXd sum = CorrelatedSum(FirstOrder(0.99999).model, EvenTimes(500), SwingColumns(EvenTimes(500)));
-  EXPECT_THAT(sum(2, 2), DoubleNear(500.0 * 500, 500));  // all samples say nearly the same: R = 1 within 500 / 1e5
+  EXPECT_THAT(sum(2, 2), DoubleNear(500.0 * 500, 500));  // all samples are nearly equal: R = 1 within 500 / 1e5
   EXPECT_GT(sum.determinant(), 0);
 }
 

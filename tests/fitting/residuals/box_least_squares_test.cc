@@ -35,13 +35,14 @@ TEST(BoxLeastSquares, IsTheSolutionOfTheNormalEquationsWithoutBounds) {
   EXPECT_THAT((BoxLeastSquares(matrix, value, -bound, bound) - expected).norm(), DoubleNear(0, 1e-12));
 }
 
-/// Karush, Kuhn and Tucker: at a bound the sum falls only outwards, elsewhere it is flat. For a convex sum that is all.
+/// Conditions of Karush, Kuhn and Tucker: at a bound the sum decreases only outwards, elsewhere its gradient is 0. For
+/// a convex sum these are sufficient.
 TEST(BoxLeastSquares, MeetsTheConditionsOfALeastSumWithinBounds) {
   int bounded = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Eigen::Index size = 1 + static_cast<Eigen::Index>(seed % 9);
     Eigen::MatrixXd matrix = NormalMatrix(12, size, seed);
-    if (size > 2) matrix.col(1) = matrix.col(0) + 0.1 * matrix.col(2);  // nearly or, for three, wholly dependent
+    if (size > 2) matrix.col(1) = matrix.col(0) + 0.1 * matrix.col(2);  // nearly dependent, or fully for three
     const Eigen::VectorXd value = NormalMatrix(12, 1, seed + 1000);
     const Eigen::VectorXd lowest = -0.2 * NormalMatrix(size, 1, seed + 2000).cwiseAbs();
     const Eigen::VectorXd highest = 0.2 * NormalMatrix(size, 1, seed + 3000).cwiseAbs();
@@ -55,7 +56,7 @@ TEST(BoxLeastSquares, MeetsTheConditionsOfALeastSumWithinBounds) {
       EXPECT_THAT(outwards, Ge(-1e-9)) << seed;
     }
   }
-  EXPECT_THAT(bounded, Ge(200));  // bounds are met in most of the examples
+  EXPECT_THAT(bounded, Ge(200));  // bounds are active in most examples
 }
 
 TEST(BoxLeastSquares, DoesNotDependOnTheUnitsOfTheColumns) {
@@ -75,7 +76,7 @@ TEST(BoxLeastSquares, HalvesWhatEqualColumnsShare) {
   const Eigen::VectorXd value = Eigen::VectorXd::Ones(5);
   const Eigen::Vector2d far(kInfinity, kInfinity);
   EXPECT_THAT((BoxLeastSquares(matrix, value, -far, far) - Eigen::Vector2d(0.5, 0.5)).norm(), DoubleNear(0, 1e-12));
-  // Where one of them may not, the other does.
+  // If one of them is limited, the other takes its part.
   const Eigen::VectorXd place = BoxLeastSquares(matrix, value, -far, Eigen::Vector2d(0.25, kInfinity));
   EXPECT_THAT((place - Eigen::Vector2d(0.25, 0.75)).norm(), DoubleNear(0, 1e-12));
 }

@@ -20,16 +20,16 @@ using testing::SizeIs;
 std::vector<Stretch> Whole(const Eigen::VectorXd& value) { return {{0, value.size()}}; }
 
 TEST(ReflectionCoefficients, AgreeWithFourSamplesReckonedByHand) {
-  // Order 1: 2 (2·1 + 3·2 + 5·3) / (2² + 3² + 5² + 1² + 2² + 3²) = 46/52. The errors are then 3 - 23/26·2 = 32/26 and
-  // 5 - 23/26·3 = 61/26 forward, 1 - 23/26·2 = -20/26 and 2 - 23/26·3 = -17/26 backward; order 2:
-  // 2 (32·-20 + 61·-17) / (32² + 61² + 20² + 17²) = -3354/5434.
+  // Order 1: 2 (2·1 + 3·2 + 5·3) / (2² + 3² + 5² + 1² + 2² + 3²) = 46/52. The forward errors are then 3 - 23/26·2 =
+  // 32/26 and 5 - 23/26·3 = 61/26, the backward errors 1 - 23/26·2 = -20/26 and 2 - 23/26·3 = -17/26. Order 2: 2
+  // (32·-20 + 61·-17) / (32² + 61² + 20² + 17²) = -3354/5434.
   const Eigen::Vector4d value(1, 2, 3, 5);
   EXPECT_THAT(ReflectionCoefficients(value, Whole(value), 2),
               ElementsAre(DoubleNear(23.0 / 26, 1e-15), DoubleNear(-3354.0 / 5434, 1e-15)));
 }
 
 TEST(ReflectionCoefficients, OfTwoStretchesAreThoseOfTheirSums) {
-  // Between the stretches stands a sample that belongs to none.
+  // The sample between the stretches belongs to neither.
   Eigen::VectorXd value(9);
   value << 1, 2, 3, 5, 1000, 5, 3, 2, 1;
   EXPECT_THAT(ReflectionCoefficients(value, {{0, 4}, {5, 4}}, 2),
@@ -48,7 +48,8 @@ TEST(ReflectionCoefficients, TakeStretchesShorterThanTheOrder) {
 
 TEST(ReflectionCoefficients, OfAFirstOrderProcessAreItsCorrelationThenNothing) {
   const Eigen::VectorXd value = FirstOrderNoise(100'000, 0.8, 0, 1);
-  // Each scatters by at most 1 / sqrt(N) = 0.003 (Kay & Makhoul, IEEE ASSP 31:56, 1983); four of those.
+  // Each has a standard error of at most 1 / sqrt(N) = 0.003 (Kay & Makhoul, IEEE ASSP 31:56, 1983); the tolerance is
+  // four of those.
   EXPECT_THAT(ReflectionCoefficients(value, Whole(value), 3),
               ElementsAre(DoubleNear(0.8, 0.013), DoubleNear(0, 0.013), DoubleNear(0, 0.013)));
 }

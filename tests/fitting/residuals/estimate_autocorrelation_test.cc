@@ -67,7 +67,7 @@ TEST(EstimateAutocorrelation, CallsWhiteResidualsWhite) {
     const Summary summary =
         Summarize(300, [&](std::uint64_t seed) { return Estimate(time, FirstOrderNoise(count, 0, 0, seed)); });
     EXPECT_GE(summary.names.at("white"), 285) << count;            // 95 %
-    EXPECT_THAT(summary.inflation, DoubleNear(1, 0.03)) << count;  // what error bars of white data may lose
+    EXPECT_THAT(summary.inflation, DoubleNear(1, 0.03)) << count;  // loss in the error bars of white data
   }
 }
 
@@ -115,12 +115,12 @@ TEST(EstimateAutocorrelation, FindsTheOrderOfAThirdOrderProcess) {
     return Estimate(EvenTimes(2800), value.tail(2800));
   });
   EXPECT_GE(summary.names.at("AR(3)"), 85);
-  // By the Yule-Walker equations ρ = 0.90164, 0.76230, 0.66393, so σ_e² = 1 - Σφρ = 0.16639; at frequency 0 that over
-  // (1 - Σφ)² = 0.01. It scatters by 15 %.
+  // By the Yule-Walker equations ρ = 0.90164, 0.76230, 0.66393, so σ_e² = 1 - Σφρ = 0.16639. At frequency 0 it is
+  // divided by (1 - Σφ)² = 0.01. It scatters by 15 %.
   EXPECT_THAT(summary.inflation, DoubleNear(16.64, 0.06 * 16.64));
 }
 
-// ---- Memory --------------------------------------------------------------------------------------------------------
+// ---- Autocorrelation ------------------------------------------------------------------------------------------------
 
 TEST(EstimateAutocorrelation, FindsTheMemoryOfAFirstOrderProcess) {
   for (const double phi : {0.5, 0.9, 0.98}) {
@@ -140,12 +140,12 @@ TEST(EstimateAutocorrelation, TellsWhiteNoiseOverAFirstOrderProcess) {
       Summarize(60, [&](std::uint64_t seed) { return Estimate(time, FirstOrderNoise(2000, 0.9, 0.5, seed)); });
   EXPECT_GE(summary.names.at("ARMA(1,1)"), 57);
   EXPECT_THAT(summary.memory, DoubleNear(0.9, 0.015));     // scatters by 0.018
-  EXPECT_THAT(summary.next, DoubleNear(0.5 * 0.9, 0.02));  // by 0.035
-  EXPECT_THAT(summary.inflation, DoubleNear(10, 0.8));     // 1 + 2 · 0.5 · 9; by 1.8
+  EXPECT_THAT(summary.next, DoubleNear(0.5 * 0.9, 0.02));  // scatters by 0.035
+  EXPECT_THAT(summary.inflation, DoubleNear(10, 0.8));     // 1 + 2 · 0.5 · 9; scatters by 1.8
 }
 
 TEST(EstimateAutocorrelation, TakesEachStretchByItself) {
-  // Three recordings one after the other, with a step of the level between them that no process of one memory has.
+  // Three recordings in sequence, with a step of the level between them that no single process has.
   const Summary summary = Summarize(60, [](std::uint64_t seed) {
     Eigen::VectorXd time = EvenTimes(2100);
     Eigen::VectorXd noise(2100);
@@ -177,7 +177,7 @@ TEST(EstimateAutocorrelation, ReadsThroughMissingSamplesJitterAndUnevenStamps) {
         const Eigen::VectorXd time = stamps(seed);
         return Estimate(time, CorrelatedNoise(time, 0.1, white_share, seed));
       });
-      // Scatter by 0.013 and 0.035; four standard errors of the mean of 40.
+      // They scatter by 0.013 and 0.035; four standard errors of the mean of 40.
       EXPECT_THAT(summary.memory, DoubleNear(std::exp(-0.1), 0.009)) << name << ", " << white_share;
       EXPECT_THAT(summary.next, DoubleNear((1 - white_share) * std::exp(-0.1), 0.025)) << name << ", " << white_share;
     }
@@ -196,7 +196,8 @@ TEST(EstimateAutocorrelation, DoesNotDependOnTheScaleOfResidualsAndWeights) {
 }
 
 TEST(EstimateAutocorrelation, GivesBackTheMemoryThatAFitTook) {
-  // 500 samples of a memory of 50: three columns take its slowest part, and φ seems smaller.
+  // 500 samples with an autocorrelation time of 50 samples. The three columns remove its slowest part, so φ appears
+  // smaller.
   const Eigen::VectorXd time = EvenTimes(500);
   const Eigen::MatrixXd columns = SwingColumns(time);
   const auto residual = [&](std::uint64_t seed) -> Eigen::VectorXd {

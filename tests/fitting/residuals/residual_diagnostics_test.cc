@@ -20,23 +20,23 @@ namespace {
 
 using testing::DoubleNear;
 
-/// Four residuals whose sums are in the head: Σ r² = 6, Σ r_i r_{i-1} = -3, Σ (r_i - r_{i-1})² = 17.
+/// Four residuals with sums that are easy to compute: Σ r² = 6, Σ r_i r_{i-1} = -3, Σ (r_i - r_{i-1})² = 17.
 const Eigen::Vector4d kFour(1, -1, 2, 0);
 
-/// Residuals that look like noise and are none: 1 + sin of a fast phase, scaled.
+/// Deterministic residuals that look like noise: 0.01 times the sine of a fast phase.
 Eigen::VectorXd Scattered(Eigen::Index count) {
   return Eigen::ArrayXd::LinSpaced(count, 1, static_cast<double>(count)).unaryExpr([](double i) {
     return 0.01 * std::sin(i * i);
   });
 }
 
-/// Statistics of a fit whose quantile residuals are as large as the residuals are small.
+/// Statistics of a fit with large quantile residuals and small residuals.
 FitStatistics StatisticsOf(const Eigen::VectorXd& quantile_residual, double log_likelihood, int free_parameters) {
   return ComputeStatistics(0.01 * quantile_residual, quantile_residual, log_likelihood, free_parameters);
 }
 
 TEST(ComputeStatistics, AgreesWithFourResidualsReckonedByHand) {
-  // The likelihood of four such residuals, -4/2 (ln(2 π 6/4) + 1); k = 2: one parameter and sigma.
+  // The likelihood of these four residuals is -4/2 (ln(2 π 6/4) + 1); k = 2: one parameter and sigma.
   const FitStatistics statistics = ComputeStatistics(kFour, kFour, -6.486684349035020, 1);
   EXPECT_THAT(statistics.rms_residual, DoubleNear(1.224744871391589, 1e-15));  // sqrt(6 / 4)
   EXPECT_EQ(statistics.log_likelihood, -6.486684349035020);
@@ -104,7 +104,7 @@ Eigen::VectorXd Pairs() {
   return pairs;
 }
 
-/// Share of 4000 white series to which a test gives less than 5 %: known to a standard deviation of 0.0035.
+/// Share of 4000 white series for which a test gives less than 5 %; its standard deviation is 0.0035.
 double RejectedShare(const std::function<double(const Eigen::VectorXd&)>& test) {
   constexpr int kSeries = 4000;
   int rejected = 0;
@@ -120,7 +120,7 @@ TEST(LjungBoxP, AgreesWithTenResidualsReckonedByHand) {
 }
 
 TEST(LjungBoxP, RejectsWhiteNoiseAsOftenAsItsLevelSays) {
-  // Four standard deviations about .0524, which NumPy's normal noise gives in 20000 series with 20 lags.
+  // Four standard deviations about .0524, the value for NumPy's normal noise in 20000 series with 20 lags.
   EXPECT_THAT(RejectedShare(LjungBoxP), DoubleNear(0.0524, 0.014));
 }
 
@@ -131,14 +131,14 @@ TEST(LjungBoxP, IsSmallForNoiseThatRemembersWithinTwentyLags) {
     echo.tail(1980) += 0.4 * noise.head(1980);  // ρ₂₀ = 0.4 / 1.16 adds 238, of which χ² has p = 1e-39
     EXPECT_LT(LjungBoxP(echo), 1e-20) << seed;
     echo = noise;
-    echo.tail(1979) += 0.4 * noise.head(1979);  // beyond them
+    echo.tail(1979) += 0.4 * noise.head(1979);  // a lag beyond the 20
     EXPECT_GT(LjungBoxP(echo), 1e-7) << seed;
   }
 }
 
 TEST(LjungBoxP, IsOneOfNothing) {
   EXPECT_EQ(LjungBoxP(Eigen::VectorXd::Zero(100)), 1);
-  EXPECT_EQ(LjungBoxP(kFour), 1);  // N / 5 lags are none
+  EXPECT_EQ(LjungBoxP(kFour), 1);  // N / 5 lags is 0
 }
 
 TEST(RunsP, AgreesWithSequencesReckonedByHand) {
@@ -150,7 +150,7 @@ TEST(RunsP, AgreesWithSequencesReckonedByHand) {
   EXPECT_THAT(RunsP(halves), DoubleNear(3.546e-5, 1e-8));
   Eigen::VectorXd alternating = Eigen::VectorXd::Ones(20);
   for (Eigen::Index i = 1; i < 20; i += 2) alternating[i] = -1;
-  EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, as far above
+  EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, equally far above the mean
 }
 
 TEST(RunsP, IsOneWhenAllHaveOneSign) {
@@ -159,7 +159,7 @@ TEST(RunsP, IsOneWhenAllHaveOneSign) {
 }
 
 TEST(RunsP, RejectsWhiteNoiseAsOftenAsItsLevelSays) {
-  // Runs are whole numbers: the level is met to the 0.009 that one number of them weighs at its edge.
+  // The number of runs is an integer, so the level is met only to 0.009, the probability of one number at its edge.
   EXPECT_THAT(RejectedShare(RunsP), DoubleNear(0.05, 0.015));
 }
 
@@ -177,7 +177,7 @@ struct NoisyReadings {
   }
 };
 
-/// Largest distance between their distribution and the standard normal one.
+/// Largest distance between their distribution and the standard normal distribution.
 double KolmogorovDistance(Eigen::VectorXd z) {
   const boost::math::normal normal;
   std::sort(z.begin(), z.end());
@@ -191,7 +191,8 @@ double KolmogorovDistance(Eigen::VectorXd z) {
   return distance;
 }
 
-/// Each within what 6e-5 (two-sided, four standard deviations) or 1e-3 (Kolmogorov-Smirnov) of all samples exceed.
+/// Expects each statistic within the range that 6e-5 (two-sided, four standard deviations) or 1e-3 (Kolmogorov-Smirnov)
+/// of all samples exceed.
 void ExpectStandardNormalAndIndependent(const Eigen::VectorXd& z) {
   const auto n = static_cast<double>(z.size());
   EXPECT_THAT(z.mean(), DoubleNear(0, 4 / std::sqrt(n)));
@@ -226,7 +227,7 @@ TEST(QuantileResiduals, AreStandardNormalAndIndependentOfCensoredReadings) {
     SCOPED_TRACE(q);
     const double amplitude = 45 * std::max(q, 1.0);
     const NoisyReadings run(amplitude, 2);
-    // The range ends at levels 30 and -35, which take a third of all readings.
+    // The range ends at levels 30 and -35, where a third of all readings lie.
     const double unit = std::max(q, 1.0);
     Eigen::VectorXd value = q > 0 ? Rounded(run.value, q) : run.value;
     value = value.cwiseMin(30 * unit).cwiseMax(-35 * unit);
@@ -272,7 +273,7 @@ TEST(QuantileResiduals, StayFiniteFarFromTheModel) {
   EXPECT_GT(z[2], 7);
 }
 
-// ---- Residuals that follow each other ------------------------------------------------------------------------------
+// ---- Autocorrelated residuals ---------------------------------------------------------------------------------------
 
 TEST(FollowEachOther, IsNotSaidOfWhiteNoise) {
   int said = 0;
@@ -309,7 +310,8 @@ struct SwingExample {
   static constexpr double kPeriod = 2 * kPi / 5;
   Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(2000, 0, 19.99);
   Eigen::VectorXd fitted = (0.4 * (-0.02 * time.array()).exp() * (5 * time.array()).cos()).matrix();
-  /// Of the readings, over its norm in one period: an error of one standard error there for a noise of 1.
+  /// Rate of the readings, divided by its norm over one period: added to white noise of 1, it is a phase error of one
+  /// standard error per period.
   Eigen::VectorXd rate = (-(5 * time.array()).sin() / std::sqrt(0.5 * 100 * kPeriod)).matrix();
 };
 
@@ -324,7 +326,7 @@ TEST(SwingAlong, IsSaidOfWhiteNoiseAsSeldomAsItSays) {
 }
 
 TEST(SwingAlong, IsSaidOfAPhaseErrorThatGrows) {
-  // By 0.3 standard errors in each period: 4.5 in the last one, where the samples' own are 0.03 of the noise.
+  // It grows by 0.3 standard errors per period: 4.5 in the last period, where each sample's error is 0.03 of the noise.
   const SwingExample swing;
   const Eigen::VectorXd error = (0.3 * swing.time.array() / SwingExample::kPeriod * swing.rate.array()).matrix();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -333,7 +335,7 @@ TEST(SwingAlong, IsSaidOfAPhaseErrorThatGrows) {
 }
 
 TEST(SwingAlong, IsSaidOfAKick) {
-  // From the middle on the phase is off by three standard errors in each period.
+  // From the middle on the phase is wrong by three standard errors in each period.
   const SwingExample swing;
   Eigen::VectorXd error = 3 * swing.rate;
   error.head(1000).setZero();
@@ -347,7 +349,7 @@ TEST(SwingAlong, IsNotSaidOfTooLittleOrOfNothing) {
   const SwingExample swing;
   EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, Eigen::VectorXd::Zero(2000), SwingExample::kPeriod));
   EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, 100 * swing.rate, 6.0));  // three periods
-  const Eigen::VectorXd still = Eigen::VectorXd::Constant(2000, 0.3);         // has no phase
+  const Eigen::VectorXd still = Eigen::VectorXd::Constant(2000, 0.3);         // a constant has no phase
   EXPECT_FALSE(SwingAlong(swing.time, still, swing.rate, SwingExample::kPeriod));
 }
 

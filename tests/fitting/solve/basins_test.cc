@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording that reaches rest has one minimum per number of half swings before the stop; the fit must find the lowest
-// from start values in the data. Expected: the truth of the simulation, and normal deviations.
+// A recording that reaches rest has one local minimum per number of half swings before the stop. The fit must find the
+// lowest from start values in the data. Expected: the truth of the simulation, and normal deviations.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -15,7 +15,7 @@
 namespace pendulum::basins_test {
 namespace {
 
-/// The textbook rig with dry friction at one count of noise: it stops after 48 s of 60.
+/// The textbook rig with dry friction and noise of one count: it stops after 48 s of 60.
 SyntheticOptions RunToRest(std::uint64_t seed) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.parameters = {0.079 / kTextbookTorque, 0.002 / kTextbookTorque, 0.004 / kTextbookTorque};
@@ -38,7 +38,7 @@ TEST(RunToRest, EndsInTheRightBasinOverTwoHundredSeeds) {
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       squares[i] += deviations[i] * deviations[i] / kSeeds;
       if (std::abs(deviations[i]) > 4) ++beyond_four;
-      // A wrong basin is tens of standard errors away; the largest of 1200 normal deviations beyond 5 has p < 0.001.
+      // A wrong local minimum is tens of standard errors away; 1200 normal deviations exceed 5 with p < 0.001.
       EXPECT_LT(std::abs(deviations[i]), 5) << report.parameters[i].info.name << ", seed " << seed;
     }
   }
@@ -48,7 +48,7 @@ TEST(RunToRest, EndsInTheRightBasinOverTwoHundredSeeds) {
   EXPECT_THAT(squares, testing::Each(testing::DoubleNear(1, 0.35)));
 }
 
-/// -2 log L of the minimum next to the truth, less that of the fit.
+/// -2 log L of the local minimum next to the truth, minus that of the fit.
 double FitIsLowerBy(const SyntheticOptions& run, const FitReport& report) {
   const FitProblem problem = Must(MakeFitProblem(Must(SimulateRecording(run)), ModelOptions("coulomb")));
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
@@ -57,15 +57,15 @@ double FitIsLowerBy(const SyntheticOptions& run, const FitReport& report) {
 }
 
 TEST(RunToRest, IsNeverLeftInABasinAboveThatOfTheTruth) {
-  // Among the first 200 seeds, those that ended one half swing off (by 13, 39 and 27 in -2 log L) when the search
-  // looked no further than 1.2 % of τ_c to each side; basins are 1.4 % apart.
+  // Of the first 200 seeds, these ended one half swing off (by 13, 39 and 27 in -2 log L) when the search covered only
+  // 1.2 % of τ_c on each side. Local minima are 1.4 % apart.
   for (const std::uint64_t seed : {96, 115, 195}) {
     EXPECT_GE(FitIsLowerBy(RunToRest(seed), FitOwnModel(RunToRest(seed))), -1e-3) << "seed " << seed;
   }
 }
 
 TEST(RunToRest, ASecondBasinThatExplainsTheDataNearlyAsWellIsReported) {
-  // With τ_c 0.005 N m these two of 200 seeds fit one half swing less slightly better than the truth's number.
+  // With τ_c 0.005 N m, these two of 200 seeds fit slightly better with one half swing less than the true number.
   for (const std::uint64_t seed : {110, 153}) {
     SyntheticOptions run = RunToRest(seed);
     run.parameters[2] = 0.005 / kTextbookTorque;

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// 50 x P: monomials of a variable on [-1, 1], each column of another size.
+/// 50 x P: monomials of a variable on [-1, 1], each column with a different scale.
 Eigen::MatrixXd Jacobian(int parameters) {
   Eigen::MatrixXd jacobian(50, parameters);
   for (int i = 0; i < 50; ++i) {
@@ -37,7 +37,7 @@ TEST(InvertInformation, IsTheInverse) {
   ASSERT_TRUE(inverse.identifiable);
   const Eigen::MatrixXd product = inverse.matrix * (jacobian.transpose() * jacobian);
   const Eigen::VectorXd size = jacobian.colwise().norm();
-  // Entry (i, j) has the unit of column j over column i.
+  // Entry (i, j) has the unit of column j divided by that of column i.
   EXPECT_LT((size.asDiagonal() * product * size.cwiseInverse().asDiagonal() - Eigen::MatrixXd::Identity(5, 5)).norm(),
             1e-11);
   const Eigen::MatrixXd unit_free = size.asDiagonal() * inverse.matrix * size.asDiagonal();
@@ -93,10 +93,10 @@ TEST(InvertInformation, AcceptsACorrelationOfTenNines) {
   jacobian.col(3) = jacobian.col(1) + 1e-5 * jacobian.col(1).norm() / jacobian.col(2).norm() * jacobian.col(2);
   const std::vector<int> without_quadratic = {0, 1, 3};
   Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-  EXPECT_TRUE(InvertInformation(information, without_quadratic).identifiable);  // 1 - correlation is near 5e-11
+  EXPECT_TRUE(InvertInformation(information, without_quadratic).identifiable);  // 1 - correlation is about 5e-11
   jacobian.col(3) = jacobian.col(1) + 1e-7 * jacobian.col(1).norm() / jacobian.col(2).norm() * jacobian.col(2);
   information = jacobian.transpose() * jacobian;
-  EXPECT_FALSE(InvertInformation(information, without_quadratic).identifiable);  // 5e-15: lost in sums of doubles
+  EXPECT_FALSE(InvertInformation(information, without_quadratic).identifiable);  // 5e-15: lost to rounding in the sums
 }
 
 TEST(InvertInformation, RefusesNotANumber) {

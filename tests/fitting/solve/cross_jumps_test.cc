@@ -25,7 +25,7 @@ using testing::Lt;
 
 // ---- Along a line --------------------------------------------------------------------------------------------------
 
-/// (p - 1)² + 1 below `jump`, and so much more from there on. Its Newton step from 0 leads to 1.
+/// (p - 1)² + 1, plus `height` from `jump` on. Its Newton step from 0 leads to 1.
 class JumpingCost final : public LeastSquares {
  public:
   JumpingCost(double jump, double height) : jump_(jump), height_(height) {}
@@ -48,7 +48,7 @@ class JumpingCost final : public LeastSquares {
   mutable double largest_ = -std::numeric_limits<double>::infinity();
 };
 
-/// At 0, with an error such that the step to 1 is `shift` standard errors.
+/// Starts at 0 with an error for which the step to 1 is `shift` standard errors.
 std::optional<std::vector<double>> LowerFrom0(const JumpingCost& cost, double shift, double upper) {
   Optimum optimum;
   const double information = shift * shift;
@@ -71,10 +71,10 @@ TEST(LowerAlongShift, TakesTheWholeStepWhereItMay) {
 }
 
 TEST(LowerAlongShift, StaysBeforeAJumpDownToATenthOfAStandardError) {
-  // The sum is less up to the jump alone: a step of 4 standard errors is halved six times until it is below 0.1.
+  // The sum is smaller only before the jump: a step of 4 standard errors is halved six times until it is below 0.1.
   EXPECT_THAT(LowerFrom0(JumpingCost(0.02, 5), 4, kUnbounded).value(), ElementsAre(1.0 / 64));
   EXPECT_FALSE(LowerFrom0(JumpingCost(1.0 / 64, 5), 4, kUnbounded));
-  // What lies behind a jump that is less than the way down is taken.
+  // A point beyond the jump is accepted if the jump is smaller than the descent.
   EXPECT_THAT(LowerFrom0(JumpingCost(0.001, 0.5), 4, kUnbounded).value(), ElementsAre(1));
 }
 
@@ -86,7 +86,7 @@ TEST(LowerAlongShift, KeepsWithinBounds) {
 
 // ---- A swing -------------------------------------------------------------------------------------------------------
 
-/// An accelerometer across the rod, with so much dry friction that its jumps stand out of the noise.
+/// An accelerometer across the rod, with enough dry friction for jumps above the noise.
 Recording Swing(std::uint64_t seed) {
   SyntheticOptions run = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.02);
   run.parameters = {1 / 22.0, 0.0005, 0.01};
@@ -95,7 +95,7 @@ Recording Swing(std::uint64_t seed) {
   return Must(SimulateRecording(run));
 }
 
-/// A cost that can be told to fail from some call of Sums on.
+/// A cost in which Sums fails from a given call on.
 class FailingCost final : public TrajectoryCost {
  public:
   FailingCost(TrajectoryCost& cost, std::size_t parameters)
@@ -129,7 +129,7 @@ class FailingCost final : public TrajectoryCost {
   mutable int left_ = std::numeric_limits<int>::max();
 };
 
-/// A solution that is left where `angle` of the start is off by some standard errors: a solver stopped there.
+/// A solution with the start's `angle` some standard errors off, as if a solver had stopped there.
 struct Stopped {
   explicit Stopped(std::uint64_t seed) : recording(Swing(seed)), problem(Must(MakeFitProblem(recording, Near()))) {
     cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
@@ -144,7 +144,7 @@ struct Stopped {
     EXPECT_TRUE(cost->Readings(solution.parameters, &solution.readings, nullptr));
     solution.log_likelihood = LogLikelihoodOf(problem, solution);
   }
-  Stopped(const Stopped&) = delete;  // the cost looks at the problem here
+  Stopped(const Stopped&) = delete;  // the cost refers to the problem here
   Stopped& operator=(const Stopped&) = delete;
 
   static FitOptions Near() {
@@ -171,7 +171,7 @@ TEST(CrossJumps, GoesOnToABetterSolutionWithTheNoiseThatBelongsToIt) {
     double sum = 0;
     ASSERT_TRUE(stopped.cost->SumOfSquares(solution.parameters, &sum));
     EXPECT_NEAR(sum, solution.sum, 1e-9 * sum);
-    // Weighed by σ² = RSS / (N - free): as many squares as degrees of freedom.
+    // Weighted by σ² = RSS / (N - free), the sum of squares equals the degrees of freedom.
     const double freedom = 1500 - static_cast<double>(solution.parameters.size());
     EXPECT_NEAR(sum - stopped.cost->PriorSum(solution.parameters), freedom, 3);
   }

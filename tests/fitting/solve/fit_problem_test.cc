@@ -54,7 +54,7 @@ TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheReleaseWithinTheHold) {
   const FitProblem problem = ProblemOf(TextbookRun("drag"), ModelOptions("drag"));
   EXPECT_THAT(problem.solve.lower, ElementsAre(-kUnbounded, 0, 0, 0, -kUnbounded, 0, -kUnbounded));
   const std::vector<double>& upper = problem.solve.upper;
-  EXPECT_THAT(upper[5], AllOf(Gt(1.9), Lt(2.1)));  // released at 1.9 s, seen to move soon after
+  EXPECT_THAT(upper[5], AllOf(Gt(1.9), Lt(2.1)));  // released at 1.9 s, visibly in motion soon after
   EXPECT_THAT((std::vector{upper[0], upper[1], upper[2], upper[3], upper[4], upper[6]}), Each(kUnbounded));
   EXPECT_THAT(problem.solve.fixed, Each(false));
 }
@@ -92,7 +92,7 @@ TEST(MakeFitProblem, MeasuresResidualsInUnitsOfTheNoise) {
   const FitProblem noisy = ProblemOf(run, ModelOptions("coulomb"));
   EXPECT_THAT(noisy.data.scale, DoubleNear(0.004, 4e-4));
   run.noise = 0;
-  EXPECT_GT(ProblemOf(run, ModelOptions("coulomb")).data.scale, 0);  // also where there is none
+  EXPECT_GT(ProblemOf(run, ModelOptions("coulomb")).data.scale, 0);  // also without noise
 }
 
 TEST(MakeFitProblem, HandsTheIterationLimitOn) {
@@ -107,7 +107,7 @@ TEST(MakeFitProblem, HoldsAFixedParameterAtItsValue) {
   const FitProblem problem = ProblemOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", 0.0031}}));
   EXPECT_THAT(problem.solve.fixed, ElementsAre(false, false, true, false, false, false));
   EXPECT_EQ(problem.first_guess[2], 0.0031);
-  EXPECT_NE(problem.start.parameters[2], 0.0031);  // what the data say is kept beside it
+  EXPECT_NE(problem.start.parameters[2], 0.0031);  // the estimate from the data is kept too
 }
 
 TEST(MakeFitProblem, TakesFixedValuesInTheUnitsOfTheReport) {
@@ -186,7 +186,7 @@ TEST(MakeFitProblem, RefusesQuantizedNoiseWithoutAResolution) {
 TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {
   SyntheticOptions run = NoisyRun();
   run.resolution = kCount;
-  run.range = SensorRange{-0.32, 0.32};  // 92.4 levels to each side of 0
+  run.range = SensorRange{-0.32, 0.32};  // 92.4 levels on each side of 0
   Recording recording = Must(SimulateRecording(run));
   const FitProblem cut = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   const double highest = recording.value.maxCoeff();
@@ -195,7 +195,7 @@ TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {
   EXPECT_GT(cut.censored, 190);  // the hold
   EXPECT_THAT(cut.noise.high, testing::AllOf(testing::Lt(highest), testing::Gt(highest - kCount)));
   EXPECT_THAT(cut.noise.low, testing::AllOf(testing::Gt(lowest), testing::Lt(lowest + kCount)));
-  recording.range = SensorRange{-1, 1};  // nothing comes near
+  recording.range = SensorRange{-1, 1};  // no reading comes near
   const FitProblem whole = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   EXPECT_EQ(whole.censored, 0);
   EXPECT_TRUE(whole.noise.IsPlain());

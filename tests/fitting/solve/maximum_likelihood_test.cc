@@ -23,7 +23,7 @@ using testing::DoubleNear;
 using testing::IsEmpty;
 using testing::Not;
 
-// ---- Which noise ---------------------------------------------------------------------------------------------------
+// ---- Choice of the noise family ------------------------------------------------------------------------------------
 
 void ExpectChoice(const FitOptions& options, double resolution, double residual_std_dev, NoiseFamily family,
                   const std::string& why) {
@@ -58,7 +58,7 @@ TEST(ChooseNoise, IsQuantizedBelowOneResolution) {
 
 // ---- Gaussian noise ------------------------------------------------------------------------------------------------
 
-/// A recording, the least squares of its search, and the largest likelihood.
+/// A recording, the least-squares solution of its search, and the maximum likelihood.
 struct LikelihoodCase {
   explicit LikelihoodCase(Recording made, FitOptions with = ModelOptions("coulomb"))
       : recording(std::move(made)),
@@ -97,7 +97,7 @@ TEST(MaximizeLikelihood, OfGaussianNoiseLeavesTheLeastSquaresAndFindsSigma) {
   const LikelihoodCase fit(Must(SimulateRecording(NoisyRun())));
   EXPECT_EQ(fit.solution.noise.family, NoiseFamily::kGaussian);
   EXPECT_EQ(fit.solution.parameters, fit.least_squares.parameters);
-  // Six parameters; the deviance under that sigma is N - 6.
+  // Six parameters; with that sigma the deviance is N - 6.
   const double expected = std::sqrt(fit.Residual().squaredNorm() / (1000 - 6));
   ASSERT_EQ(fit.recording.size(), 1000);
   EXPECT_THAT(fit.solution.noise.sigma, DoubleNear(expected, 1e-12));
@@ -135,7 +135,7 @@ TEST(MaximizeLikelihood, StaysFiniteForAPerfectFit) {
 }
 
 TEST(MaximizeLikelihood, GivesAPriorTheWeightOfTheNoiseThatWasFound) {
-  // A resolution twenty times the noise lets the search begin with six times the noise.
+  // With a resolution of twenty times the noise, the search begins with six times the noise.
   Recording recording = Must(SimulateRecording(NoisyRun()));
   recording.resolution = 20 * 0.002;
   FitOptions options = ModelOptions("coulomb");
@@ -144,7 +144,8 @@ TEST(MaximizeLikelihood, GivesAPriorTheWeightOfTheNoiseThatWasFound) {
   options.priors = {{"viscous", {viscous.estimate + 2 * *viscous.std_error, *viscous.std_error}}};
   const LikelihoodCase fit(recording, options);
   EXPECT_GT(fit.problem.data.scale, 5 * fit.solution.noise.sigma);
-  // Prior and recording are equally sure: half way, and 1 in the sum of squares from each. Sigma grows by 0.05 %.
+  // Prior and recording are equally precise: the estimate lies half way, and each adds 1 to the sum of squares. Sigma
+  // grows by 0.05 %.
   const double error = *viscous.std_error;
   EXPECT_THAT((fit.solution.parameters[1] - viscous.estimate) / error, DoubleNear(1, 0.005));
   EXPECT_THAT(fit.cost->PriorSum(fit.solution.parameters), DoubleNear(1, 0.01));
@@ -153,7 +154,7 @@ TEST(MaximizeLikelihood, GivesAPriorTheWeightOfTheNoiseThatWasFound) {
 
 // ---- Rounded readings ----------------------------------------------------------------------------------------------
 
-/// The textbook rig with noise of that many counts, rounded to counts.
+/// The textbook rig with noise of `noise_counts` counts, rounded to counts.
 SyntheticOptions CountsRun(double noise_counts, std::uint64_t seed) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
@@ -175,7 +176,7 @@ TEST(MaximizeLikelihood, OfRoundedReadingsIsStationaryInParametersAndSigma) {
     ASSERT_EQ(fit.solution.noise.family, NoiseFamily::kQuantized);
     EXPECT_EQ(fit.solution.noise.resolution, kCount);
     const FitReport report = Fit(fit.recording, fit.options);
-    // Of log L, per standard error: a maximum that is one standard error away has slopes of 1 or more.
+    // Slope of log L per standard error: if the maximum were one standard error away, it would be 1 or more.
     for (std::size_t i = 0; i < report.parameters.size(); ++i) {
       const double error = report.parameters[i].std_error.value();
       const auto along = [&](double shift) {
@@ -202,10 +203,11 @@ TEST(MaximizeLikelihood, OfRoundedReadingsFindsParametersAndSigmaWithinTheirErro
       const FitReport report = Fit(Must(SimulateRecording(run)), options);
       ASSERT_EQ(report.termination, Termination::kConverged) << report.reason;
       EXPECT_EQ(report.noise.family, NoiseFamily::kQuantized);
-      // 14 numbers of 12 recordings: one beyond four standard errors has p = 0.005.
+      // 14 numbers of 12 recordings: one deviation beyond four standard errors has p = 0.005.
       for (const double deviation : Deviations(report, Truth(run))) EXPECT_THAT(deviation, DoubleNear(0, 4));
       EXPECT_THAT((report.noise.sigma - run.noise) / report.noise.sigma_std_error.value(), DoubleNear(0, 4));
-      // N normal readings tell sigma to 1 / sqrt(2 N); rounded ones less, but not five times less.
+      // N normal readings determine sigma to 1 / sqrt(2 N); quantized readings less accurately, but by less than a
+      // factor five.
       EXPECT_GT(*report.noise.sigma_std_error / run.noise, 1 / std::sqrt(2 * 2000.0));
       EXPECT_LT(*report.noise.sigma_std_error / run.noise, 5 / std::sqrt(2 * 2000.0));
     }
@@ -220,7 +222,7 @@ TEST(MaximizeLikelihood, OfReadingsWithoutNoiseHasTheSmallestSigma) {
 
 // ---- Saturated readings --------------------------------------------------------------------------------------------
 
-/// The hold and the first turning points stand at an end of the range; readings on levels or on none.
+/// The hold and the first turning points are at an end of the range; readings with or without quantization.
 SyntheticOptions SaturatedRun(double resolution, std::uint64_t seed) {
   SyntheticOptions run = NoisyRun("coulomb", seed);
   run.duration = 20;
@@ -229,7 +231,7 @@ SyntheticOptions SaturatedRun(double resolution, std::uint64_t seed) {
   return run;
 }
 
-/// Of those that have a standard error.
+/// The largest deviation among parameters with a standard error.
 double LargestDeviation(const FitReport& report, const SyntheticOptions& run) {
   double largest = 0;
   for (const double deviation : Deviations(report, Truth(run))) {
@@ -262,13 +264,13 @@ TEST(MaximizeLikelihood, TakesSaturatedReadingsForWhatTheySay) {
 // ---- Several minima ------------------------------------------------------------------------------------------------
 
 TEST(MaximizeLikelihood, KeepsTheOtherMinimaOfARunToRestUnderTheSameNoise) {
-  // At 0.5 and 0.9 counts the neighbour is 43 and 3.6 above, in -2 log L.
+  // At 0.5 and 0.9 counts the neighbouring minimum is higher by 43 and 3.6 in -2 log L.
   for (const double counts : {0.5, 0.9}) {
     SCOPED_TRACE(counts);
     SyntheticOptions run = CountsRun(counts, 4);
     run.parameters[1] = 0.002 / kTextbookTorque;
     run.parameters[2] = 0.005 / kTextbookTorque;
-    run.duration = 60;  // it stops after 40
+    run.duration = 60;  // it stops after 40 s
     const LikelihoodCase fit(Must(SimulateRecording(run)));
     ASSERT_EQ(fit.solution.noise.family, NoiseFamily::kQuantized);
     EXPECT_LT(fit.cost->Trace(fit.solution.parameters).stop_time, 55);

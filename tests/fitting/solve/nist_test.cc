@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified nonlinear regressions of NIST's Statistical Reference Datasets, https://www.itl.nist.gov/div898/strd/:
-// estimates of a Levenberg-Marquardt solution, and the standard deviations that InvertInformation gives for them.
+// estimates of a Levenberg-Marquardt solution, and their standard deviations by InvertInformation.
 
 #include <cmath>
 #include <fstream>
@@ -20,7 +20,7 @@
 namespace pendulum::nist_test {
 namespace {
 
-/// Lanczos1 has residuals of 1e-13 of responses of about 1: doubles leave three digits of them.
+/// Lanczos1 has residuals of 1e-13 for responses of about 1: doubles keep three digits of them.
 using Extended = long double;
 using ExtendedVector = Eigen::Matrix<Extended, Eigen::Dynamic, 1>;
 using ExtendedMatrix = Eigen::Matrix<Extended, Eigen::Dynamic, Eigen::Dynamic>;
@@ -44,7 +44,7 @@ ExtendedMatrix ReadMatrix(std::istream& words, Eigen::Index rows, Eigen::Index c
   return matrix;
 }
 
-/// Words and numbers, lines that begin with # left out: `parameters P`, P rows of four; `residual_sum_of_squares S`;
+/// Words and numbers, without lines that begin with #: `parameters P`, P rows of four; `residual_sum_of_squares S`;
 /// `observations N R`, N rows of a response and R predictors.
 DataSet ReadDataSet(const std::string& name) {
   std::ifstream file("tests/fitting/nist/" + name + ".dat");
@@ -65,7 +65,7 @@ DataSet ReadDataSet(const std::string& name) {
   return set;
 }
 
-// ---- Models: a response from parameters b, numbered from 0 as NIST numbers them from 1, and predictors x ------------
+// ---- Models: a response from parameters b (index 0 is NIST's 1) and predictors x ------------------------------------
 
 using std::atan;
 using std::cos;
@@ -142,7 +142,7 @@ struct Solution {
   double sum_of_squares = 0;
 };
 
-/// Residuals, and by dual numbers the model's Jacobian.
+/// Residuals, and the model's Jacobian by dual numbers.
 struct Linearized {
   ExtendedVector residual;   ///< N, measured minus modelled.
   Eigen::MatrixXd jacobian;  ///< N x P.
@@ -202,7 +202,8 @@ Eigen::VectorXd Minimize(const DataSet& set, const Model& model, Eigen::VectorXd
 Solution Solve(const DataSet& set, const Model& model, int start) {
   EXPECT_EQ(set.parameter.rows(), model.parameters);
   ExtendedVector estimate = Minimize(set, model, set.parameter.col(start)).cast<Extended>();
-  // Sums of squares know their minimum to the root of the rounding only, about eight digits; the gradient knows more.
+  // A sum of squares determines its minimum only to the square root of rounding, about eight digits; the gradient is
+  // more exact.
   for (int step = 0; step < 5; ++step) {
     const Linearized near = Linearize(set, model, estimate);
     estimate += near.jacobian.colPivHouseholderQr().solve(near.residual.cast<double>()).cast<Extended>();
@@ -217,7 +218,7 @@ Solution Solve(const DataSet& set, const Model& model, int start) {
   return solution;
 }
 
-/// The number of digits in which every entry of a vector agrees with certified ones.
+/// The number of digits in which every entry agrees with the certified value.
 double Digits(const Eigen::VectorXd& found, const Eigen::VectorXd& certified) {
   if (found.size() != certified.size()) return 0;
   return -std::log10(((found - certified).array() / certified.array()).abs().maxCoeff() + 1e-16);
@@ -238,7 +239,7 @@ Case Of(const std::string& name, int parameters, Formula formula) {
   return {name, {parameters, formula, formula}};
 }
 
-/// From the far start the rise becomes a step and stays one: its time no longer matters.
+/// From the far start, the rise becomes a step and remains one, because its time has no effect any more.
 Case BoxBod() {
   Case box_bod = Of("BoxBOD", 2, kRise);
   box_bod.first_start = 1;
@@ -249,7 +250,8 @@ class NistRegression : public testing::TestWithParam<Case> {};
 
 TEST_P(NistRegression, HasTheCertifiedEstimatesAndStandardDeviations) {
   DataSet set = ReadDataSet(GetParam().name);
-  if (GetParam().name == "Nelson") set.response = set.response.array().log().eval();  // the model is of the logarithm
+  // The model describes the logarithm.
+  if (GetParam().name == "Nelson") set.response = set.response.array().log().eval();
   for (int start = GetParam().first_start; start < 2; ++start) {
     SCOPED_TRACE("start " + std::to_string(start + 1));
     const Solution solution = Solve(set, GetParam().model, start);

@@ -13,7 +13,8 @@ namespace {
 TEST(RemainingShift, IsTheDistanceFromTheSolutionInStandardErrors) {
   Fitted fitted = FitOpenly(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
   EXPECT_LT(RemainingShift(fitted.optimum), 1e-3);
-  // A step of half a standard error along the covariance's first column: so far is the likelihood's largest.
+  // A step of half a standard error along the covariance's first column: the maximum is then half a standard error
+  // away.
   const Eigen::MatrixXd covariance = fitted.StandardErrors().covariance;
   for (int i = 0; i < 6; ++i) fitted.solution.parameters[i] += 0.5 * covariance(i, 0) / std::sqrt(covariance(0, 0));
   EXPECT_NEAR(RemainingShift(*Linearize(fitted.problem->solve, *fitted.cost, fitted.solution)), 0.5, 0.01);

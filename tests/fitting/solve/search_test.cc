@@ -24,7 +24,7 @@ SyntheticOptions RunToRest() {
   return run;
 }
 
-/// A start that is right for no law, with what is fixed beyond it at 0.
+/// A start that suits no law, with fixed parameters at 0.
 StartGuess Always(const std::vector<double>& start) {
   return [start](const std::vector<bool>& fixed) {
     std::vector<double> guess = start;
@@ -48,7 +48,7 @@ TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
     const Solution expected = Solve(*c.cost, c.truth, c.problem.solve);
     const Solution found = Search(*c.cost, c.problem.data, Always(start), c.problem.solve);
     ExpectNear(found.parameters, expected.parameters, 1e-4);
-    EXPECT_GT(Solve(*c.cost, start, c.problem.solve).sum, 2 * expected.sum);  // which is why one Solve is not enough
+    EXPECT_GT(Solve(*c.cost, start, c.problem.solve).sum, 2 * expected.sum);  // therefore one Solve is not enough
   }
 }
 
@@ -79,7 +79,7 @@ TEST(Search, FindsOneMinimumWhereNothingComesToRest) {
 }
 
 TEST(Search, EndsNoHigherThanTheSimplerLawsWithinALaw) {
-  // A start with ten times the friction stops the pendulum early, where it fits the rest at the end.
+  // A start with ten times the friction stops the pendulum early, where it fits only the rest at the end.
   SyntheticOptions run = NoisyRun("viscous");
   run.duration = 60;
   SolveCase simple(run, "viscous");

@@ -34,7 +34,7 @@ TEST(Solve, ReportsTheSumOfSquaresItReached) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   const Solution solution = Solve(*c.cost, c.problem.first_guess, c.problem.solve);
   EXPECT_THAT(solution.sum, DoubleNear(c.SumAt(solution.parameters), 1e-6));
-  // Noise fits better off the truth, by χ² of six parameters: between its quantiles of 0.1 % and 99.9 %.
+  // Noise makes the minimum lower than the truth by χ² of six parameters: between its quantiles of 0.1 % and 99.9 %.
   EXPECT_THAT(c.SumAt(c.truth) - solution.sum, AllOf(Gt(0.38), Lt(22.5)));
 }
 
@@ -60,7 +60,7 @@ TEST(Solve, LeavesFixedParametersAlone) {
 }
 
 TEST(Solve, StaysWithinTheBoundsAndBestThere) {
-  SolveCase c(NoisyRun("viscous"), "drag");  // there is neither dry friction nor drag in the data
+  SolveCase c(NoisyRun("viscous"), "drag");  // the data contain neither dry friction nor drag
   for (const double start : {0.0, 1e-3}) {
     std::vector<double> guess = c.problem.first_guess;
     guess[2] = guess[3] = start;
@@ -69,11 +69,11 @@ TEST(Solve, StaysWithinTheBoundsAndBestThere) {
     Eigen::MatrixXd sums;
     ASSERT_TRUE(c.cost->Sums(solution.parameters, &sums));
     for (const int k : {1, 2, 3}) {
-      const double gradient = sums(k, 7) / std::sqrt(sums(k, k));  // of half the sum, in standard errors of k alone
+      const double gradient = sums(k, 7) / std::sqrt(sums(k, k));  // of half the sum, per standard error of k alone
       if (solution.parameters[k] > 0) {
         EXPECT_THAT(gradient, DoubleNear(0, 0.01)) << k;
       } else {
-        EXPECT_THAT(gradient, Ge(0.0)) << k;  // only outside would it be lower
+        EXPECT_THAT(gradient, Ge(0.0)) << k;  // the sum would be lower only outside the bound
       }
     }
   }
@@ -97,9 +97,9 @@ TEST(Solve, HoldsAReleaseThatTheDataWantLaterAtTheEndOfTheHold) {
   Eigen::MatrixXd sums;
   ASSERT_TRUE(c.cost->Sums(solution.parameters, &sums));
   for (const int k : {0, 1, 2, 3, 4, 5}) {
-    const double gradient = sums(k, 6) / std::sqrt(sums(k, k));  // of half the sum, in standard errors of k alone
+    const double gradient = sums(k, 6) / std::sqrt(sums(k, k));  // of half the sum, per standard error of k alone
     if (k == 4) {
-      EXPECT_THAT(gradient, Lt(-1.0));  // only later would it be lower
+      EXPECT_THAT(gradient, Lt(-1.0));  // a later release would lower the sum
     } else {
       EXPECT_THAT(gradient, DoubleNear(0, 0.01)) << k;
     }
@@ -117,7 +117,7 @@ TEST(Solve, StopsAtTheIterationLimitAndSaysSo) {
   EXPECT_THAT(solution.message, HasSubstr("Maximum number of iterations"));
 }
 
-/// Length of the Gauss-Newton step that is left, in standard errors.
+/// Length of the remaining Gauss-Newton step, in standard errors.
 double StepLeft(const SolveCase& c, const std::vector<double>& parameters) {
   Eigen::MatrixXd sums;
   EXPECT_TRUE(c.cost->Sums(parameters, &sums));
@@ -148,7 +148,7 @@ TEST(Solve, BeginsNoRunBeyondItsTrajectories) {
   Solve(*c.cost, guess, options);
   const int one_run = c.cost->traces();
   Solve(*c.cost, guess, c.problem.solve);
-  EXPECT_GT(c.cost->traces() - one_run, one_run);  // landing on bounds takes more runs than one
+  EXPECT_GT(c.cost->traces() - one_run, one_run);  // reaching bounds takes more than one run
 }
 
 TEST(Solve, CountsItsWork) {

@@ -35,7 +35,7 @@ TEST(FinerTolerance, IsAHundredthUntilRoundingTakesOver) {
   EXPECT_DOUBLE_EQ(FinerTolerance(1e-17), 1e-17);
 }
 
-/// A recording without noise, within 1e-12 rad of the truth (synthetic.h), and a cost and solution of that truth.
+/// A noise-free recording within 1e-12 rad of the truth (synthetic.h), with a cost and a solution at that truth.
 struct Traced {
   SyntheticOptions run = TextbookRun("coulomb");
   Recording recording = Must(SimulateRecording(run));
@@ -55,7 +55,7 @@ TEST(MeasureTraceError, IsTheDistanceFromTheTruth) {
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
     ASSERT_TRUE(traced.Measure(tolerance));
     EXPECT_GT(traced.TrueError(), 1e-11) << tolerance;  // far above the recording's own error
-    // The finer trace has an error too, of some hundredths.
+    // The finer trajectory has an error too, of some hundredths.
     EXPECT_NEAR(traced.solution.trace_error, traced.TrueError(), 0.2 * traced.TrueError()) << tolerance;
   }
 }
@@ -78,7 +78,7 @@ TEST(MeasureTraceError, LeavesTheToleranceAndItsReadings) {
 
 TEST(MeasureTraceError, FailsWhereFrictionHoldsThePendulum) {
   Traced traced;
-  traced.solution.parameters[2] = 1;  // coulomb, in units of G: more than gravity at any angle
+  traced.solution.parameters[2] = 1;  // coulomb in units of G: more than gravity at any angle
   EXPECT_FALSE(MeasureTraceError(*traced.cost, 1e-8, traced.solution));
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user may say of a fit besides the model: priors, bounds, start values, a drift, a clock's scale, no
-// calibration.
+// Options of a fit besides the model: priors, bounds, start values, a drift, a clock's scale, uncalibrated readings.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -30,7 +29,7 @@ Status RefusalOf(const FitOptions& options) {
 
 // ---- Priors --------------------------------------------------------------------------------------------------------
 
-/// A prior on viscous friction, in standard errors of the fit without it: how far off and how wide.
+/// A prior on viscous friction: its offset and its width, in standard errors of the fit without it.
 struct Prior {
   double off;
   double width;
@@ -79,7 +78,7 @@ TEST(Prior, IsNoSample) {
   FitOptions options = ModelOptions("viscous");
   options.priors = {{"viscous", {0.0016, 1e-5}}};
   const FitReport fit = Fit(recording, options);
-  // Five parameters and sigma; BIC counts each ln N, AIC 2.
+  // Five parameters and sigma; BIC adds ln N for each, AIC adds 2.
   EXPECT_THAT(fit.statistics.bic - fit.statistics.aic, DoubleNear(6 * (std::log(1000) - 2), 1e-9));
   EXPECT_EQ(fit.residual.size(), 1000);
   EXPECT_THAT(fit.statistics.rms_residual, DoubleNear(std::sqrt(fit.residual.squaredNorm() / 1000), 1e-15));
@@ -238,13 +237,13 @@ TEST(Drift, IsAParameterOnlyWhereItIsNamed) {
   options.bounds.clear();
   options.priors = {{"zero_drift", {0, 1e-7}}};
   EXPECT_THAT(Fit(recording, options).Find("zero_drift")->estimate, DoubleNear(0, 4e-7));
-  options.priors = {{"bias_drift", {0, 1e-7}}};  // that of a rate
+  options.priors = {{"bias_drift", {0, 1e-7}}};  // drift parameter of a rate
   EXPECT_EQ(FitRecording(recording, options).error().code, StatusCode::kInvalidArgument);
 }
 
 // ---- A clock that is fast or slow ----------------------------------------------------------------------------------
 
-/// Stamps of a clock of which a second lasts `scale` seconds; the first stays.
+/// Time stamps of a clock whose second lasts `scale` seconds; the first stamp is unchanged.
 Recording Stretched(Recording recording, double scale) {
   recording.time = recording.time[0] + (recording.time.array() - recording.time[0]) / scale;
   recording.clock_scale = scale;
@@ -366,7 +365,7 @@ TEST(Counts, GiveTheLinearModelsPeriodAndDamping) {
   EXPECT_THAT(counts.Find("zero_angle")->estimate, DoubleNear(512 + 0.012 / kCount, 0.2));
 }
 
-// ---- What contradicts ----------------------------------------------------------------------------------------------
+// ---- Priors that contradict the data --------------------------------------------------------------------------------
 
 std::vector<std::string> CodesWithPrior(double off, double width) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
@@ -381,7 +380,7 @@ std::vector<std::string> CodesWithPrior(double off, double width) {
 TEST(Prior, ThatTheRecordingContradictsIsWarnedOf) {
   using testing::Contains;
   using testing::Not;
-  // Differences of 6 / sqrt(2), 6 and 2 standard deviations; those of a sure prior decide the estimate all the same.
+  // Differences of 6 / sqrt(2), 6 and 2 standard deviations; a narrow prior decides the estimate in any case.
   EXPECT_THAT(CodesWithPrior(6, 1), Contains("prior_conflict"));
   EXPECT_THAT(CodesWithPrior(6, 0.01), Contains("prior_conflict"));
   EXPECT_THAT(CodesWithPrior(2, 0.01), Not(Contains("prior_conflict")));

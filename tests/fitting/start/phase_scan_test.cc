@@ -22,12 +22,12 @@ using testing::Lt;
 using testing::Not;
 using testing::SizeIs;
 
-constexpr double kFrequency = 4.8;  // rad/s, 0.76 Hz: sampled once a second it aliases
+constexpr double kFrequency = 4.8;  // rad/s, 0.76 Hz: sampled once per second it aliases
 constexpr double kZero = 0.012;
 constexpr FrequencyRange kWide = {0.5, 18.8};  // rad/s; 18.8 is 3 Hz
 constexpr int kSamples = 40;
 
-/// From one frequency to the next the phase at the end moves by at most this; a local minimum may be one step off.
+/// Largest frequency step, from the phase step at the end of the scan; a local minimum may be one step off.
 double GridStep(const Recording& recording) { return 0.6 / (recording.time.tail(1)[0] - recording.time[0]); }
 
 Eigen::VectorXd EvenTimes(double interval = 1) {
@@ -45,7 +45,7 @@ Recording Cosine(const Eigen::VectorXd& time, double amplitude = 0.4) {
 MotionModel Linear() { return Must(FindMotionModel("linear")); }
 MotionModel Viscous() { return Must(FindMotionModel("viscous")); }
 
-/// Frictionless swing from an amplitude, read once a second.
+/// Frictionless swing with this amplitude, one reading per second.
 SyntheticOptions Swing(double amplitude, Quantity quantity = Quantity::kAngle) {
   SyntheticOptions options;
   options.model = Viscous();
@@ -59,7 +59,7 @@ SyntheticOptions Swing(double amplitude, Quantity quantity = Quantity::kAngle) {
   return options;
 }
 
-/// Root mean square of the readings about the trajectory of the start, over that of the readings about their mean.
+/// Root mean square of the readings about the start's trajectory, relative to that about their mean.
 double Unexplained(const Recording& recording, const StartValues& start, MotionModel model) {
   SyntheticOptions options;
   options.model = model;
@@ -76,7 +76,7 @@ double Unexplained(const Recording& recording, const StartValues& start, MotionM
   return (recording.value - modelled).norm() / (recording.value.array() - recording.value.mean()).matrix().norm();
 }
 
-/// The start whose frequency is nearest.
+/// The start with the nearest frequency.
 StartValues Nearest(const std::vector<StartValues>& starts, double frequency) {
   return *std::ranges::min_element(
       starts, {}, [&](const StartValues& start) { return std::abs(start.natural_frequency - frequency); });
@@ -96,7 +96,7 @@ TEST(ScanFrequencies, ExplainsTheReadingsWhereTheFrequencyIsOnTheGrid) {
   const std::vector<double>& found = starts[0].parameters;
   ASSERT_THAT(found, SizeIs(5));  // inertia, viscous, initial angle and rate, zero
   EXPECT_DOUBLE_EQ(found[0], 1 / (kFrequency * kFrequency));
-  // The scan has no envelope without decay: 5 % over the scanned time is its least.
+  // The scan has no envelope without decay: the smallest is 5 % over the scanned time.
   EXPECT_THAT(found[2], DoubleNear(0.4 * std::cos(0.9), 0.02));
   EXPECT_THAT(found[3], DoubleNear(0.4 * kFrequency * std::sin(0.9), 0.1));
   EXPECT_THAT(found[4], DoubleNear(kZero, 1e-3));
@@ -104,12 +104,12 @@ TEST(ScanFrequencies, ExplainsTheReadingsWhereTheFrequencyIsOnTheGrid) {
 }
 
 TEST(ScanFrequencies, TellsNoMoreThanTwelve) {
-  // Once a second ω, 2π - ω and both plus multiples of 2π are one: 200 rad/s have room for 63 of them.
+  // Sampled once per second, ω, 2π - ω and both plus multiples of 2π look the same: 63 of them lie below 200 rad/s.
   EXPECT_THAT(ScanFrequencies(Cosine(EvenTimes()), Linear(), {0.5, 200}), SizeIs(12));
 }
 
 TEST(ScanFrequencies, HasTheTrueFrequencyFirstAtUnevenStamps) {
-  // Even samples have aliases that explain them as well, these have none.
+  // Even samples have aliases that explain them equally well; these have none.
   const Eigen::VectorXd even = EvenTimes();
   const Recording uneven = Cosine(even.array() + 0.3 * (1.7 * even.array()).sin());
   const auto starts = ScanFrequencies(uneven, Linear(), kWide);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits of readings that are neither an angle nor a rate: their truth is found again, within the errors they give.
+// Fits of readings that are neither an angle nor a rate recover the true values within their errors.
 #include "pendulum/fitting/start/sensor_start.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
   }
 }
 
-/// A release is no sample of an acceleration: the window begins behind it, however long the hold before was.
+/// An acceleration sample cannot show the release: the window begins after the hold, regardless of its length.
 TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
   for (const double axis : {0.02, kPi / 2 + 0.02}) {
     for (const double release : {0.5, 2.0}) {
@@ -85,7 +85,7 @@ TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
   }
 }
 
-/// With jumps of 0.13 m/s², six times the noise, a third of the searches end beside one.
+/// With jumps of 0.13 m/s², six times the noise, a third of the searches end next to one.
 TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
   int stopped = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U, 6U, 8U, 9U, 10U}) {
@@ -102,7 +102,7 @@ TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
   EXPECT_GE(stopped, 1);
 }
 
-/// Without gravity, and on until the pendulum rests: k r ω² along the rod and k r α across it.
+/// Without gravity, recorded until the pendulum rests: k r ω² along the rod and k r α across it.
 TEST(FitRecording, FindsTheRadiusOfAnAccelerometerWhoseReadingsAreWithoutGravity) {
   for (const auto& [axis, duration] :
        {std::pair(0.02, 150.0), std::pair(kPi / 2 + 0.02, 30.0), std::pair(-kPi / 2 - 0.02, 150.0)}) {
@@ -149,7 +149,7 @@ TEST(FitRecording, FindsThePivotOfBothCoordinates) {
   ExpectTruth(options, Fit(options));
 }
 
-/// Small swings are those of a linear pendulum: no scale can be told, and none is.
+/// Small swings are those of a linear pendulum: the scale cannot be determined, and the fit reports none.
 TEST(FitRecording, SaysWhatSmallSwingsDoNotTell) {
   SyntheticOptions options = Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
   options.initial_angle = 0.05;
@@ -158,7 +158,7 @@ TEST(FitRecording, SaysWhatSmallSwingsDoNotTell) {
   const ParameterEstimate& scale = *fit.Find("rate_scale");
   const bool is_told = fit.termination == Termination::kConverged && scale.std_error && *scale.std_error < 0.2 * 0.115;
   EXPECT_FALSE(is_told) << fit.reason;
-  // What is known of it beforehand makes it a fit again.
+  // A prior on the scale makes the fit possible again.
   FitOptions known;
   known.priors["rate_scale"] = {0.115, 0.001};
   const FitReport with_prior = Fit(options, known);

@@ -27,7 +27,7 @@ StartValues StartOf(const SyntheticOptions& options, std::optional<StartKind> ch
   return Must(EstimateStartValues(Must(SimulateRecording(options)), options.model, choice));
 }
 
-/// One count of noise, then rounded to counts, as a 10-bit potentiometer gives it; the same share of a rate's peak.
+/// One count of noise, then rounded to counts, like a 10-bit potentiometer; for a rate, the same share of its peak.
 SyntheticOptions Noisy(SyntheticOptions options, std::uint64_t seed) {
   options.noise = options.quantity == Quantity::kAngle ? kCount : 5 * kCount;
   if (options.quantity == Quantity::kAngle) options.resolution = kCount;
@@ -35,7 +35,7 @@ SyntheticOptions Noisy(SyntheticOptions options, std::uint64_t seed) {
   return options;
 }
 
-/// Parameter of that name in a start's list.
+/// The parameter with this name in a start's list.
 double Parameter(const StartValues& start, const SyntheticOptions& options, std::string_view name) {
   const std::vector<ParameterInfo> infos = FitParameters(options.model, start.start, options.quantity);
   for (std::size_t i = 0; i < infos.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(EstimateStartValues, FindTheReleaseWithinTwentyMilliseconds) {
     ASSERT_EQ(start.start, StartKind::kRelease) << "seed " << seed;
     EXPECT_THAT(Parameter(start, options, "release_time"), DoubleNear(1.9, 0.02)) << "seed " << seed;
     EXPECT_THAT(Parameter(start, options, "release_angle"), DoubleNear(0.423, 0.005)) << "seed " << seed;
-    // Trials may be released up to the first sample that visibly moves: after the truth, before the first turn.
+    // Trials may be released up to the first sample visibly in motion: after the true release, before the first turn.
     EXPECT_THAT(start.latest_release, AllOf(Ge(1.9), Le(1.9 + 0.25 * kPeriod))) << "seed " << seed;
   }
 }
@@ -131,7 +131,7 @@ TEST(EstimateStartValues, FindTheReleaseSeenByARateSensor) {
 }
 
 TEST(EstimateStartValues, FindTheReleaseSeenByANoisyRateSensor) {
-  for (const double noise : {0.02, 0.06, 0.1, 0.2}) {  // the rate swings to 2 rad/s
+  for (const double noise : {0.02, 0.06, 0.1, 0.2}) {  // the rate reaches 2 rad/s
     SyntheticOptions options = TextbookRun("coulomb");
     options.quantity = Quantity::kRate;
     options.release_time = 3;
@@ -216,7 +216,7 @@ TEST(EstimateStartValues, AStartAtATurningPointIsInMotion) {
   EXPECT_THAT(Parameter(start, options, "initial_angle"), DoubleNear(0.4, 0.01));
 }
 
-// ---- What was asked for --------------------------------------------------------------------------------------------
+// ---- A start kind that the user requests ----------------------------------------------------------------------------
 
 TEST(EstimateStartValues, RefuseAReleaseWhereNothingIsHeld) {
   const Recording recording = Must(SimulateRecording(MovingRun("coulomb")));
@@ -235,7 +235,7 @@ TEST(EstimateStartValues, TakeTheStartThatWasAskedFor) {
 
 TEST(EstimateStartValues, RefuseARecordingWithoutASwing) {
   SyntheticOptions options = TextbookRun("coulomb");
-  options.duration = 2.2;  // released at 1.9 s, on its way to the first turn
+  options.duration = 2.2;  // released at 1.9 s, before the first turn
   const auto start = EstimateStartValues(Must(SimulateRecording(options)), options.model, std::nullopt);
   ASSERT_FALSE(start);
   EXPECT_EQ(start.error().code, StatusCode::kFailedPrecondition);

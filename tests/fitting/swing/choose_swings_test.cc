@@ -20,7 +20,7 @@ using testing::Le;
 using testing::Lt;
 using testing::SizeIs;
 
-/// One recording after another on one clock of 100 Hz; between them a hand takes the pendulum over in 4 s.
+/// Two recordings in sequence on one clock of 100 Hz; in between a hand moves the pendulum for 4 s.
 Recording OneAfterTheOther(const Recording& first, const Recording& second) {
   constexpr Eigen::Index kMove = 400;
   const Eigen::ArrayXd share = Eigen::ArrayXd::LinSpaced(kMove, 1, kMove) / (kMove + 1);
@@ -33,7 +33,7 @@ Recording OneAfterTheOther(const Recording& first, const Recording& second) {
   return both;
 }
 
-/// Released at 1.9 s for 9 s; from 13 s on held again, released at 14.9 s, recorded to 28 s.
+/// Released at 1.9 s for 9 s; held again from 13 s on, released at 14.9 s, recorded to 28 s.
 Recording TwoReleases() {
   SyntheticOptions second = NoisyRun("coulomb", 2);
   second.release_angle = 0.6;
@@ -99,7 +99,7 @@ TEST(ChooseSwings, CountsReleasesWithinTheWindow) {
 }
 
 TEST(ChooseSwings, LooksForNothingWhereBothEndsAreGiven) {
-  // A hand and a second hold lie between, and it is not this tool's affair.
+  // A hand and a second hold lie between; if both ends are given, the search ignores them.
   const ChosenSwings swings = Choose(Between(3, 20));
   ASSERT_THAT(swings.found, SizeIs(1));
   EXPECT_THAT(swings.chosen, ElementsAre(1));

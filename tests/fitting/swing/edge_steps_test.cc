@@ -19,8 +19,8 @@ using testing::SizeIs;
 
 constexpr double kResolution = 0.003;  // rad
 
-/// Edges of 0.3 cos 5t, crossed one after the other, and what a fit left of them that knows neither their lag nor what
-/// the counter lost at turning points: `lost[k]` counts at the k-th.
+/// Edges of 0.3 cos 5t in sequence, with the residuals of a fit that ignores their lag and the counts lost at turning
+/// points: `lost[k]` counts at turning point k.
 struct Edges {
   Recording recording;
   FitResiduals residuals;
@@ -35,7 +35,7 @@ struct Edges {
       if (half > 0) counts += lost[half - 1];
       const double direction = half % 2 == 0 ? -1 : 1;
       for (int edge = 99; edge >= -99; --edge) {
-        const double level = -direction * (edge + 0.5) * kResolution;  // in the order they are crossed
+        const double level = -direction * (edge + 0.5) * kResolution;  // in the order of crossing
         if (std::abs(level) >= kAmplitude) continue;
         const double phase = std::acos(std::abs(level) / kAmplitude);
         const double from_turn = -direction * level > 0 ? phase : std::acos(-1.0) - phase;
@@ -50,7 +50,7 @@ struct Edges {
     recording.resolution = kResolution;
     recording.edge = 0.5 * kResolution;
     residuals.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), size);
-    residuals.jacobian.resize(size, 2);  // of an amplitude, and of a zero
+    residuals.jacobian.resize(size, 2);  // amplitude and zero
     residuals.jacobian << (kRate * residuals.time.array()).cos(), Eigen::ArrayXd::Ones(size);
     residuals.residual += 0.02 * residuals.jacobian.col(0);
     residuals.rate = -kAmplitude * kRate * (kRate * residuals.time.array()).sin();
@@ -66,7 +66,7 @@ TEST(FindEdgeSteps, FindsEachCountThatWasLostAtATurningPoint) {
   ASSERT_THAT(steps, SizeIs(counts.size()));
   for (std::size_t k = 0; k < steps.size(); ++k) {
     EXPECT_THAT(steps[k].size / kResolution, DoubleNear(counts[k], 1e-9));
-    const double turn = half_swings[k] * std::acos(-1.0) / 5;  // the step is the next edge's
+    const double turn = half_swings[k] * std::acos(-1.0) / 5;  // the step is at the next edge
     EXPECT_THAT(edges.recording.time[steps[k].sample] - turn, DoubleNear(0.02, 0.02));
   }
 }

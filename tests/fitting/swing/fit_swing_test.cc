@@ -40,7 +40,8 @@ std::vector<std::string> Codes(const FitReport& report) {
 
 constexpr double kHalfPeriod = 0.671;  // s, of the textbook rig at 0.4 rad: π sqrt(0.079 / G) (1 + 0.4² / 16)
 
-/// A hand leads the pendulum through half swing `half` (from 0) after its release, and lets go of it as it would be.
+/// A hand guides the pendulum through half swing `half` (from 0) after its release, then lets go at the state of free
+/// motion.
 Recording Guided(const SyntheticOptions& run, int half, double by = 0.05) {
   Recording recording = Must(SimulateRecording(run));
   const double from = run.release_time + half * kHalfPeriod;

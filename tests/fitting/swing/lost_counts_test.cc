@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::Lt;
 using testing::SizeIs;
 
-/// The textbook rig's sensor with noise of so many counts.
+/// The textbook rig's sensor with noise of `noise` counts.
 SyntheticOptions CountingRun(double noise) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
@@ -47,7 +47,7 @@ const std::string& MessageOf(const FitReport& fit, std::string_view code) {
   throw std::runtime_error("no warning " + std::string(code));
 }
 
-/// The largest |estimate - truth| over its standard error.
+/// The largest |estimate - truth| divided by its standard error.
 double LargestDeviation(const FitReport& fit, const SyntheticOptions& run) {
   const std::vector<double> truth = TrueParameters(run);
   double largest = 0;
@@ -71,7 +71,7 @@ TEST(FindZeroJumps, GivesBackTheReadingsBeforeCountsWereLost) {
   ASSERT_TRUE(jumps);
   EXPECT_THAT(jumps->lost, ElementsAre(Field(&LostCounts::counts, 2), Field(&LostCounts::counts, -1)));
   const Eigen::ArrayXd levels = (jumps->corrected.value - whole.value).array() / kCount;
-  // Where in the noise a jump was is known to a few samples.
+  // With noise, the position of a jump is known to a few samples.
   EXPECT_LE((levels.round().abs() > 0).count(), 6);
   EXPECT_EQ(levels.round().matrix().tail<1>()[0], 0);
 }
@@ -100,7 +100,7 @@ TEST(FitSwing, FindsLostCountsWhateverTheLawAskedFor) {
   run.lost_counts = {{6.5, 4}};
   const SwingFit result = Fit(Must(SimulateRecording(run)), "viscous");
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 4 counts at 6.5"));
-  EXPECT_TRUE(result.fit.Warns("lack_of_fit"));  // there is dry friction
+  EXPECT_TRUE(result.fit.Warns("lack_of_fit"));  // the data contain dry friction
 }
 
 TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
@@ -120,8 +120,8 @@ TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
   }
 }
 
-/// An encoder's events, whose counter loses one at a turning point now and then, and four amid the motion: there its
-/// logger was busy, so that rows are missing.
+/// Events of an encoder whose counter loses one count at some turning points, and four during the motion, where a busy
+/// logger missed rows.
 TEST(FitSwing, MovesBackWhatAnEncoderOfEventsLost) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.start = StartKind::kMoving;
@@ -174,7 +174,7 @@ TEST(MayJump, SeesAMeanThatChanges) {
   EXPECT_FALSE(MayJump(fit));
   fit.residual.tail(400).array() += 0.005;
   EXPECT_TRUE(MayJump(fit));
-  fit.residual *= 1e-8;  // the rounding of numbers
+  fit.residual *= 1e-8;  // rounding error of the numbers
   EXPECT_FALSE(MayJump(fit));
 }
 

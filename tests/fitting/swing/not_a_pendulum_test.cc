@@ -34,7 +34,7 @@ SwingFit FitLongest(const Recording& recording, const FitOptions& options) {
   return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
 }
 
-/// Everything that would look like a result is gone, and the warning says why.
+/// Expects that all results are withdrawn and the warning gives the reason.
 void ExpectWithdrawn(const FitReport& fit) {
   EXPECT_EQ(fit.termination, Termination::kNotConverged);
   EXPECT_THAT(fit.reason, StartsWith("this is not a free pendulum's swing: "));
@@ -56,7 +56,7 @@ void ExpectAPendulum(const FitReport& fit) {
 
 // ---- A mass on a spring -------------------------------------------------------------------------------------------
 
-/// The textbook rig with linear gravity, and so with one period.
+/// The textbook rig with linear gravity, and therefore a constant period.
 Recording LinearOscillator(double degrees, std::string_view friction, std::uint64_t seed) {
   SyntheticOptions run = NoisyRun(friction, seed);
   run.model.gravity = Gravity::kLinear;
@@ -65,7 +65,7 @@ Recording LinearOscillator(double degrees, std::string_view friction, std::uint6
   return Must(SimulateRecording(run));
 }
 
-/// The number behind `before` in a sentence.
+/// The number after `before` in a sentence.
 double NumberAfter(const std::string& sentence, const std::string& before) {
   const std::size_t at = sentence.find(before);
   if (at == std::string::npos) throw std::runtime_error("no '" + before + "' in: " + sentence);
@@ -111,7 +111,7 @@ TEST(WhyLinear, SaysNothingOfAFitThatFailed) {
 
 // ---- Two modes ----------------------------------------------------------------------------------------------------
 
-/// A pendulum with another mode of `share` of its amplitude at `ratio` of its natural frequency.
+/// A pendulum with a second mode: `share` of its amplitude at `ratio` of its natural frequency.
 Recording TwoModes(double share, double ratio, double duration = 25) {
   SyntheticOptions run = NoisyRun("viscous");
   run.duration = duration;
@@ -130,7 +130,7 @@ TEST(FitSwing, NamesTwoModesWithTheirPeriods) {
     SCOPED_TRACE(ratio);
     const FitReport fit = FitLongest(TwoModes(0.12, ratio), ModelOptions("coulomb")).fit;
     ExpectWithdrawn(fit);
-    // 25 s tell frequencies that are 1 / 25 s apart.
+    // 25 s resolve frequencies that are 1 / 25 s apart.
     EXPECT_THAT(1 / NumberAfter(fit.reason, "with a period of "), DoubleNear(ratio / period, 1.0 / 25));
     EXPECT_THAT(NumberAfter(fit.reason, "beside the pendulum's "), DoubleNear(period, 0.02 * period));
     EXPECT_THAT(NumberAfter(fit.reason, "swing: "), testing::AllOf(testing::Ge(40), testing::Le(101)));
@@ -148,8 +148,8 @@ TEST(FitSwing, NamesModesOfNearlyOneFrequencyThatBeat) {
 
 // ---- A pendulum ---------------------------------------------------------------------------------------------------
 
-/// 20 s of a pendulum of 5 rad/s let go at 1 rad under a friction that no model here has: torque(rate) in units of G.
-/// Classical Runge-Kutta steps of 1 ms; noise as in NoisyRun.
+/// 20 s of a pendulum of 5 rad/s released at 1 rad. No model has its friction, torque(rate) in units of G. Classical
+/// Runge-Kutta steps of 1 ms; noise as in NoisyRun.
 template <typename Friction>
 Recording PendulumWith(const Friction& torque) {
   Recording recording = Must(SimulateRecording([] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data that are no free pendulum's swing: refused, or fitted and said not to be, but never called converged.
+// Data without a free swing are refused, or fitted and reported as not a swing, but never reported as converged.
 #include <cmath>
 #include <functional>
 #include <random>
@@ -29,10 +29,10 @@ Recording Made(const std::function<double(double, const Noise&)>& y, std::uint64
   return Must(MakeRecording(std::move(recording)));
 }
 
-/// Every model, a few seeds: refused for want of a swing, or exit code 1 with a reason.
+/// For every model and a few seeds, expects a refusal because there is no swing, or exit code 1 with a reason.
 ///
-/// The small-angle model is left out on request: of a true swing of 40 deg it leaves 14 % of the variance unexplained,
-/// as much as of some of these.
+/// The small-angle model can be left out: for a true swing of 40 deg it leaves 14 % of the variance unexplained, as
+/// much as for some of these data.
 void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make, bool with_linear = true) {
   for (const MotionModel& model : MotionModels()) {
     if (model.gravity == Gravity::kLinear && !with_linear) continue;

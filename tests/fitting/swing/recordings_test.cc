@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings made by other people, against an independent program's fits of the same windows (Runge-Kutta, tanh for the
-// sign of the rate, SciPy least squares). They are not part of the project: PENDULUM_RECORDINGS names their folder.
+// Recordings made by other people, compared with fits of the same windows by an independent program (Runge-Kutta, tanh
+// for the sign of the rate, SciPy least squares). They are not part of the project: PENDULUM_RECORDINGS names their
+// folder.
 #include <cstdlib>
 #include <filesystem>
 #include <limits>

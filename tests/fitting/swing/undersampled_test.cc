@@ -36,7 +36,7 @@ Rig TextbookRig() {
   return rig;
 }
 
-/// The textbook pendulum in motion at any phase: viscous friction, 30 s, noise of a count.
+/// The textbook pendulum in motion at a random phase: viscous friction, 30 s, noise of one count.
 SyntheticOptions Swing(double rate_hz, double amplitude, std::uint64_t seed, double inertia = kInertiaTruth) {
   std::mt19937_64 generator(1000 + seed);
   const double phase = 2 * kPi * static_cast<double>(generator() >> 11) * 0x1p-53;
@@ -93,8 +93,8 @@ Scatter ScatterOf(double rate_hz, double amplitude, std::string_view model, int 
 // ---- With the rig's geometry ---------------------------------------------------------------------------------------
 
 TEST(FitUndersampled, FindsTheInertiaOfATextbookRunSampledOnceASecond) {
-  // z of 24 degrees of freedom has a standard deviation of 1.04, known to 9 % from 60: 0.8 and 1.25 are 2 to 3 of
-  // these.
+  // z with 24 degrees of freedom has a standard deviation of 1.04, which 60 seeds determine to 9 %: 0.8 and 1.25 are 2
+  // to 3 of these errors.
   const Scatter scatter = ScatterOf(1, 0.423, "viscous", 60);
   EXPECT_THAT(scatter.far, Le(1));
   EXPECT_THAT(std::abs(std::log(scatter.std_dev)), Lt(std::log(1.25)));
@@ -131,7 +131,7 @@ TEST(FitUndersampled, FitsAGyro) {
 }
 
 TEST(FitUndersampled, UsesTheStampsOfUnevenSamples) {
-  // Once a cycle on average: even samples would tell nothing, scattered ones do.
+  // Once per cycle on average: even samples carry no information, uneven ones do.
   SyntheticOptions run = Swing(kFrequency, 0.423, 3);
   run.jitter = 0.2;
   const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
@@ -189,7 +189,7 @@ TEST(FitUndersampled, RefusesAConstant) {
   EXPECT_THAT(refused.error().message, HasSubstr("constant"));
 }
 
-// ---- Without it ----------------------------------------------------------------------------------------------------
+// ---- Without the rig's geometry ------------------------------------------------------------------------------------
 
 TEST(FitUndersampled, GivesNoConfidentAnswerWithoutARig) {
   for (const double rate : {0.6, 1.0, 1.267, 2.0, 3.5}) {
@@ -206,7 +206,7 @@ TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
   EXPECT_FALSE(result.swing.undersampled);
 }
 
-// Milliseconds and microseconds that are taken for seconds.
+// Milliseconds and microseconds interpreted as seconds.
 TEST(FitUndersampled, RefusesAPeriodThatNoPendulumHas) {
   for (const double factor : {1e3, 1e6}) {
     Recording recording = Must(SimulateRecording(Swing(50, 0.423, 1)));
@@ -233,7 +233,7 @@ TEST(FitUndersampled, TakesBoundsForARig) {
   EXPECT_NEAR(InertiaOf(result), kInertiaTruth / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
 }
 
-// ---- Which recordings ----------------------------------------------------------------------------------------------
+// ---- IsUndersampled ------------------------------------------------------------------------------------------------
 
 TEST(IsUndersampled, BelowSevenSamplesInAPeriodFifteenPercentShorter) {
   const double limit = 7 * 1.15 * std::sqrt(kTextbookTorque / kGeometric) / (2 * kPi);
@@ -248,8 +248,8 @@ TEST(IsUndersampled, WhereAFasterPendulumWouldLookTheSameWithoutARigsInertia) {
   const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
   for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional<Rig>(torque_alone)}) {
     EXPECT_TRUE(IsUndersampled(at(3.7), rig));   // 2.94 Hz would look the same
-    EXPECT_TRUE(IsUndersampled(at(5.1), rig));   // 6.7 samples a period
-    EXPECT_FALSE(IsUndersampled(at(5.9), rig));  // 7.8 of them, and no pendulum swings at 5.1 Hz
+    EXPECT_TRUE(IsUndersampled(at(5.1), rig));   // 6.7 samples per period
+    EXPECT_FALSE(IsUndersampled(at(5.9), rig));  // 7.8 samples per period, and no pendulum swings at 5.1 Hz
   }
 }
 

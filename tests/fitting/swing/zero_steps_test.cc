@@ -22,7 +22,7 @@ using testing::SizeIs;
 constexpr double kPeriod = 1.0;  // s
 constexpr double kRate = 100;    // Hz
 
-/// 20 s of noise of standard deviation 1, AR(1) of that correlation, left by a fit whose parameters are phase,
+/// 20 s of AR(1) noise with standard deviation 1 and that correlation, as residuals of a fit with the parameters phase,
 /// amplitude and zero of a sine.
 FitResiduals Noise(unsigned seed, double correlation = 0) {
   constexpr Index kCount = 2000;
@@ -56,7 +56,7 @@ TEST(FindZeroSteps, FindsNoneInNoise) {
   }
 }
 
-// Two means of n1 and n2 independent samples differ by a step with the error sqrt(1 / n1 + 1 / n2).
+// The difference of two means of n1 and n2 independent samples has the error sqrt(1 / n1 + 1 / n2).
 TEST(FindZeroSteps, TellsAStepAsWellAsTwoMeansDo) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     FitResiduals residuals = Noise(seed);
@@ -83,7 +83,8 @@ TEST(FindZeroSteps, FindsSeveralOfEitherSignInTimeOrder) {
   EXPECT_THAT(steps[0].size, AllOf(Gt(-3.5), Lt(-2.5)));
 }
 
-// A law that does not describe the friction leaves residuals that swing along, smooth from sample to sample.
+// A law that does not describe the friction leaves residuals that oscillate with the swing, smooth from sample to
+// sample.
 TEST(FindZeroSteps, SeesAnEdgeAmidAMisfitAndNoneWithoutIt) {
   FitResiduals residuals = Noise(4);
   residuals.residual *= 0.1;
@@ -109,7 +110,7 @@ TEST(FindZeroSteps, TakesNeitherADriftNorASpikeNorASlippedClockForAStep) {
   EXPECT_THAT(FindZeroSteps(slipped, 5), IsEmpty());
 }
 
-// A swing of 20 s has 2000 samples, of which means over 20 are looked at.
+// A period of 20 s has 2000 samples; the search uses means over 20 samples.
 TEST(FindZeroSteps, DatesAStepWithinTheMeansItLooksAt) {
   FitResiduals residuals = Noise(9);
   residuals.period = 20;

@@ -21,12 +21,12 @@ TEST(Bootstrap, InterpolatesBetweenOrderStatistics) {
   bootstrap.estimates << 3, 0, 1, 0, 5, 0, 2, 0, 4, 7;
   EXPECT_DOUBLE_EQ(bootstrap.Quantile(0, 0), 1);
   EXPECT_DOUBLE_EQ(bootstrap.Quantile(0, 0.5), 3);
-  EXPECT_DOUBLE_EQ(bootstrap.Quantile(0, 0.1), 1.4);  // four tenths of the way from the first to the second
+  EXPECT_DOUBLE_EQ(bootstrap.Quantile(0, 0.1), 1.4);  // four tenths between the first and the second
   EXPECT_DOUBLE_EQ(bootstrap.Quantile(0, 1), 5);
   EXPECT_DOUBLE_EQ(bootstrap.Quantile(1, 0.875), 3.5);
 }
 
-/// Ends of the bootstrap's intervals off those of the covariance, in half lengths, both of the same recording.
+/// Compares the ends of bootstrap and covariance intervals for one recording, in half lengths.
 void ExpectIntervalsOfCovariance(const Recording& recording, FitOptions options, double allowed) {
   options.interval = IntervalMethod::kCovariance;
   const FitReport covariance = Fit(recording, options);
@@ -42,8 +42,8 @@ void ExpectIntervalsOfCovariance(const Recording& recording, FitOptions options,
   }
 }
 
-// An end of 999 fits scatters by 4 % of half the interval: sqrt(.025 · .975 / 999) over the normal density there. An
-// eighth is three of that.
+// The end of an interval from 999 fits has a standard error of 4 % of the half length: sqrt(.025 · .975 / 999) divided
+// by the normal density there. An eighth is three times that.
 constexpr double kScatter = 0.125;
 
 TEST(Bootstrap, OfWhiteNoiseGivesTheCovariancesIntervals) {
@@ -66,11 +66,11 @@ TEST(Bootstrap, OfNoiseThatRemembersGivesTheSandwichsIntervals) {
   const Recording recording = WithNoise(Must(SimulateRecording(run)), 1, RememberingNoise(0.8, 0.002));
   const FitReport report = Fit(recording, ModelOptions("coulomb"));
   ASSERT_THAT(report.std_error_method, StartsWith("sandwich"));
-  // Blocks cut the memory off at their ends, and of 1500 samples there are not many.
+  // Blocks cut the autocorrelation at their ends, and 1500 samples give only a few blocks.
   ExpectIntervalsOfCovariance(recording, ModelOptions("coulomb"), 0.25);
 }
 
-/// A short recording of few fits' cost.
+/// A short recording whose fits cost little.
 Fitted SmallFit() {
   SyntheticOptions run = ShortSwing("viscous");
   run.sample_rate = 15;
@@ -110,7 +110,7 @@ TEST(Bootstrap, HasEstimatesAroundTheFitsOwnThatScatterAsTheyShould) {
     const Eigen::ArrayXd deviation =
         (bootstrap.estimates.col(i).array() - fitted.At(i)) / std::sqrt(errors.covariance(i, i));
     EXPECT_NEAR(deviation.mean(), 0, 4 / std::sqrt(999)) << i;
-    // Noise is drawn with σ from N - F, as the standard errors have it.
+    // Noise is drawn with σ from N - F, as in the standard errors.
     EXPECT_NEAR(std::sqrt(deviation.square().mean()), 1, 4 / std::sqrt(2 * 999)) << i;
   }
 }
@@ -124,7 +124,7 @@ TEST(Bootstrap, ReportsItsProgress) {
     ++calls;
   };
   Bootstrapped(fitted, 1, 1);
-  EXPECT_EQ(calls, 9);  // a tenth after the other
+  EXPECT_EQ(calls, 9);  // one after each tenth
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ Quantities Derived(std::string_view model, const std::vector<double>& parameters
 /// I 0.04 s², b 0.002 s, τ_c 0.003, c 0.0008 s²; start and zero.
 const std::vector<double> kParameters = {0.04, 0.002, 0.003, 0.0008, 0.3, -0.7, 0.01};
 
-/// A covariance of those with correlations of both signs.
+/// A covariance of these parameters with correlations of both signs.
 Eigen::MatrixXd Covariance() {
   const Eigen::VectorXd errors = Eigen::Map<const Eigen::VectorXd>(kParameters.data(), 7).cwiseAbs() * 0.01;
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(7, 7);
@@ -51,7 +51,7 @@ Eigen::MatrixXd Covariance() {
   return errors.asDiagonal() * correlation * errors.asDiagonal();
 }
 
-/// What each quantity is, by its definition in words (ω0² = G / I, ζ = b ω0 / 2 G, T = 2 π / ω0, Q = 1 / 2 ζ).
+/// Definition of each quantity (ω0² = G / I, ζ = b ω0 / 2 G, T = 2 π / ω0, Q = 1 / 2 ζ).
 const std::map<std::string, std::function<double(const Eigen::VectorXd&)>> kDefinitions = {
     {"natural_frequency", [](const Eigen::VectorXd& p) { return std::sqrt(1 / p[0]); }},
     {"small_angle_period", [](const Eigen::VectorXd& p) { return 2 * kPi * std::sqrt(p[0]); }},
@@ -63,7 +63,7 @@ const std::map<std::string, std::function<double(const Eigen::VectorXd&)>> kDefi
     {"drag_over_inertia", [](const Eigen::VectorXd& p) { return p[3] / p[0]; }},
 };
 
-/// Standard error by central differences of the definition.
+/// Standard error by propagation, with central differences of the definition.
 double PropagatedError(const std::function<double(const Eigen::VectorXd&)>& definition) {
   const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(kParameters.data(), 7);
   Eigen::VectorXd gradient(7);
@@ -123,7 +123,7 @@ TEST(DerivedQuantities, AnUndampedPendulumHasNoQualityFactorAndAFiniteErrorOfIts
   const Eigen::MatrixXd covariance = Covariance();
   const Quantities quantities = Derived("drag", parameters, &covariance);
   EXPECT_THAT(quantities, Not(Contains(Key("quality_factor"))));
-  // ζ = b / (2 sqrt(I)): at b = 0 its error is that of b over 2 sqrt(0.04).
+  // ζ = b / (2 sqrt(I)): at b = 0 its error is that of b divided by 2 sqrt(0.04).
   EXPECT_THAT(*quantities.at("damping_ratio").std_error, DoubleNear(0.00002 / 0.4, 1e-12));
 }
 
@@ -136,7 +136,7 @@ TEST(DerivedQuantities, AreOnlyThoseOfTheModelsParameters) {
 
 // ---- Intervals -----------------------------------------------------------------------------------------------------
 
-/// The drag model's quantities with intervals from I in [0.0361, 0.0484] s², b and τ_c as given; c has no interval.
+/// Quantities of the drag model with intervals for I in [0.0361, 0.0484] s², b and τ_c as given; c has no interval.
 Quantities WithIntervals(const IntervalEnds& viscous, const IntervalEnds& coulomb,
                          const IntervalEnds& inertia = {0.0361, 0.0484}) {
   const std::vector<ParameterInfo> infos =
@@ -154,13 +154,13 @@ void ExpectInterval(const DerivedQuantity& quantity, double lower, double upper)
   EXPECT_THAT(*quantity.upper95, DoubleNear(upper, 1e-9 * std::abs(upper))) << quantity.name;
 }
 
-/// Roots of I: 0.19, 0.2, 0.22 s; a rising I lowers ω0 and lengthens the period.
+/// sqrt(I) is 0.19, 0.2, 0.22 s; a larger I lowers ω0 and lengthens the period.
 TEST(SetDerivedIntervals, CarriesTheEndsOfOneParameterOver) {
   const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
   ExpectInterval(quantities.at("natural_frequency"), 1 / 0.22, 1 / 0.19);
   ExpectInterval(quantities.at("small_angle_period"), 0.38 * kPi, 0.44 * kPi);
   ExpectInterval(quantities.at("gravity_over_inertia"), 1 / 0.0484, 1 / 0.0361);
-  ExpectInterval(quantities.at("coulomb_over_inertia"), 0.003 / 0.0484, 0.003 / 0.0361);  // τ_c is held
+  ExpectInterval(quantities.at("coulomb_over_inertia"), 0.003 / 0.0484, 0.003 / 0.0361);  // τ_c is fixed
 }
 
 TEST(SetDerivedIntervals, AddsTheDistancesOfTwoParametersInSquares) {

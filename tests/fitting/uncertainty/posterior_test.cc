@@ -24,8 +24,8 @@ using testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kResolution = 0.003;  // rad
 
-// 500 effective draws: a mean is good to 0.045 standard deviations, a standard deviation to 3 %, the quantile .025 to
-// 0.12 standard deviations of a normal distribution. Three to four times that is asked for.
+// With 500 effective draws, a mean has an error of 0.045 standard deviations, a standard deviation of 3 %, the quantile
+// .025 of 0.12 standard deviations of a normal distribution. The tests allow three to four times that.
 constexpr double kMeanError = 0.16;
 constexpr double kSpreadError = 0.12;
 constexpr double kQuantileError = 0.4;
@@ -50,14 +50,14 @@ Eigen::VectorXd Rounded(const Eigen::VectorXd& truth, double sigma, std::mt19937
   return value;
 }
 
-/// A ramp of 20 samples, 0.37 counts apart, and its offset by δ; the truth is δ = 0.1 counts, without noise.
+/// A ramp of 20 samples, 0.37 counts apart, with an offset δ; the truth is δ = 0.1 counts, without noise.
 LinearizedFit Ramp() {
   const Eigen::VectorXd ramp = kResolution * Eigen::VectorXd::LinSpaced(20, 0, 19 * 0.37);
   std::mt19937_64 generator(1);
   return FitOf(Rounded(ramp.array() + 0.1 * kResolution, 0, generator), ramp, Eigen::MatrixXd::Ones(20, 1));
 }
 
-/// Log-probability of a fit's readings, by erfc alone; in the tails it need not be exact.
+/// Log-probability of a fit's readings from erfc alone; it need not be exact in the tails.
 double LogProbability(const LinearizedFit& fit, double delta, double sigma) {
   const double half = 0.5 * kResolution;
   double probability = 1;
@@ -81,7 +81,7 @@ struct Moments {
   double sigma = 0;
 };
 
-/// The posterior of one parameter by quadrature on a grid of δ, and of log σ.
+/// The posterior of one parameter by quadrature on a grid of δ and log σ.
 Moments ByQuadrature(const LinearizedFit& fit) {
   constexpr int kDeltas = 400;
   constexpr int kSigmas = 120;
@@ -177,7 +177,7 @@ TEST(SamplePosterior, IsTheSameForTheSameSeed) {
   EXPECT_NE(first->mean, other->mean);
 }
 
-/// N x 3: level, slope and curvature, whose units are wildly different.
+/// N x 3: level, slope and curvature, with units of very different size.
 Eigen::MatrixXd Parabola(int samples) {
   const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(samples, 0, 1);
   Eigen::MatrixXd jacobian(samples, 3);
@@ -185,7 +185,7 @@ Eigen::MatrixXd Parabola(int samples) {
   return jacobian;
 }
 
-/// The information of 3 parameters and log σ, and the score, at δ and σ.
+/// The score, and the information of 3 parameters and log σ, at δ and σ.
 struct Newton {
   Eigen::Vector4d score = Eigen::Vector4d::Zero();
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
@@ -209,7 +209,7 @@ Newton NewtonAt(const LinearizedFit& fit, const Eigen::Vector4d& point) {
   return newton;
 }
 
-/// Scaled to unit diagonal before it is inverted.
+/// The inverse, computed after scaling to unit diagonal.
 Eigen::Matrix4d Covariance(const Eigen::Matrix4d& information) {
   const Eigen::Vector4d scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::Matrix4d scaled = scale.asDiagonal() * information * scale.asDiagonal();
@@ -238,13 +238,13 @@ TEST(SamplePosterior, OfMuchNoiseIsTheNormalDistributionAboutTheLikeliest) {
     EXPECT_NEAR((posterior->lower95[j] - point[j]) / std_dev, -1.96, kQuantileError) << j;
     EXPECT_NEAR((posterior->upper95[j] - point[j]) / std_dev, 1.96, kQuantileError) << j;
   }
-  // Of 400 samples σ is known to 4 %; its posterior mean is 1/400 larger than the likeliest.
+  // 400 samples determine σ to 4 %; its posterior mean is larger than the maximum likelihood value by 1/400.
   EXPECT_NEAR(posterior->sigma / std::exp(point[3]), 1, 0.015);
   EXPECT_NEAR(posterior->sigma_std_dev / (std::exp(point[3]) * std::sqrt(covariance(3, 3))), 1, kSpreadError);
 }
 
 TEST(SamplePosterior, RanksTheTruthUniformlyAmongItsDraws) {
-  // S. Talts et al., arXiv 1804.06788: true when truths are drawn from the prior.
+  // S. Talts et al., arXiv 1804.06788: holds if the true values are drawn from the prior.
   constexpr int kProblems = 100;
   constexpr int kBins = 10;
   const Eigen::MatrixXd jacobian = Parabola(100);
@@ -269,7 +269,7 @@ TEST(SamplePosterior, RanksTheTruthUniformlyAmongItsDraws) {
   }
   constexpr double kExpected = 1.0 * kProblems / kBins;
   for (int j = 0; j < 4; ++j) {
-    // χ² of 9 degrees of freedom exceeds 27.9 once in a thousand.
+    // χ² with 9 degrees of freedom exceeds 27.9 once in a thousand.
     EXPECT_LT((counts.col(j) - kExpected).square().sum() / kExpected, 27.9) << j << ": " << counts.col(j).transpose();
   }
 }
@@ -310,9 +310,9 @@ TEST(SamplePosterior, CoversTheTruthOfSwingsWithoutNoiseAndComesFarCloserThanLea
     squares += (posterior->mean + error).array().square();
     plain_squares += error.array().square();
   }
-  // Intervals are calibrated on average over σ in (0, 2q], and conservative at its end.
+  // The intervals are calibrated on average over σ in (0, 2q], and conservative at the end of that range.
   EXPECT_GE(covered, 0.93 * 5 * kSwings);
-  // Errors fall as 1/N, not as its root; measured: 0.03 to 0.15 of those of least squares.
+  // Errors decrease as 1/N, not as 1/sqrt(N); measured: 0.03 to 0.15 of the least-squares errors.
   EXPECT_LT((squares / plain_squares).maxCoeff(), 0.3 * 0.3);
 }
 

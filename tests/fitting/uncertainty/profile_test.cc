@@ -21,9 +21,9 @@ using testing::HasSubstr;
 
 double TwoSided95(double freedom) { return boost::math::quantile(boost::math::students_t(freedom), 0.975); }
 
-// ---- A straight line in disguise -----------------------------------------------------------------------------------
+// ---- A reparametrized straight line --------------------------------------------------------------------------------
 
-/// A slope as a function of the parameter, its derivative, and the parameter that has a slope.
+/// A reparametrization of a line's slope: the slope as a function of the parameter, its derivative, and its inverse.
 struct Disguise {
   std::function<double(double)> slope, derivative, parameter;
 };
@@ -72,7 +72,7 @@ class LineCost final : public TrajectoryCost {
   double sigma_ = 1;
 };
 
-/// Twenty points about 0.2 + slope x, the same scatter whatever the slope.
+/// Twenty points about 0.2 + slope x, with the same residuals for every slope.
 struct Line {
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(20, -1, 1);
   Eigen::VectorXd value;
@@ -80,15 +80,15 @@ struct Line {
   explicit Line(double slope) {
     value = 0.2 + slope * x.array() + 0.1 * (7.3 * Eigen::ArrayXd::LinSpaced(20, 1, 20)).sin();
   }
-  double Slope() const { return x.dot(value) / x.squaredNorm(); }  // x has the mean 0
+  double Slope() const { return x.dot(value) / x.squaredNorm(); }  // x has mean 0
   double Sigma() const {
     return std::sqrt((value.array() - value.mean() - Slope() * x.array()).square().sum() / (20 - 2));
   }
-  /// Of the 95 % interval of the slope: the textbook's, from t with N - 2 degrees of freedom.
+  /// Half length of the textbook's 95 % interval of the slope, from t with N - 2 degrees of freedom.
   double HalfLength() const { return TwoSided95(18) * Sigma() / x.norm(); }
 };
 
-/// The profile of the disguised slope. Its parameter may lie between bounds; it begins at `start`.
+/// The profile of the reparametrized slope. Its parameter may have bounds; the search begins at `start`.
 ProfileInterval ProfileOfLine(const Line& line, const Disguise& disguise, double start, double lower, double upper) {
   LineCost cost(disguise, line.x, line.value);
   FitProblem problem;
@@ -111,18 +111,18 @@ ProfileInterval ProfileOfLine(const Line& line, const Disguise& disguise, double
 const Disguise kNone = {[](double p) { return p; }, [](double) { return 1.0; }, [](double s) { return s; }};
 const Disguise kExponential = {[](double p) { return std::exp(p); }, [](double p) { return std::exp(p); },
                                [](double s) { return std::log(s); }};
-/// A slope that stays below 1 however large the parameter.
+/// A slope that stays below 1 for any parameter value.
 const Disguise kSaturating = {[](double p) { return p / (1 + p); }, [](double p) { return 1 / ((1 + p) * (1 + p)); },
                               [](double s) { return s / (1 - s); }};
 
-/// A profile does not change with the parameter's scale: it is the straight line's interval, disguised likewise.
+/// A profile does not depend on the parametrization: the result is the line's interval, transformed to the parameter.
 TEST(ProfileParameter, OfAStraightLineInDisguiseIsTheLinesIntervalInDisguise) {
   for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
     const Line line(0.3);
     const ProfileInterval profile =
         ProfileOfLine(line, *disguise, disguise->parameter(0.25), disguise->parameter(0.05), 20);
     ASSERT_TRUE(profile.lower && profile.upper);
-    // Ends are sought to a hundredth of the root of the likelihood's fall: of half the line's interval.
+    // The ends are found to a hundredth of the root of the likelihood's decrease: a hundredth of the half length.
     EXPECT_NEAR(disguise->slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_NEAR(disguise->slope(*profile.upper), line.Slope() + line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_EQ(profile.open, OpenInterval::kClosed);
@@ -131,7 +131,7 @@ TEST(ProfileParameter, OfAStraightLineInDisguiseIsTheLinesIntervalInDisguise) {
 
 TEST(ProfileParameter, IsOpenWhereTheLikelihoodDoesNotFallFarEnough) {
   const Line line(0.97);
-  ASSERT_GT(line.Slope() + line.HalfLength(), 1);  // no parameter has such a slope
+  ASSERT_GT(line.Slope() + line.HalfLength(), 1);  // no parameter value has such a slope
   const ProfileInterval profile = ProfileOfLine(line, kSaturating, 5, -0.5, kUnbounded);
   ASSERT_TRUE(profile.lower);
   EXPECT_NEAR(kSaturating.slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
@@ -148,13 +148,14 @@ TEST(ProfileParameter, EndsAtABoundThatTheLikelihoodReachesAcross) {
   EXPECT_EQ(profile.open, OpenInterval::kClosed);
 }
 
-/// From a bound beyond the line's own slope the likelihood falls from where the bound is, not from its top.
+/// If the bound excludes the line's own slope, the likelihood decreases from its value at the bound, not from its
+/// maximum.
 TEST(ProfileParameter, OfAParameterAtItsBoundFallsFromTheBound) {
   const Line line(0.3);
   const double beyond = 0.5 * line.HalfLength();
   const ProfileInterval profile = ProfileOfLine(line, kNone, 1, line.Slope() + beyond, 5);
   EXPECT_DOUBLE_EQ(*profile.lower, line.Slope() + beyond);
-  // Distances d from the top have risen by d²: d² - beyond² = length².
+  // At distance d from the maximum, the deviance has risen by d²: d² - beyond² = length².
   EXPECT_NEAR(*profile.upper - line.Slope(), std::hypot(line.HalfLength(), beyond), 0.011 * line.HalfLength());
 }
 
@@ -167,7 +168,7 @@ TEST(ProfileParameter, OfWhatLeavesNoTraceHasNoEnds) {
 
 // ---- The curve -----------------------------------------------------------------------------------------------------
 
-/// Of a straight line the statistic is the parabola (t (slope - estimate) / half length)², t² at the ends.
+/// For a straight line the statistic is the parabola (t (slope - estimate) / half length)², t² at the ends.
 TEST(ProfileParameter, OfAStraightLineIsAParabola) {
   const Line line(0.3);
   const double threshold = TwoSided95(18) * TwoSided95(18);
@@ -178,7 +179,7 @@ TEST(ProfileParameter, OfAStraightLineIsAParabola) {
     ASSERT_GE(profile.points.size(), 9);
     for (const ProfilePoint& point : profile.points) {
       const double distance = (disguise->slope(point.value) - line.Slope()) / line.HalfLength();
-      // The solver leaves 1e-10 of the sum of squares, 18 here.
+      // The solver is accurate to 1e-10 of the sum of squares, 18 here.
       EXPECT_NEAR(point.statistic, threshold * distance * distance, 1e-6) << point.value;
     }
   }
@@ -193,7 +194,7 @@ TEST(ProfileParameter, HasPointsFromEndToEndAndTheEstimateAmongThem) {
   int at_estimate = 0, at_ends = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     at_estimate += points[i].statistic == 0;
-    // Ends are sought to a hundredth of the statistic's root.
+    // The ends are found to a hundredth of the statistic's root.
     at_ends += (points[i].value == *profile.lower || points[i].value == *profile.upper) &&
                std::abs(points[i].statistic / profile.threshold - 1) < 0.021;
     if (i == 0) continue;
@@ -267,14 +268,14 @@ TEST(ProfileParameter, CoversATruthAtItsBoundAndTheOthersBesideIt) {
     EXPECT_EQ(report.interval_method, "profile likelihood");
   }
   EXPECT_NEAR(at_bound, kSeeds / 2, 4 * std::sqrt(kSeeds * 0.25));
-  // Only one end of a two-sided interval can miss a truth at the bound.
+  // Only one end of a two-sided interval can exclude a true value at the bound.
   EXPECT_NEAR(covered[1], 0.975 * kSeeds, 4 * std::sqrt(kSeeds * 0.975 * 0.025));
   for (const std::size_t i : {0, 2, 3, 4, 5}) {
     EXPECT_NEAR(covered[i], 0.955 * kSeeds, 4 * std::sqrt(kSeeds * 0.05 * 0.95)) << i;
   }
 }
 
-/// Where fits with b held have lost t² of deviance, by bisection over whole fits.
+/// The value at which fits with b fixed have lost t² of deviance, by bisection over whole fits.
 double ScannedUpper(const Recording& recording, const FitReport& report) {
   const double t = TwoSided95(static_cast<double>(recording.size()) - static_cast<double>(report.covariance.rows()));
   const double variance = report.noise.sigma * report.noise.sigma;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least-squares intervals with the sandwich A^-1 W'RW A^-1 contain the truth as often as they say.
+// Least-squares intervals with the sandwich A^-1 W'RW A^-1 contain the truth with the stated probability.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,8 +14,9 @@
 namespace pendulum::sandwich_coverage_test {
 namespace {
 
-/// Which of a swing's three 95 % intervals contain 0, when noise alone was measured. The variance of the noise is RSS
-/// over the samples less what the fit took of them, tr(A^-1 W'RW); t has the samples' effective number less K.
+/// Which of a swing's three 95 % intervals contain 0 if only noise was measured. The noise variance is RSS divided by
+/// the number of samples minus tr(A^-1 W'RW), the part absorbed by the fit. t uses the effective number of samples
+/// minus K.
 Eigen::Array3i Covered(const Eigen::VectorXd& time, const Eigen::VectorXd& noise) {
   const Eigen::MatrixXd columns = SwingColumns(time);
   const Eigen::Matrix3d inverse = (columns.transpose() * columns).llt().solve(Eigen::Matrix3d::Identity());
@@ -36,7 +37,7 @@ Eigen::Array3i Covered(const Eigen::VectorXd& time, const Eigen::VectorXd& noise
   return covered;
 }
 
-/// Shares of AR(1) noise beside white noise whose intervals cover: sine, cosine, zero angle.
+/// Coverage of the intervals for AR(1) noise plus white noise: sine, cosine, zero angle.
 Eigen::Array3d Coverage(Eigen::Index samples, double phi, double white_share, int seeds = 700) {
   Eigen::Array3i covered = Eigen::Array3i::Zero();
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -62,7 +63,8 @@ TEST(SandwichIntervals, CoverUnderAMemoryOfTenSamplesInWhiteNoise) {
   ExpectWithin(Coverage(2000, 0.9, 0.5), 0.93, 0.97);
 }
 
-// Here the recordings are 40 and 10 memories long, and the zero angle is known from as many readings.
+// These recordings are only 40 and 10 autocorrelation times long, so the zero angle has only that many effective
+// readings.
 TEST(SandwichIntervals, NearlyCoverUnderAMemoryOfFiftySamples) { ExpectWithin(Coverage(2000, 0.98, 0), 0.91, 0.97); }
 
 TEST(SandwichIntervals, NearlyCoverInFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }

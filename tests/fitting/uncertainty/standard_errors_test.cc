@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The covariance around a solution: against numeric derivatives of the likelihood, and against the scatter of estimates
-// over seeds.
+// Compares the covariance around a solution with numeric derivatives of the likelihood, and with the scatter of
+// estimates over seeds.
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 // ---- Numeric derivatives -------------------------------------------------------------------------------------------
 
-/// The short swing in counts, noise in counts.
+/// The short swing in counts, with noise in counts.
 Recording ShortSwingInCounts(double noise, std::uint64_t seed) {
   SyntheticOptions run = ShortSwing();
   run.resolution = kCount;
@@ -48,7 +48,7 @@ MinusLog Traced(const Fitted& fitted) {
   };
 }
 
-/// The trajectory as a straight line in its parameters.
+/// The same for a trajectory that is linear in its parameters.
 MinusLog Linearized(const Fitted& fitted) {
   Eigen::VectorXd readings;
   Eigen::MatrixXd jacobian;
@@ -58,7 +58,7 @@ MinusLog Linearized(const Fitted& fitted) {
   };
 }
 
-/// Its second derivatives by central differences with these steps: four points for each pair.
+/// Second derivatives by central differences with these steps: four points for each pair.
 Eigen::MatrixXd NumericInformation(const MinusLog& minus_log, const Eigen::VectorXd& steps) {
   const Eigen::Index size = steps.size();
   Eigen::MatrixXd information(size, size);
@@ -73,13 +73,13 @@ Eigen::MatrixXd NumericInformation(const MinusLog& minus_log, const Eigen::Vecto
   return information;
 }
 
-/// Compares the errors of parameters and σ with the inverse of numeric second derivatives, in units of its own size.
+/// Compares the errors of parameters and σ with the inverse of numeric second derivatives, relative to its size.
 void ExpectInverse(const Errors& errors, const Fitted& fitted, const MinusLog& minus_log, double allowed) {
   Eigen::VectorXd steps(7);
   steps.head(6) = 0.03 * errors.covariance.diagonal().cwiseSqrt();
   steps[6] = 0.003;
   const Eigen::MatrixXd expected = NumericInformation(minus_log, steps).inverse();
-  const double counted = 400.0 / (400 - 6);  // as if σ came from N - F
+  const double counted = 400.0 / (400 - 6);  // as if σ were estimated with N - F
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) {
       const double size = std::sqrt(expected(i, i) * expected(j, j));
@@ -98,14 +98,14 @@ TEST(ComputeErrors, OfLevelsAreTheInverseOfTheNumericInformationOfParametersAndS
     fitted.cost->set_tolerance(1e-15);
     const Errors errors = fitted.StandardErrors();
     ExpectInverse(errors, fitted, Linearized(fitted), 1e-3);
-    // What the trajectory bends within a standard error is left out, as everywhere in nonlinear least squares.
+    // The curvature of the trajectory within a standard error is neglected, as usual in nonlinear least squares.
     ExpectInverse(errors, fitted, Traced(fitted), 1e-2);
   }
 }
 
 // ---- Scatter over seeds --------------------------------------------------------------------------------------------
 
-/// Of one number: its deviation over seeds, and the mean of what its standard error was said to be.
+/// For one number: its standard deviation over seeds, and the mean of its reported standard errors.
 struct Scatter {
   double sum = 0, square = 0, mean_std_error = 0;
   double count = 0;
@@ -122,7 +122,7 @@ struct Scatter {
   }
 };
 
-/// Of the parameters, then σ; in units of their first standard error.
+/// The scatter of the parameters, then σ, in units of their first standard error.
 std::vector<Scatter> ScatterOver(int seeds, const std::function<FitReport(std::uint64_t seed)>& fit) {
   std::vector<Scatter> scatter;
   std::vector<double> origin;
@@ -142,7 +142,7 @@ std::vector<Scatter> ScatterOver(int seeds, const std::function<FitReport(std::u
   return scatter;
 }
 
-/// Ratios of deviation to standard error within four standard deviations of a deviation's own scatter.
+/// Expects ratios of deviation to standard error within four standard deviations of the deviation's own error.
 void ExpectTrueErrors(const std::vector<Scatter>& scatter) {
   const double allowed = 4 / std::sqrt(2 * scatter[0].count);
   for (std::size_t i = 0; i < scatter.size(); ++i) {

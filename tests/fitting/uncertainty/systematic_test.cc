@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Systematic errors against fits of what the sensor would have shown with another calibration, clock or rig.
+// Compares systematic errors with fits of the readings for another calibration, clock or rig.
 #include "pendulum/fitting/uncertainty/systematic.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The estimates of a recording that depends on a number.
+/// The estimates for a recording that depends on a number.
 using EstimatesAt = std::function<Eigen::VectorXd(double)>;
 
 Eigen::VectorXd Estimates(const FitReport& report) {
@@ -33,7 +33,7 @@ Eigen::VectorXd Slope(const EstimatesAt& estimates, double at, double step) {
   return (estimates(at + step) - estimates(at - step)) / (2 * step);
 }
 
-/// Compares a report's systematic covariance with another over all P parameters, in units of its own size.
+/// Compares a report's systematic covariance with an expected one over all P parameters, relative to its size.
 void ExpectSystematic(const FitReport& report, const Eigen::MatrixXd& expected, double allowed) {
   std::size_t row = 0;
   for (Eigen::Index i = 0; i < expected.rows(); ++i) {
@@ -61,7 +61,7 @@ void ExpectSystematic(const FitReport& report, const Eigen::MatrixXd& expected, 
 
 // ---- Calibration ---------------------------------------------------------------------------------------------------
 
-/// The textbook rig's straight line in degrees, or a curve about it; what is not known of it.
+/// The textbook rig's straight line in degrees, or a curve near it, with its uncertainty.
 Calibration TextbookCalibration(bool curved) {
   Calibration calibration;
   calibration.input = "counts";
@@ -76,7 +76,7 @@ Calibration TextbookCalibration(bool curved) {
   return calibration;
 }
 
-/// The short swing in counts, as that calibration's sensor shows it: whole counts, or all their digits.
+/// The short swing in counts for the sensor of that calibration: whole counts, or all digits.
 Eigen::VectorXd Counts(const Calibration& calibration, double noise, bool whole) {
   SyntheticOptions run = ShortSwing();
   run.release_angle = 0.7;
@@ -87,7 +87,7 @@ Eigen::VectorXd Counts(const Calibration& calibration, double noise, bool whole)
   return counts;
 }
 
-/// The recording that a calibration makes of counts.
+/// The recording that results from counts and a calibration.
 Recording Calibrated(const Calibration& calibration, const Eigen::VectorXd& counts, bool whole) {
   Recording recording = Must(SimulateRecording(ShortSwing()));
   recording.unit = "counts";
@@ -97,7 +97,7 @@ Recording Calibrated(const Calibration& calibration, const Eigen::VectorXd& coun
   return recording;
 }
 
-/// D C D', D the slopes of the estimates of whole fits by the coefficients.
+/// D C D', where D holds the derivatives of the refitted estimates by the coefficients.
 Eigen::MatrixXd RefittedCovariance(const Calibration& calibration, const Eigen::VectorXd& counts, bool whole,
                                    const FitOptions& options) {
   const Eigen::Index size = calibration.covariance.rows();
@@ -134,7 +134,7 @@ TEST(SystematicCovariance, OfACalibrationOfCountsIsThatOfFitsWithItsCoefficients
   ExpectSystematic(report, RefittedCovariance(calibration, counts, true, options), 0.02);
 }
 
-/// Whatever the noise is taken for, an offset of all readings is one of the zero, and of nothing else.
+/// For every noise family, an offset of all readings changes only the zero.
 TEST(SystematicCovariance, OfACalibrationsOffsetIsTheZerosAlone) {
   Calibration calibration = TextbookCalibration(false);
   calibration.covariance << 0.25, 0, 0, 0;
@@ -153,7 +153,7 @@ TEST(SystematicCovariance, OfACalibrationsOffsetIsTheZerosAlone) {
 
 // ---- Clock and rig -------------------------------------------------------------------------------------------------
 
-/// A recording whose clock is not quite known.
+/// A recording with an uncertain clock scale.
 Recording WithClock(Recording recording, double scale) {
   recording.clock_scale = scale;
   recording.clock_scale_std_dev = 2e-3;
@@ -184,7 +184,7 @@ TEST(SystematicCovariance, OfAClockIsThatOfFitsByFasterAndSlowerClocks) {
       EXPECT_NEAR(parameter.systematic_std_error.value_or(0), std::abs(expected),
                   0.01 * std::abs(expected) + *parameter.std_error);
       if (!parameter.systematic_std_error) continue;
-      // Against inertia's, which grows with the scale: the sign.
+      // Sign relative to the inertia's error, which grows with the scale.
       EXPECT_EQ(std::signbit(report.systematic_covariance(0, row)), std::signbit(expected));
       ++row;
     }

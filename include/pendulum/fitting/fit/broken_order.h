@@ -8,12 +8,12 @@
 
 namespace pendulum {
 
-/// Why a solution is none of its friction law's: a parameter came out below one that it is never below (OrderOf). Empty
-/// when that is not so.
+/// Checks the order of two parameters that the friction law requires (OrderOf). If one is below the other, returns a
+/// sentence that explains why the solution is invalid; otherwise an empty string.
 std::string BrokenOrder(const FitProblem& problem, const std::vector<double>& parameters);
 
-/// The report of the simpler law that such a recording asks for, as that of `model`: where the two parameters are equal
-/// the rest of the richer law has no effect. It is kNotIdentifiable, for the reason given. Errors as FitRecording.
+/// Fits the simpler law in which the two parameters are equal, where the rest of the richer law has no effect. Reports
+/// it as a fit of `model`, kNotIdentifiable with the given reason. Errors as FitRecording.
 Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                    const std::string& reason);
 

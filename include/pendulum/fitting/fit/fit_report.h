@@ -25,11 +25,11 @@
 
 namespace pendulum {
 
-/// How a fit ended, and what of its report means something:
+/// How a fit ended, and which parts of its report are valid:
 ///                                     estimates     std_error, covariance   statistics
 ///   kConverged                        yes           yes                     yes
 ///   kNotConverged, kNotIdentifiable   best found    no                      yes
-///   kFailed                           not any       no                      no
+///   kFailed                           none          no                      no
 enum class Termination { kConverged, kNotConverged, kNotIdentifiable, kFailed };
 
 std::string_view TerminationName(Termination termination);
@@ -37,23 +37,23 @@ std::string_view TerminationName(Termination termination);
 /// 0 for kConverged, 1 for the others.
 int ExitCode(Termination termination);
 
-/// One parameter after the fit, in the unit given.
+/// One parameter after the fit, in the given unit.
 struct ParameterEstimate {
   ParameterInfo info;
   std::string unit;  ///< info.unit with a rig, info.relative_unit without; counts and volts instead of rad.
   double estimate = 0;
-  std::optional<double> std_error;         ///< Absent when fixed, at a bound, or not identifiable; `reason` says why.
-  std::optional<double> lower95, upper95;  ///< Interval of 95 %; one end is the bound when at_bound.
-  std::optional<double> t95;               ///< Standard errors that reach as far as 95 %: Student's t of its samples.
-  OpenInterval open_interval = OpenInterval::kClosed;  ///< Why an end of the interval is missing.
-  std::optional<double> systematic_std_error;          ///< From rig, clock, calibration, inconstancy; absent without.
-  std::optional<double> closed_form;  ///< The start value, where it is an estimate in closed form (same unit).
+  std::optional<double> std_error;         ///< Absent if fixed, at a bound, or not identifiable; see `reason`.
+  std::optional<double> lower95, upper95;  ///< 95 % confidence interval; if at_bound, one end is the bound.
+  std::optional<double> t95;               ///< Student's t of its samples: half the interval over std_error.
+  OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
+  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent if there are none.
+  std::optional<double> closed_form;           ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;
   std::string reason;
 };
 
-/// The noise of the samples about the trajectory, and why this family.
+/// The noise of the samples about the trajectory, and the reason for the chosen family.
 struct NoiseEstimate {
   NoiseFamily family = NoiseFamily::kGaussian;
   double sigma = 0;  ///< rad or rad/s; Gaussian: sqrt(RSS / (N - free parameters)), else the likeliest σ or scale.
@@ -63,19 +63,20 @@ struct NoiseEstimate {
   std::string why;
   double lag1_correlation = 0;  ///< Of the quantile residuals.
   Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
-  // Of edges, as in NoiseModel.
-  double stamp_ratio = 0;  ///< s/rad: standard deviation of a stamp over sigma.
+  // For kEdges, as in NoiseModel.
+  double stamp_ratio = 0;  ///< s/rad: standard deviation of a time stamp over sigma.
   double lag = 0;          ///< rad: the estimate of edge_lag.
   std::optional<double> edge = std::nullopt;
   std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
 };
 
-/// The likelihood along one parameter, the others at their best, at M values: what its profile interval rests on.
+/// The likelihood along one parameter, with the others at their optimum, at M values: the basis of its profile
+/// interval.
 struct ProfileCurve {
   std::string name;
   std::vector<double> value;      ///< M, increasing, in the parameter's unit.
   std::vector<double> statistic;  ///< M, as ProfilePoint: 0 at the estimate, at least 0.
-  double threshold = 0;           ///< Of the statistic, where the 95 % interval ends.
+  double threshold = 0;           ///< Value of the statistic at the ends of the 95 % interval.
 };
 
 /// A rescue that a fit needed (fit.cc, fit_swing.cc): another attempt, or a change of the window or the readings.
@@ -84,10 +85,10 @@ struct AttemptRecord {
   bool kept = false;  ///< Whether the fit is its result.
 };
 
-/// What the solver did, over all its runs.
+/// The work of the solver over all its runs.
 struct SolverSummary {
   int iterations = 0;
-  int evaluations = 0;  ///< Trajectories of the start that was kept, with and without sensitivities.
+  int evaluations = 0;  ///< Trajectories computed for the accepted start, with and without sensitivities.
   std::string termination;
   std::vector<AttemptRecord> attempts;  ///< Rescues that were tried, in their order; empty if none was needed.
 };
@@ -96,12 +97,12 @@ struct SolverSummary {
 struct FitReport {
   MotionModel model;
   Termination termination = Termination::kFailed;
-  std::string reason;  ///< A sentence, whatever the termination.
+  std::string reason;  ///< A sentence, for every termination.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
   SensorModel sensor;
   std::string reading_unit = "rad";  ///< Of readings, residuals and noise: rad, rad/s, or the recording's unit.
-  std::vector<ParameterEstimate> parameters;  ///< As FitParameters: the order of covariance's rows.
+  std::vector<ParameterEstimate> parameters;  ///< As FitParameters; the covariance has the same order.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
   Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
@@ -109,25 +110,26 @@ struct FitReport {
   std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
   std::vector<std::string> systematic_names;
   Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
-  std::vector<Identifiability> identifiability;  ///< Of the parameters that are not fixed; empty when not converged.
+  std::vector<Identifiability> identifiability;  ///< For parameters that are not fixed; empty if not converged.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
-  StartValues start_values;  ///< Where the search began, in units of G.
+  StartValues start_values;  ///< Start of the search, in units of G.
   std::vector<Warning> warnings;
-  double trace_error = 0;  ///< Largest difference to a trajectory of a hundredth of the tolerance, rad or rad/s.
+  double trace_error = 0;  ///< Largest difference from a trajectory with a hundredth of the tolerance, rad or rad/s.
   Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.
 
-  /// The parameter of that name, or nullptr.
+  /// The parameter with this name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 
   bool Warns(std::string_view code) const;
 };
 
-/// Removes errors, intervals and covariance that do not hold from a report. Each free parameter gets the reason `why`.
+/// Removes errors, intervals and covariance that are not valid from a report. Each free parameter gets the reason
+/// `why`.
 void WithdrawErrors(std::string_view why, FitReport& fit);
 
-/// Correlation of two free parameters, by their rows in the fit's covariance; NaN when a variance is 0.
+/// Correlation of two free parameters, given by their rows in the fit's covariance; NaN if a variance is 0.
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
 
 /// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it.

@@ -8,12 +8,20 @@
 
 namespace pendulum {
 
-/// What a user should know of a fit that stands, each with what to do about it: saturated (readings at an end of the
-/// sensor's range), lack_of_fit or correlated_residuals (they follow each other, and exceed the noise between
-/// neighbours), zero_drift, quiet_sensor (noise below half the resolution taken as Gaussian), trace_accuracy (not small
-/// against the noise), prior_conflict, at_bound, another_minimum (another number of half swings explains the data
-/// nearly as well), stop_is_a_kink (a stop that the data can hardly date). report: all but its warnings. trace: at the
-/// solution. quantile_residuals: N. correlated: whether they follow each other.
+/// Warnings about an accepted fit, each with the recommended action:
+///
+/// saturated: readings at an end of the sensor's range
+/// lack_of_fit, correlated_residuals: autocorrelated residuals that exceed the noise between neighbours
+/// zero_drift: the zero of the sensor drifts
+/// quiet_sensor: noise below half the resolution is treated as Gaussian
+/// trace_accuracy: the trajectory's error is not small compared with the noise
+/// prior_conflict: a prior and the recording disagree
+/// at_bound: a parameter is at its bound
+/// another_minimum: another number of half swings explains the data nearly as well
+/// stop_is_a_kink: the data hardly determine the time of the stop
+///
+/// report: complete except for its warnings. trace: at the solution. quantile_residuals: N. correlated: whether they
+/// are autocorrelated.
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
                                  const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
                                  const FitReport& report);

@@ -9,7 +9,7 @@
 
 namespace pendulum {
 
-/// A solution and what is known around it.
+/// A solution and the results computed around it.
 struct FittedModel {
   const FitOptions& options;
   const FitProblem& problem;
@@ -20,27 +20,28 @@ struct FittedModel {
   const Eigen::VectorXd& quantile_residuals;  // N
 };
 
-/// For quantized noise below kQuietSigma resolutions, with few samples near edges of levels: takes estimates,
-/// covariance, σ and intervals from draws of the posterior (SamplePosterior) instead, for there no parabola describes
-/// the likelihood. Gives the optimum whose free parameters `errors` then has: those at a bound are among them. Nothing
-/// where that is not so, the residuals remember, or options.interval is not kAuto.
+/// Takes estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior). This is necessary for
+/// quantized noise below kQuietSigma resolutions with few samples near the edges of levels, because the likelihood is
+/// then not parabolic. Returns the optimum with the free parameters that `errors` then has, which include those at a
+/// bound. Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
+/// kAuto.
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
 
 /// Sets the 95 % interval of every parameter that is not fixed, by the method of options.interval.
 void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report);
 
-/// Whether a parameter is at a bound or within three standard errors of one: no parabola has its interval.
+/// Whether a parameter is at a bound or within three standard errors of one. Its interval is then not symmetric.
 bool IsNearBound(const SolveOptions& solve, const Optimum& optimum, const std::vector<double>& parameters,
                  const Eigen::MatrixXd& covariance);
 
-/// Estimate ± t std_error, within the bounds.
+/// Sets intervals of estimate ± t std_error, within the bounds.
 void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution, const Optimum& optimum,
                             const Errors& errors, FitReport& report);
 
-/// One parameter's interval and curve.
+/// Sets one parameter's interval and curve.
 void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileInterval& interval, FitReport& report);
 
-/// Sets what the recording can tell of every parameter, from intervals, information and covariance.
+/// Sets how well the recording determines every parameter, from intervals, information and covariance.
 void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report);
 
 inline constexpr double kQuietSigma = 0.12;

@@ -6,10 +6,10 @@
 
 namespace pendulum {
 
-/// Turns a solution into a report: what converged, what is at its bound, what the data cannot tell, with which errors.
-/// Converged means that the Newton step left to make is below 0.1 standard errors in every direction, whatever made the
-/// solver stop, and that the trajectory leaves at most 12 % of the readings' variance, or 80 % where the residuals do
-/// not follow each other. `recording` is the one the problem was made from; `cost` has the solution's noise.
+/// Turns a solution into a report: termination, parameters at bounds, identifiability, and errors. Converged means that
+/// the remaining Newton step is below 0.1 standard errors in every direction, regardless of the solver's own stopping
+/// criterion. The trajectory must also leave at most 12 % of the readings' variance unexplained, or 80 % if the
+/// residuals are not autocorrelated. The problem was made from `recording`; `cost` has the solution's noise.
 FitReport Judge(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
                 Solution solution);
 

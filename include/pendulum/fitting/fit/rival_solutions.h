@@ -10,19 +10,21 @@
 
 namespace pendulum {
 
-/// Where a search from another start ended.
+/// The result of a search from another start.
 struct RivalSolution {
   std::vector<double> parameters;  ///< P, the problem's units.
   double log_posterior = 0;        ///< Log-likelihood of samples and priors.
 };
 
-/// Of an accelerometer across the rod: the other radius, with the motion to the other side, at which it shows the same
-/// but for friction (MODEL.md eq. (75)). Nothing where there is none, or where what is fixed or bounded excludes it.
+/// For an accelerometer across the rod, the mirrored solution: another radius, with the motion to the other side.
+/// Except for friction it gives the same readings (MODEL.md eq. (75)). Returns std::nullopt if there is none, or if
+/// fixed values or bounds exclude it.
 std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters);
 
-/// Ends a fit that converged kNotIdentifiable where a rival within 9 of its -2 log L differs by more than three of its
-/// standard errors in a parameter of the pendulum, or in a scale or place of the sensor (warning `ambiguous_sensor`).
-/// Which side of the motion is called positive is no difference. log_posterior: of the fit.
+/// Ends a converged fit kNotIdentifiable if an alternative solution explains the data nearly as well, within 9 of -2
+/// log L. It must differ by more than three standard errors in a parameter of the pendulum, or in a scale or position
+/// of the sensor (warning `ambiguous_sensor`). The sign of the motion does not count as a difference. log_posterior: of
+/// the fit.
 void ConcludeFromRivals(const FitProblem& problem, std::span<const RivalSolution> rivals, double log_posterior,
                         FitReport& report);
 

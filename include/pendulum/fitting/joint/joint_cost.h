@@ -17,14 +17,14 @@ namespace pendulum {
 /// One recording of a JointCost.
 struct JointTerm {
   TrajectoryCost* cost = nullptr;  ///< Not owned; without priors.
-  std::vector<int> at;             ///< P_k: where its parameters stand among all P.
+  std::vector<int> at;             ///< P_k: indices of its parameters among all P.
 };
 
-/// Several recordings of one rig: the sum of their costs and of priors, over parameters that some of them share. For
-/// Ceres each recording is a residual block over the parameters it has.
+/// The cost of several recordings of one rig: the sum of their costs and of the priors. Some parameters are shared. For
+/// Ceres, each recording is a residual block over its own parameters.
 class JointCost final : public LeastSquares {
  public:
-  /// Of P = `parameters` in all.
+  /// `parameters` is the total number P.
   JointCost(std::vector<JointTerm> terms, int parameters, std::vector<PriorTerm> priors);
 
   bool SumOfSquares(std::span<const double> parameters, double* sum) const override;

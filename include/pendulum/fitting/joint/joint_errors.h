@@ -8,15 +8,16 @@
 
 namespace pendulum {
 
-/// What the errors of rig, clocks and calibrations leave open, P x P in units of G: a source that recordings have in
-/// common moves all of them together. Zero where the optimum is not identifiable.
+/// Covariance of the estimates caused by the errors of rig, clocks and calibrations, P x P in units of G. A source that
+/// several recordings share affects all of them together. Zero if the optimum is not identifiable.
 Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum);
 
-/// Whether the fit to a recording alone rests on a posterior, and all of them have errors.
+/// Whether the fit of some recording uses a posterior, and all fits have errors.
 bool HasPosteriors(const JointProblem& joint);
 
-/// Combines the posteriors of the fits alone as parabolas, into solution, members and the known optimum: quiet
-/// recordings have no other likelihood that is one. False, and nothing changed, where they tell too little.
+/// Combines the posteriors of the separate fits as parabolas and stores the result in the solution, the members and
+/// `known`. Recordings with very small noise have no other usable likelihood. Returns false, without changes, if the
+/// combination is not identifiable.
 bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known);
 
 }  // namespace pendulum

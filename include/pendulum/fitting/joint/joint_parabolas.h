@@ -9,8 +9,8 @@
 
 namespace pendulum {
 
-/// The joint optimum within the bounds were the members' likelihoods parabolas about the fits alone, and its
-/// information (P x P).
+/// The joint optimum within the bounds and its information (P x P), if each member's log-likelihood is a parabola
+/// around its own fit.
 struct CombinedParabolas {
   std::vector<double> parameters;
   Eigen::MatrixXd information;

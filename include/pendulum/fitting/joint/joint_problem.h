@@ -18,21 +18,21 @@ namespace pendulum {
 struct JointMember {
   const Recording* recording = nullptr;
   const FitReport* alone = nullptr;
-  FitOptions options;                    // kind of start and family of noise are those of `alone`
-  std::unique_ptr<FitProblem> problem;   // the cost looks into it
+  FitOptions options;                    // start kind and noise family as in `alone`
+  std::unique_ptr<FitProblem> problem;   // the cost refers to it
   std::unique_ptr<TrajectoryCost> cost;  // without priors
   double tolerance = 0;                  // of its trajectory, rad
-  double cost_sigma = 0;                 // σ that the cost has, rad or rad/s
-  std::vector<double> alone_parameters;  // P_k, where its own fit ended
+  double cost_sigma = 0;                 // the cost's present σ, rad or rad/s
+  std::vector<double> alone_parameters;  // P_k, at the end of its own fit
   Solution solution;                     // its own P_k parameters, and its noise
-  std::vector<int> at;                   // P_k: where they stand among all P
+  std::vector<int> at;                   // P_k: their indices among all P
 
   double samples() const { return static_cast<double>(problem->data.time.size()); }
 
-  /// Those of all that are free, or at a bound, as places among its own.
+  /// Selects its own parameters from a list of indices among all P; returns indices among its own.
   std::vector<int> Own(const std::vector<int>& of_all) const;
 
-  /// Where these of its own, which must be there, stand in that list.
+  /// Positions of its own parameters in a list of indices among all P, which must contain them.
   std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
@@ -45,10 +45,10 @@ struct JointProblem {
 
   double samples() const;
 
-  /// Puts parameters into the members' solutions.
+  /// Copies the parameters into the members' solutions.
   void Distribute(const std::vector<double>& parameters);
 
-  /// Where the fits alone ended, P; of what is shared, that of the last recording.
+  /// The results of the separate fits, P; shared parameters are those of the last recording.
   std::vector<double> AloneParameters() const;
 
   bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
@@ -57,7 +57,7 @@ struct JointProblem {
   std::string NameOf(int parameter) const;
 };
 
-/// Ready to be solved: each member where its own fit ended. Errors as FitJointly.
+/// Builds a problem ready for the solver, each member at the end of its own fit. Errors as FitJointly.
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

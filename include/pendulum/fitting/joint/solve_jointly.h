@@ -5,8 +5,8 @@
 
 namespace pendulum {
 
-/// Solves, σ of each recording in turn with the parameters, until a step below a hundredth of a standard error is left
-/// to make and trajectories are accurate. The members' solutions are set.
+/// Estimates parameters and the σ of each recording in turn. Ends when the remaining step is below a hundredth of a
+/// standard error and trajectories are accurate. Sets the members' solutions.
 Solution SolveJointly(JointProblem& joint);
 
 }  // namespace pendulum

@@ -12,25 +12,27 @@
 
 namespace pendulum {
 
-/// The edges of an event-driven recording (TakeEdges), unless another noise family is asked for; others unchanged.
+/// Converts an event-driven recording to its edges (TakeEdges) unless the user asks for another noise family. Other
+/// recordings are returned unchanged.
 Recording WithEdges(Recording recording, std::optional<NoiseFamily> noise);
 
-/// What the parameter of a zero's motion multiplies in the readings (N; TrajectoryData::moves): the times [s, from the
-/// first sample], or minus the direction of each edge; none of a zero that has no motion.
+/// Factors of the zero-motion parameter in the readings (N; TrajectoryData::moves). For a drift they are the times [s,
+/// from the first sample]; for a lag, minus the direction of each edge. Empty if the zero does not move.
 std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero);
 
-/// dm/dt of the modelled readings m [rad] at N >= 3 increasing times [s], between the neighbours of each, or those of
-/// these where they are a thousandth of a mean interval apart; rad/s.
+/// Rate dm/dt [rad/s] of the modelled readings m [rad] at N >= 3 increasing times [s], by central differences. The
+/// interval is widened until it is at least a thousandth of the mean interval.
 Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings);
 
-/// Standard deviation of the stamps over that of the edges [s/rad]: of what both add to the variance of a residual,
-/// σ² (1 + (ratio · rate)²), the likeliest for the differences of successive residuals of edges, which a slow misfit
-/// leaves alone (MODEL.md eq. (83)). 0 where the stamps' part is within two of its standard errors.
+/// Ratio of the standard deviation of a time stamp to that of an edge [s/rad]. Both add to the variance of a residual:
+/// σ² (1 + (ratio · rate)²). The estimate maximizes the likelihood of the differences of successive residuals of
+/// edges, which a slow misfit does not affect (MODEL.md eq. (83)). 0 if the variance of the time stamps is below two
+/// of its standard errors.
 double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                            const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);
 
-/// Tells the noise of edges its stamp_ratio and spread at the modelled readings; all N each, times in s.
+/// Sets stamp_ratio and spread of the noise of edges, for the modelled readings. All arrays N x 1, times in s.
 void SetSpread(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& value,
                const Eigen::Ref<const Eigen::VectorXd>& readings, NoiseModel& noise);
 

@@ -16,11 +16,11 @@ namespace pendulum {
 enum class ZeroMotion {
   kNone,
   kDrifts,  ///< Linearly with time: zero_drift or bias_drift.
-  kLags,    ///< Of events: it lags behind the direction of motion by edge_lag.
+  kLags,    ///< For event recordings: the zero lags behind the direction of motion by edge_lag.
 };
 
-/// The parameters of a fit in order: inertia, friction, release_angle and release_time or initial_angle and
-/// initial_rate, then those of the sensor. A direct sensor has zero_angle or rate_bias, and the motion of its zero.
+/// The parameters of a fit in order: inertia, friction, the start (release_angle and release_time, or initial_angle and
+/// initial_rate), then the sensor. A direct sensor has zero_angle or rate_bias, and the motion of its zero.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
                                          ZeroMotion zero = ZeroMotion::kNone, const SensorModel& sensor = {});
 

@@ -20,52 +20,58 @@
 
 namespace pendulum {
 
-/// What a trajectory is compared with. Times are from the first sample: a clock of large numbers costs no digits.
+/// The samples that a trajectory is compared with. Times start at the first sample, so a clock with large numbers loses
+/// no digits.
 struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
   std::vector<double> time, value;  ///< N: s, increasing, time[0] = 0; rad or rad/s, or the unit of another sensor.
-  SensorModel sensor;               ///< How readings follow from the motion.
-  double natural_frequency = 0;     ///< rad/s, roughly; a trial of a very different time scale is refused.
+  SensorModel sensor;               ///< How readings depend on the motion.
+  double natural_frequency = 0;     ///< rad/s, approximate; a trial with a very different time scale is refused.
   double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
-  /// N, or none: what one parameter more multiplies. Of a zero that drifts the times, of edges that lag minus the
-  /// direction of each.
+  /// N, or empty: the factor of one additional parameter. These are the times if the zero drifts, or minus the
+  /// direction of each edge if edges lag.
   std::vector<double> moves;
-  double scale = 1;      ///< rad or rad/s; roughly the noise, so that Ceres' numbers are near 1.
-  std::stop_token stop;  ///< Once it is requested, nothing is evaluated any more.
+  double scale = 1;      ///< rad or rad/s; roughly the noise, so Ceres' numbers are near 1.
+  std::stop_token stop;  ///< After a stop request nothing more is evaluated.
 
   Eigen::Map<const Eigen::VectorXd> times() const { return {time.data(), static_cast<Eigen::Index>(time.size())}; }
   Eigen::Map<const Eigen::VectorXd> values() const { return {value.data(), static_cast<Eigen::Index>(value.size())}; }
 };
 
-/// The motion at N instants: angle [rad], rate [rad/s] and acceleration [rad/s²], and unless they are not wanted their
-/// derivatives (N x M each) by the parameters before the zero.
+/// The motion at N instants: angle [rad], rate [rad/s] and acceleration [rad/s²]. If requested, also their derivatives
+/// (N x M each) by the parameters before the zero.
 struct MotionStates {
   std::array<Eigen::VectorXd, SensorModel::kStates> value;
   std::array<Eigen::MatrixXd, SensorModel::kStates> jacobian;
 };
 
-/// Samples, sensitivities and the likelihood of one trajectory as least squares: the part of a fit that is repeated.
-/// Parameters p, P of them: inertia, friction, then release_angle, release_time, zero or initial_angle, initial_rate,
-/// zero (in units of G; times from the first sample; zero is zero_angle or rate_bias), and the zero's drift [unit of
-/// the reading per s] or the edges' lag [rad] where the data say what it moves; instead of the zero the parameters of
-/// data.sensor unless it is direct. The squared residual of a sample is its deviance under the noise,
-/// ((value - model(p)) / σ)² when that is Gaussian (the default, with σ = data.scale). As a ceres::CostFunction it has
-/// P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J (the observed information of
-/// the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and what is left of |r|. Cost and gradient are exactly those of
-/// the N residuals. Asked for residuals alone it returns (0, ..., 0, |r|). A trial that never moves, that cannot be
-/// traced or is released outside the data makes every function return false. So does, from one call to the next, a stop
-/// of the data: where a trajectory was traced before, it cannot be taken for granted. What they would have set is left
-/// as it is, or without meaning; Trace then says nothing of the motion. It remembers what it was asked last: one thread
-/// at a time.
+/// The cost of one trajectory as least squares: samples, sensitivities and likelihood. A fit evaluates it repeatedly.
+///
+/// Parameters p (P of them), in units of G, times from the first sample: inertia, friction, then release_angle,
+/// release_time, zero or initial_angle, initial_rate, zero. The zero is zero_angle or rate_bias. If data.moves is not
+/// empty, the zero's drift [unit of the reading per s] or the edges' lag [rad] follows. If the sensor is not direct,
+/// the parameters of data.sensor replace the zero.
+///
+/// The squared residual of a sample is its deviance under the noise. For Gaussian noise (the default, with σ =
+/// data.scale) that is ((value - model(p)) / σ)².
+///
+/// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J
+/// (the observed information of the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and the rest of |r|. Cost and
+/// gradient are exactly those of the N residuals. Without Jacobians it returns (0, ..., 0, |r|).
+///
+/// Every function returns false for a trial that never moves, that cannot be computed, or that is released outside the
+/// data. After a stop request every function returns false as well, even at a point that was evaluated before. Output
+/// arguments are then unchanged or undefined, and the result of Trace is meaningless. The object caches its last
+/// results: use it from one thread at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
-  /// Model readings (N) and, unless null, their N x P derivatives, not scaled; or false.
+  /// Model readings (N) and, unless null, their N x P derivatives, not scaled. Returns false on failure.
   virtual bool Readings(std::span<const double> parameters, Eigen::VectorXd* readings,
                         Eigen::MatrixXd* jacobian) const = 0;
 
-  /// The motion at the samples, whatever sees it; or false.
+  /// The motion at the samples, before the sensor is applied. Returns false on failure.
   virtual bool Motion(std::span<const double> parameters, bool with_jacobian, MotionStates* states) const = 0;
 
   virtual TraceSummary Trace(std::span<const double> parameters) const = 0;
@@ -73,12 +79,12 @@ class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
   virtual void set_tolerance(double tolerance) = 0;      ///< Local tolerance of the trajectory [rad]; default 1e-10.
   virtual void set_used_samples(std::size_t count) = 0;  ///< Only the first `count` samples enter; default all.
   virtual void set_noise(const NoiseModel& noise) = 0;
-  virtual void set_threads(int threads) = 0;  ///< For long recordings; default 1, 0: all cores. Changes no bit.
+  virtual void set_threads(int threads) = 0;  ///< For long recordings; default 1, 0: all cores. Changes no result.
 
   void set_priors(std::vector<PriorTerm> priors) { priors_ = std::move(priors); }
   const std::vector<PriorTerm>& priors() const { return priors_; }
 
-  /// The priors' part of |r|^2.
+  /// Contribution of the priors to |r|^2.
   double PriorSum(std::span<const double> parameters) const { return pendulum::PriorSum(priors_, parameters); }
 
   void AddTo(ceres::Problem& problem, const std::vector<double*>& parameters) override;
@@ -86,7 +92,7 @@ class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
   int traces() const override { return traces_; }
 
  protected:
-  explicit TrajectoryCost(int count);  ///< Of parameters.
+  explicit TrajectoryCost(int count);  ///< `count`: number of parameters.
 
   int count() const { return count_; }
 
@@ -99,7 +105,7 @@ class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
   std::vector<PriorTerm> priors_;
 };
 
-/// The cost of a model with its start. `data` must outlive it. Friction and start are resolved here, once.
+/// The cost of a model with its start. `data` must outlive it. Selects the code for friction and start once, here.
 std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, StartKind start,
                                                    const TrajectoryData& data);
 

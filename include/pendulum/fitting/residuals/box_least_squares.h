@@ -5,9 +5,10 @@
 
 namespace pendulum {
 
-/// The x of least |A x - b|² with lowest <= x <= highest, by an active set from x = 0, which must be within (P. B.
-/// Stark and R. L. Parker, Computational Statistics 10:129, 1995). Where columns of A (N x F) depend on each other, the
-/// step to x is the shortest in units of the columns; where one is 0, so is its x.
+/// Minimizes |A x - b|² over lowest <= x <= highest with an active set (P. B. Stark and R. L. Parker, Computational
+/// Statistics 10:129, 1995). Starts from x = 0, which must lie within the bounds. If columns of A (N x F) are linearly
+/// dependent, the solution with the shortest step is taken, with the columns scaled to equal length. x is 0 for a
+/// column of zeros.
 Eigen::VectorXd BoxLeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& value,
                                 const Eigen::VectorXd& lowest, const Eigen::VectorXd& highest);
 

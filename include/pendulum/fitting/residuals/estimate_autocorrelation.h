@@ -10,13 +10,18 @@
 
 namespace pendulum {
 
-/// The memory of standardized residuals, of the order that Schwarz's criterion prefers (Ann. Stat. 6:461, 1978). Even
-/// stamps, with gaps or without: white, AR(p) by Burg's method, or ARMA(1,1) of the greatest likelihood. Uneven stamps,
-/// or stretches too short for that: white, or the continuous AR(1), with white noise over it or without. The restricted
-/// likelihood (Patterson & Thompson, Biometrika 58:545, 1971) refines all but AR(p > 1). time N x 1, s, increasing.
-/// residual N x 1, of about unit variance (any scale gives the same correlations). weights N x K, the residuals'
-/// derivatives by the parameters; K = 0 for residuals of no fit. Fewer than 30, or all 0, are white. Once a stop is
-/// requested it ends soon, with a memory that means nothing.
+/// Estimates the autocorrelation of standardized residuals, with the order chosen by Schwarz's criterion (Ann. Stat.
+/// 6:461, 1978).
+///
+/// Even time stamps, with or without gaps: white, AR(p) by Burg's method, or ARMA(1,1) by maximum likelihood. Uneven
+/// time stamps, or parts too short between gaps: white, or continuous AR(1), with or without added white noise. Except
+/// for AR(p > 1), the restricted likelihood (Patterson & Thompson, Biometrika 58:545, 1971) refines the result.
+///
+/// time      N x 1, s, increasing.
+/// residual  N x 1, of about unit variance (any scale gives the same correlations).
+/// weights   N x K, derivatives of the residuals by the parameters; K = 0 for residuals that come from no fit.
+/// Fewer than 30 residuals, or only zeros, are reported as white. After a stop request it returns soon; the result is
+/// then meaningless.
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
 

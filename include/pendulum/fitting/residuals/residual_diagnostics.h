@@ -7,10 +7,10 @@
 
 namespace pendulum {
 
-/// Measures of the fit. N samples, k = free parameters + 1 for sigma. Those of independence are of quantile residuals.
+/// Goodness of fit. N samples, k = free parameters + 1 for sigma. The tests of independence use quantile residuals.
 struct FitStatistics {
   double rms_residual = 0;    ///< sqrt(RSS / N), rad or rad/s
-  double log_likelihood = 0;  ///< See Solution; compared only within a noise family.
+  double log_likelihood = 0;  ///< See Solution; comparable only within one noise family.
   double aic = 0;             ///< 2 k - 2 log L
   double aicc = 0;            ///< AIC + 2 k (k + 1) / (N - k - 1) (Hurvich & Tsai, Biometrika 76:297, 1989)
   double bic = 0;             ///< k ln N - 2 log L
@@ -19,35 +19,37 @@ struct FitStatistics {
   double effective_samples = 0;  ///< N / (1 + 2 Σ ρ_k), at most N.
 };
 
-/// Randomized quantile residuals (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996): standard normal and independent
-/// when the model is right, whatever the rounding. N samples; always the same random places.
+/// Randomized quantile residuals of N samples (Dunn & Smyth, J. Comp. Graph. Stat. 5:236, 1996). They are standard
+/// normal and independent if the model is correct, regardless of quantization. The random numbers are the same in every
+/// call.
 Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                                   const Eigen::Ref<const Eigen::VectorXd>& readings);
 
-/// Probability of autocorrelations as large by chance, over min(20, N/5) lags (Ljung & Box, Biometrika 65:297, 1978).
+/// Probability that autocorrelations this large arise by chance, over min(20, N/5) lags (Ljung & Box, Biometrika
+/// 65:297, 1978).
 double LjungBoxP(const Eigen::VectorXd& residual);
 
-/// Two-sided probability that independent residuals change sign as seldom, or as often (Wald & Wolfowitz, Ann. Math.
-/// Stat. 11:147, 1940); 1 when all have one sign.
+/// Two-sided probability that independent residuals change sign this rarely or this often (Wald & Wolfowitz, Ann. Math.
+/// Stat. 11:147, 1940); 1 if all residuals have one sign.
 double RunsP(const Eigen::VectorXd& residual);
 
 /// Correlation of each residual with the next, Σ r_i r_{i-1} / Σ r_i²; 0 for residuals that are all 0.
 double Lag1Correlation(const Eigen::VectorXd& residual);
 
-/// Whether residuals follow each other at up to 50 lags from 1 to longest_lag (Box & Pierce, JASA 65:1509, 1970); of
-/// independent ones 2e-6 do.
+/// Whether residuals are autocorrelated, tested at up to 50 lags from 1 to longest_lag (Box & Pierce, JASA 65:1509,
+/// 1970). False alarm rate for independent residuals: 2e-6.
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 
-/// Whether residuals swing along with the pendulum, as errors of its phase and amplitude from period to period [s]
-/// (MODEL.md eq. (25)); of independent ones 2e-4 do. N samples.
+/// Whether the errors of phase and amplitude per period [s] are autocorrelated: the residuals oscillate with the
+/// pendulum (MODEL.md eq. (25)). False alarm rate for independent residuals: 2e-4. N samples.
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 
-/// AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978) of the log-likelihood
-/// that is there, of so many parameters, σ among them, and so many samples.
+/// Sets AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978) from
+/// statistics.log_likelihood. `parameters` includes σ.
 void SetInformationCriteria(int parameters, double samples, FitStatistics& statistics);
 
-/// The statistics of N residuals [rad or rad/s] of a fit with that many free parameters; effective_samples is N.
+/// The statistics of N residuals [rad or rad/s] of a fit with `free_parameters`; effective_samples is set to N.
 FitStatistics ComputeStatistics(const Eigen::VectorXd& residual, const Eigen::VectorXd& quantile_residual,
                                 double log_likelihood, int free_parameters);
 

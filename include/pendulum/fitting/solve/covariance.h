@@ -7,17 +7,17 @@
 
 namespace pendulum {
 
-/// The inverse of an information matrix over the parameters that are free.
+/// The inverse of an information matrix over the free parameters.
 struct InformationInverse {
   bool identifiable = false;
   Eigen::MatrixXd matrix;  ///< M x M, M free parameters; empty when not identifiable.
-  /// When not identifiable: the parameters (indices of all P) in the combination the data do not see.
+  /// If not identifiable: the parameters (indices into all P) in the combination that the data do not determine.
   std::vector<int> direction;
 };
 
-/// Inverts the rows and columns `free` of a P x P information matrix. Not identifiable: an eigenvalue below 1e-12 times
-/// the largest, scaled to unit diagonal (correlations so near 1 that sums have no digits left), or a zero on the
-/// diagonal.
+/// Inverts the rows and columns `free` of a P x P information matrix. Not identifiable: after scaling to unit diagonal,
+/// an eigenvalue is below 1e-12 times the largest (correlations so near 1 that the sums have no digits left). A zero on
+/// the diagonal is not identifiable either.
 InformationInverse InvertInformation(const Eigen::MatrixXd& information, const std::vector<int>& free);
 
 }  // namespace pendulum

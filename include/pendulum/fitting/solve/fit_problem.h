@@ -13,25 +13,25 @@
 
 namespace pendulum {
 
-/// A recording made ready for the solver: everything in units of G, times from the first sample.
+/// A recording prepared for the solver: all quantities in units of G, times from the first sample.
 struct FitProblem {
   MotionModel model;
-  StartValues start;                    ///< As found in the data, before fixed values are put in.
+  StartValues start;                    ///< As estimated from the data, before fixed values are applied.
   std::vector<ParameterInfo> infos;     ///< P
-  std::vector<double> si_per_internal;  ///< P; value in the report = si_per_internal · internal + offset.
-  std::vector<double> offset;           ///< P; the clock of the first sample for release_time, else 0.
-  std::vector<double> first_guess;      ///< P, internal: start values with fixed ones put in.
+  std::vector<double> si_per_internal;  ///< P; reported value = si_per_internal · internal + offset.
+  std::vector<double> offset;           ///< P; for release_time the clock at the first sample, else 0.
+  std::vector<double> first_guess;      ///< P, internal: start values with fixed values applied.
   TrajectoryData data;
   ZeroMotion zero_motion = ZeroMotion::kNone;
   SolveOptions solve;
-  std::size_t sensor_starts = 1;  ///< Ways to begin that there are, of which one is `start`.
+  std::size_t sensor_starts = 1;  ///< Number of possible sensor starts; `start` is one of them.
   bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
   std::vector<PriorTerm> priors;
-  NoiseModel noise;  ///< With which a search begins: σ is data.scale; `censored` saturated readings.
+  NoiseModel noise;  ///< Noise at the start of a search (σ is data.scale); `censored`: number of censored readings.
   Eigen::Index censored = 0;
   double resolution = 0;  ///< Of the readings; 0: none.
 
-  /// Parameter i as the report has it, and back.
+  /// Converts parameter i from internal to reported units, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
   double Internal(std::size_t i, double reported) const { return (reported - offset[i]) / si_per_internal[i]; }
 
@@ -41,24 +41,25 @@ struct FitProblem {
   /// Index of the parameter of that name; std::nullopt if there is none.
   std::optional<std::size_t> Find(std::string_view name) const;
 
-  /// Index of the zero, the first parameter of the sensor.
+  /// Index of the zero, which is the first parameter of the sensor.
   std::size_t zero() const { return static_cast<std::size_t>(solve.last_friction) + 3; }
 
-  /// σ below this is rounding: a millionth of the data's scale.
+  /// A σ below this is rounding error: a millionth of the data's scale.
   double negligible_sigma() const { return 1e-6 * data.scale; }
 
   /// Root mean square of the residuals of readings that are neither censored nor silences.
   double RmsResidual(const Eigen::VectorXd& readings) const;
 
-  /// Share of the readings' variance that a trajectory leaves; a censored reading that it exceeds is explained.
+  /// Share of the readings' variance that a trajectory does not explain. A censored reading counts as explained if the
+  /// trajectory exceeds it.
   double UnexplainedShare(const Eigen::VectorXd& readings) const;
 };
 
-/// The first guess for a simpler law: parameters that are fixed besides those of the problem are at their lower bound,
-/// and the other friction parameters balance the energy without them.
+/// The first guess for a simpler law. Parameters fixed in addition to those of the problem are at their lower bound;
+/// the other friction parameters balance the energy without them.
 std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
 
-/// Start values from the data, bounds and fixed values from the options. Errors as FitRecording.
+/// Takes start values from the data, bounds and fixed values from the options. Errors as FitRecording.
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

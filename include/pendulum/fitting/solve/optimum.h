@@ -13,22 +13,22 @@
 
 namespace pendulum {
 
-/// The likelihood around a solution, in the problem's units, and what is free there.
+/// The likelihood around a solution, in the problem's units, and the free parameters there.
 struct Optimum {
   Eigen::MatrixXd information;  ///< P x P, observed, priors included.
   Eigen::VectorXd gradient;     ///< P, of minus the log-likelihood.
   std::vector<int> free;        ///< F parameters that are neither fixed nor at a bound.
-  std::vector<int> at_bound;    ///< Those at a bound that the likelihood pushes outwards.
-  InformationInverse inverse;   ///< Of the information, over free.
+  std::vector<int> at_bound;    ///< Parameters at a bound that the likelihood pushes outwards.
+  InformationInverse inverse;   ///< Inverse of the information over `free`.
 };
 
-/// Nothing when the trajectory cannot be traced.
+/// Returns std::nullopt if the trajectory cannot be computed.
 std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution);
 
-/// Derivatives of the readings by the free parameters, N x F; no rows when the trajectory cannot be traced.
+/// Derivatives of the readings by the free parameters, N x F. No rows if the trajectory cannot be computed.
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
 
-/// Length of the Newton step that is left, in standard errors (its square is twice the expected gain of log L).
+/// Length of the remaining Newton step in standard errors. Its square is twice the expected gain of log L.
 double RemainingShift(const Optimum& optimum);
 
 /// A solution has converged if its RemainingShift is at most this many standard errors.

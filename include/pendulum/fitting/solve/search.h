@@ -9,16 +9,17 @@
 
 namespace pendulum {
 
-/// Where a search begins when these parameters (P) are fixed, their values included.
+/// Returns the start of a search in which the given parameters (P) are fixed, with their fixed values.
 using StartGuess = std::function<std::vector<double>(const std::vector<bool>& fixed)>;
 
-/// Solves over all samples from where `from` ended, and goes on to the neighbouring minima, on both sides along the
-/// profile of dry friction, where the pendulum comes to rest.
+/// Solves over all samples, starting from the solution `from`. If the pendulum comes to rest, also visits the
+/// neighbouring local minima on both sides along the profile of dry friction.
 Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& options);
 
-/// Looks for the lowest of several minima over a whole recording, from start values that may be rough: over growing
-/// parts of it, to either side where it reaches rest, and over the simpler laws within the friction law, so that a law
-/// ends no higher than they do. No promise: budgets end it.
+/// Searches for the lowest of several local minima over a whole recording, from start values that may be rough. It fits
+/// growing parts of the recording, searches on both sides if the pendulum comes to rest, and tries the simpler laws
+/// contained in the friction law. A law therefore ends no higher than its simpler laws. The global minimum is not
+/// guaranteed: budgets limit the search.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, const SolveOptions& options);
 
 }  // namespace pendulum

@@ -11,19 +11,19 @@
 
 namespace pendulum {
 
-/// What may move, and how far.
+/// The parameters that may change, and how far.
 struct SolveOptions {
-  std::vector<double> lower, upper;  ///< P; -kUnbounded and kUnbounded where there is no bound.
+  std::vector<double> lower, upper;  ///< P; -kUnbounded and kUnbounded without a bound.
   std::vector<bool> fixed;           ///< P
   int holding_parameter = -1;        ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
-  int last_friction = 1;             ///< The last parameter of friction; the first is 1, behind inertia.
+  int last_friction = 1;             ///< The last parameter of friction; the first is 1, after inertia.
   int release_time = -1;             ///< -1: the recording begins in motion.
-  std::vector<int> late;             ///< Parameters that only small swings tell: held while the last part is left out.
-  int max_iterations = 100;          ///< Of Ceres, for each run.
-  int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run is begun.
+  std::vector<int> late;             ///< Determined only by small swings: held while the last part is left out.
+  int max_iterations = 100;          ///< Limit of Ceres iterations for each run.
+  int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run starts.
 };
 
-/// |r|² at P parameters where a search ended, as in Solution.
+/// A local minimum: P parameters and |r|² where a search ended, as in Solution.
 struct Minimum {
   std::vector<double> parameters;
   double sum = 0;
@@ -33,30 +33,31 @@ struct Minimum {
 struct Solution {
   std::vector<double> parameters;  ///< P, the cost's units.
   double sum = 0;                  ///< |r|², the deviance under the cost's noise.
-  bool usable = false;             ///< False when the trajectory cannot be traced at the parameters.
+  bool usable = false;             ///< False if the trajectory cannot be computed at these parameters.
   int iterations = 0;
   std::string message;
-  NoiseModel noise;  ///< Set by MaximizeLikelihood, as are the next two.
+  NoiseModel noise;  ///< MaximizeLikelihood sets this and the next two members.
   std::string noise_reason;
-  double log_likelihood = 0;          ///< Probability per sample; a density is multiplied with the resolution (or 1).
-  Eigen::VectorXd readings;           ///< N x 1, the model's, rad or rad/s; set by FitRecording.
-  double trace_error = 0;             ///< Largest difference of readings to a hundredth of the tolerance; likewise.
-  std::vector<Minimum> other_minima;  ///< Found by Search beside this one, none lower; this one may be among them.
+  double log_likelihood = 0;  ///< Probability per sample; a density is multiplied by the resolution (or 1).
+  Eigen::VectorXd readings;   ///< N x 1, of the model, rad or rad/s; set by FitRecording.
+  double trace_error = 0;     ///< Largest change of the readings at a hundredth of the tolerance; set by FitRecording.
+  std::vector<Minimum> other_minima;  ///< Other local minima found by Search, none lower; may include this one.
 };
 
-/// Where parameter i stands at a value: -1 at its lower bound or below, 1 at its upper bound or above, 0 between.
+/// Position of a value relative to the bounds of parameter i: -1 at or below the lower bound, 1 at or above the upper
+/// bound, 0 between.
 int BoundSide(const SolveOptions& options, std::size_t i, double value);
 
-/// |gradient_i| / sqrt(information_ii) below which a step along parameter i alone would take away less than 1e-10 of
-/// |r|², from LeastSquares' sums: a solve may leave as much.
+/// Limit for |gradient_i| / sqrt(information_ii), from LeastSquares' sums. Below it, a step along parameter i alone
+/// reduces |r|² by less than 1e-10 of itself, which is the solver's tolerance.
 double NegligibleSlope(const Eigen::MatrixXd& sums);
 
-/// Levenberg-Marquardt (Ceres) from `start` over the samples the cost uses; parameters stay within their bounds. Ends
-/// when the cost, not owned, changes by less than 1e-10 of itself, or would with the next step: estimates within
+/// Levenberg-Marquardt (Ceres) from `start` over the samples in use, within the bounds. `cost` is not owned. Ends when
+/// the cost changes by less than 1e-10 of itself, or would do so with the next step. Estimates are then within
 /// sqrt(1e-10 N) standard errors.
 Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options);
 
-/// Solve from where `from` ended; the work of both is counted, its other minima are kept.
+/// Solves from the solution `from`. Adds up the work of both solves and keeps the other minima of `from`.
 Solution Continue(LeastSquares& cost, const Solution& from, const SolveOptions& options);
 
 }  // namespace pendulum

@@ -5,14 +5,14 @@
 
 namespace pendulum {
 
-/// The error of the trajectory that a fit is to stay below, rad or rad/s.
+/// The maximum permitted error of a fit's trajectory, rad or rad/s.
 double MaxTraceError(const FitProblem& problem, const FitOptions& options);
 
-/// The readings at a solution, and their largest difference to those of a hundredth of the tolerance, which the cost
-/// has. False where one of them cannot be traced.
+/// Computes the readings at a solution and their largest difference from those at a hundredth of the tolerance.
+/// `tolerance` is the tolerance of `cost`. Returns false if either trajectory cannot be computed.
 bool MeasureTraceError(TrajectoryCost& cost, double tolerance, Solution& solution);
 
-/// The tolerance to try where the error is too large, and how often to do so.
+/// The next tolerance to try if the error is too large, and the maximum number of refinements.
 double FinerTolerance(double tolerance);
 inline constexpr int kMostTraceRefinements = 3;
 

@@ -23,23 +23,23 @@ namespace pendulum {
 enum class IntervalMethod {
   kAuto,        ///< From the covariance, unless one of the next two is needed.
   kCovariance,  ///< Estimate plus or minus Student's t times the standard error.
-  kProfile,     ///< Of the likelihood; kAuto takes it if a parameter is within three standard errors of a bound.
-  kBootstrap,   ///< Parametric, from refits of simulated readings.
-  kNone,        ///< For trial fits: no errors, intervals, identifiability, rival sensors or autocorrelation.
+  kProfile,     ///< From the profile likelihood; kAuto uses it within three standard errors of a bound.
+  kBootstrap,   ///< From refits of recordings with simulated or resampled noise.
+  kNone,        ///< For trial fits: no errors, intervals, identifiability, alternative sensors or autocorrelation.
 };
 
 /// How the search for the solution runs. Trial fits and refits change it; users do not.
 struct SearchOptions {
-  std::optional<StartValues> start_values;  ///< Replaces EstimateStartValues; complete.
+  std::optional<StartValues> start_values;  ///< Replaces EstimateStartValues; all values must be set.
   std::size_t sensor_start = 0;             ///< Index into SensorStarts.
-  double max_trace_error =
-      1e-8;                  ///< Target error of the trajectory [rad]; also sigma / 1000, warning above sigma / 100.
+  /// Target error of the trajectory [rad]; sigma / 1000 if that is smaller. Warning above sigma / 100.
+  double max_trace_error = 1e-8;
   int max_iterations = 100;  ///< Of Ceres, for each solve.
-  int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends hopeless fits.
+  int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends failing fits.
 };
 
-/// What the user asks of a fit. Values by name are in SI with a rig (N m, kg m^2); without one, torques and inertia are
-/// in units of G.
+/// The user's options for a fit. Values by name are in SI with a rig (N m, kg m^2); without a rig, torques and inertia
+/// are in units of G.
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Replaces the model's own.
@@ -49,13 +49,13 @@ struct FitOptions {
   ParameterValues initial;  ///< Initial values that replace those estimated from the readings.
   ParameterRanges bounds;   ///< Bounds within a parameter's own.
   ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev. A prior is not counted as a sample.
-  /// std::nullopt: edges where the recording has them (Recording::edge), else quantized where the noise is smaller than
-  /// the resolution, else Gaussian.
+  /// std::nullopt: kEdges if the recording has edges (Recording::edge), kQuantized if the noise is smaller than the
+  /// resolution, otherwise kGaussian.
   std::optional<NoiseFamily> noise;
   IntervalMethod interval = IntervalMethod::kAuto;
-  std::uint64_t seed = 1;  ///< Of the bootstrap and of posterior sampling.
+  std::uint64_t seed = 1;  ///< For the bootstrap and posterior sampling.
   int threads = 0;         ///< For the bootstrap and long recordings; 0: all cores. The result does not depend on it.
-  std::function<void(int done, int total)> progress;  ///< Called now and then by the bootstrap, from one thread.
+  std::function<void(int done, int total)> progress;  ///< Called occasionally by the bootstrap, from one thread.
   SearchOptions search;
   /// Once a stop is requested, the fit ends soon with kTryAgain and its results are discarded. Default: never.
   std::stop_token stop;

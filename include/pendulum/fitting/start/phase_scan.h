@@ -8,17 +8,17 @@
 
 namespace pendulum {
 
-/// Natural frequencies [rad/s, true seconds] among which a recording's is looked for; both alike: that one alone.
+/// The natural frequencies [rad/s, true seconds] to search. If low and high are equal, only that one is tried.
 struct FrequencyRange {
   double low = 0;
   double high = 0;
 };
 
-/// Start values without turning points, for a recording sampled too slowly to show them but in motion from its first
-/// sample on, best first, at most twelve: at each frequency the readings are a linear least squares of A(t) cos φ(t),
-/// A(t) sin φ(t) and 1, φ being the phase of a pendulum of the amplitude A(t) (MODEL.md eq. (46)); each local minimum
-/// over frequency is one; none once a stop is requested. Times may be uneven. Cost: some ms to a second, by range and
-/// duration.
+/// Start values that need no turning points, for a recording sampled too slowly to show them. The recording must be in
+/// motion from its first sample on; times may be uneven. Returns at most twelve starts, the best first, one for each
+/// local minimum over frequency; none after a stop request. At each frequency the readings are fitted by linear least
+/// squares with A(t) cos φ(t), A(t) sin φ(t) and 1. Here φ is the phase of a pendulum with amplitude A(t) (MODEL.md
+/// eq. (46)). Cost: some ms to a second, depending on range and duration.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop = {});
 

@@ -9,34 +9,35 @@
 
 namespace pendulum {
 
-// What an accelerometer and a camera are like as built and mounted, before anybody has calibrated them (MODEL.md
-// section 14): standard deviations about 0, 1, the axis it was meant to have, and 0.
+// Tolerances of an accelerometer and of a camera as built and mounted, before calibration (MODEL.md section 14). Each
+// is a standard deviation about the nominal value: 0 for bias and level, 1 for the scale, the intended axis for the
+// axis.
 inline constexpr double kAccelerometerBiasStdDev = 0.3;    ///< m/s^2
-inline constexpr double kAccelerometerScaleStdDev = 0.02;  ///< Of 1.
+inline constexpr double kAccelerometerScaleStdDev = 0.02;  ///< Relative.
 inline constexpr double kAccelerometerAxisStdDev = 0.05;   ///< rad
 inline constexpr double kCameraLevelStdDev = 0.02;         ///< rad
 
-/// The sensor that a recording was made with. Where gravity is linear everything that is measured follows the same
-/// equation, so that a coordinate, an acceleration across the rod and a gyro's volts are angles in an unknown unit.
+/// The sensor that made a recording. If gravity is linear, every measured quantity follows the same equation. A
+/// coordinate, an acceleration across the rod and a gyro's volts are then angles in an unknown unit.
 SensorModel SensorOf(const Recording& recording, Gravity gravity);
 
-/// What is known of a sensor before the fit, unless the options hold a parameter or know it themselves (MODEL.md
-/// section 14): bias, scale and axis of an accelerometer as built and mounted, the camera's level, the circle of an
-/// arc.
+/// Prior knowledge of a sensor before the fit: bias, scale and axis of an accelerometer as built and mounted, the
+/// camera's level, the circle of an arc (MODEL.md section 14). Parameters that the options fix, or for which they give
+/// a prior, are left out.
 ParameterPriors SensorPriors(const Recording& recording, const SensorModel& sensor, const FitOptions& options);
 
-/// Whether a sensor shows anything where the options begin, fix or expect its scale and its radius. kInvalidArgument:
-/// with 0 it would not, and the message names which.
+/// Checks that the sensor responds to the motion with the scale and radius that the options give as initial value,
+/// fixed value or prior. kInvalidArgument: a value of 0 would show no motion; the message names the parameter.
 Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& options);
 
-/// One way to see the readings as an angle or a rate.
+/// One interpretation of the readings as an angle or a rate.
 struct SensorStart {
   std::vector<double> parameters;  ///< S
-  Recording view;                  ///< The readings through them: rad or rad/s.
+  Recording view;                  ///< The readings converted with them: rad or rad/s.
 };
 
-/// Where the search may begin: one way for each amplitude that the readings may stand for where nobody knows the scale.
-/// Not of a direct sensor. kFailedPrecondition: as TabulateHalfSwings.
+/// Start points of the search for a sensor that is not direct. If the scale is unknown, there is one for each amplitude
+/// that the readings may represent. kFailedPrecondition: as TabulateHalfSwings.
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
                                               const FitOptions& options);
 

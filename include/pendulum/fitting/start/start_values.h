@@ -11,23 +11,24 @@
 
 namespace pendulum {
 
-/// Where a fit begins, found from the data alone.
+/// Start of a fit, estimated from the data alone.
 struct StartValues {
   StartKind start = StartKind::kMoving;
   std::vector<double> parameters;  ///< In TrajectoryCost's order: units of G, times from the first sample.
-  double latest_release = 0;       ///< s from the first sample: the first visibly moving one; 0 for a moving start.
-  bool short_hold = false;         ///< Held for less than half a period: it may be a turning point.
-  double amplitude = 0;            ///< rad, the largest.
-  double natural_frequency = 0;    ///< rad/s
-  EnergyBalance energy_balance;    ///< Gives the friction of simpler laws too.
+  double latest_release = 0;     ///< s from the first sample: the first sample visibly in motion; 0 for a moving start.
+  bool short_hold = false;       ///< Held for less than half a period: it may be a turning point.
+  double amplitude = 0;          ///< rad, the largest amplitude.
+  double natural_frequency = 0;  ///< rad/s
+  EnergyBalance energy_balance;  ///< Also gives the friction of the simpler laws.
   std::vector<EnergyBalance>
-      other_balances;  ///< At other reference rates, where the law has one: starts to fall back on.
+      other_balances;  ///< The same at other reference rates, if the law has one: alternative starts.
 };
 
-/// Inertia from the crossings, friction from the energy balance, zero from the turning points, and a release or the
-/// first angle and rate. Without a choice, a release is taken if the reading at first stays put for at least a tenth of
-/// a period. kFailedPrecondition: no swing in the data (see FindExtrema), or kRelease was asked for and no held part is
-/// there. A friction law that is not linear in its parameters needs start values of its own here.
+/// Estimates the inertia from the crossings, friction from the energy balance, the zero from the turning points, and
+/// the start: a release, or the first angle and rate. If `choice` is empty, a release is assumed when the reading stays
+/// constant at first for at least a tenth of a period. kFailedPrecondition: the data contain no swing (see
+/// FindExtrema), or kRelease was requested and no held part exists. A friction law that is not linear in its parameters
+/// needs its own start values here.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
                                         std::optional<StartKind> choice);
 

@@ -10,18 +10,19 @@
 
 namespace pendulum {
 
-/// What differs within runs of successive edges in one direction, where nothing is lost: a step of the parameters (P)
-/// that explains most of it whatever the zero of each run, and the root mean square before it [unit of the residuals].
+/// Regression within runs of successive edges in one direction, where no count is lost, with a free zero for each run.
+/// `change` is the step of the parameters (P) that explains most of the residuals; `rms` is their root mean square
+/// before it [unit of the residuals].
 struct RunRegression {
   Eigen::VectorXd change;
   double rms = 0;
 };
 RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& edges);
 
-/// Where the count of an event-driven encoder slips: at turning points, where an edge is crossed to and fro, and where
-/// rows are missing. Within a run of successive edges in one direction nothing is lost, so each run has a zero of its
-/// own beside the parameters, and what these zeros differ by is a number of counts (MODEL.md eq. (68)). Steps of no
-/// counts are left out; one that is not within 0.35 of a number has its own size.
+/// Finds lost counts of an event-driven encoder: at turning points, where the motion crosses an edge back and forth,
+/// and where rows are missing. Within a run of successive edges in one direction no count is lost, so each run has its
+/// own zero in addition to the parameters. The differences of these zeros are numbers of counts (MODEL.md eq. (68)).
+/// Steps of zero counts are omitted; a step not within 0.35 of a whole number keeps its own size.
 ///
 /// residuals    of a fit to the edges, N
 /// edges        N, from TakeEdges

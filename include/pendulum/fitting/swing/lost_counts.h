@@ -11,27 +11,29 @@
 
 namespace pendulum {
 
-/// A zero that jumps within a recording.
+/// Jumps of the zero within a recording.
 struct ZeroJumps {
-  std::vector<LostCounts> lost;  ///< Whole counts, s on the file's clock, in time order; empty when some are not whole.
-  Recording corrected;           ///< With the readings after each moved back.
-  std::optional<double> doubtful_from;  ///< s on the file's clock: where the first is that is not whole, or not sure.
-  /// What was found, a sentence: of `lost` what was done, else what to do.
+  std::vector<LostCounts> lost;  ///< Whole counts, s on the file's clock, in time order; empty if some are not whole.
+  Recording corrected;           ///< The readings after each jump are shifted back.
+  std::optional<double> doubtful_from;  ///< s on the file's clock: the first jump that is not whole or not certain.
+  /// One sentence: if `lost` is not empty, what was corrected, otherwise what to do.
   std::string message;
 
   bool AreMended() const { return !lost.empty(); }
 };
 
-/// Whether the mean of a fit's residuals changes at some sample by four standard errors of independent ones, and a good
-/// part of a resolution: the zero of an angle may jump.
+/// Whether the zero of an angle may have jumped: the mean of a fit's residuals changes at some sample by four standard
+/// errors of independent residuals, and by a good part of a resolution.
 bool MayJump(const FitReport& fit);
 
-/// Jumps of an angle's zero (MODEL.md eq. (67)), looked for in what the richest law leaves, the more exactly the less
-/// that is. Nothing where there are none, where the recording cannot be fitted, or once a stop is requested.
+/// Finds jumps of an angle's zero (MODEL.md eq. (67)) in the residuals of the richest law; smaller residuals give a
+/// more accurate result. Returns std::nullopt if there are no jumps, if the recording cannot be fitted, or after a stop
+/// request.
 std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options);
 
-/// Says what became of jumps (`lost_counts`, or `zero_jumps`, which the fit then does not stand), and where there may
-/// be one that is too small to be told (`zero_unsteady`), unless the fit `lacks` so much that it may be that.
+/// Adds warnings about jumps: `lost_counts` if they were corrected, otherwise `zero_jumps`, which invalidates the fit.
+/// Adds `zero_unsteady` for a possible jump that is too small to identify, unless the fit `lacks` so much that the
+/// misfit may explain it.
 void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit);
 
 }  // namespace pendulum

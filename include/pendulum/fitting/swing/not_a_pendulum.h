@@ -9,13 +9,14 @@
 
 namespace pendulum {
 
-/// Why a recording is that of a linear oscillator, in a sentence with numbers, or nothing: linear gravity describes it
-/// much better than sine gravity, both with the richest friction. `report` lacks fit. Nothing, too, once a stop is
-/// requested. Cost: two small fits.
+/// Checks for a linear oscillator: linear gravity describes the recording much better than sine gravity, both with the
+/// richest friction. Returns the reason in a sentence with numbers. Returns std::nullopt otherwise, and after a stop
+/// request. `report` is a fit with lack of fit. Cost: two small fits.
 std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report,
                                      const std::stop_token& stop = {});
 
-/// The same for two modes: much of what the richest law leaves oscillates at one frequency, which is not the swing's.
+/// Checks for two modes: much of the richest law's residual oscillates at one frequency different from the swing's.
+/// Returns as WhyLinear.
 std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report,
                                        const std::stop_token& stop = {});
 

@@ -8,13 +8,13 @@
 
 namespace pendulum {
 
-/// A step of the zero: from `sample` on the readings stand higher by `size` than those before. Unit of the readings.
+/// A step of the zero: from `sample` on, the readings are higher by `size` than before. Unit of the readings.
 struct ZeroStep {
   Eigen::Index sample = 0;
   double size = 0, std_error = 0;
 };
 
-/// What a fit leaves of N readings, and what its P parameters may still take of that.
+/// The residuals of a fit to N readings, and their derivatives by its P parameters.
 struct FitResiduals {
   Eigen::VectorXd time;      ///< N x 1, s, increasing
   Eigen::VectorXd residual;  ///< N x 1, rad or rad/s
@@ -23,9 +23,10 @@ struct FitResiduals {
   double period = 0;         ///< s, of a small swing
 };
 
-/// Steps in residuals that their memory does not explain (MODEL.md eq. (67)), in time order, `most` at most. Each
-/// raises the likelihood of an autoregression about the fit by e^18 and more, and by more than a zero that drifts, a
-/// spike, a kink, a pendulum touched at that instant or a clock that slipped would; or all together leave white noise.
+/// Steps in residuals that autocorrelation does not explain (MODEL.md eq. (67)), in time order, at most `most`. Each
+/// step raises the likelihood of an autoregression around the fit by at least e^18. It must also raise it by more than
+/// a drifting zero, a spike, a kink, a touched pendulum or a clock slip would. Alternatively, all steps together leave
+/// white noise.
 std::vector<ZeroStep> FindZeroSteps(const FitResiduals& residuals, int most, const std::stop_token& stop = {});
 
 }  // namespace pendulum

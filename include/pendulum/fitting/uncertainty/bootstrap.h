@@ -8,19 +8,19 @@
 
 namespace pendulum {
 
-/// Estimates from recordings that the fit itself could have given.
+/// Estimates from simulated repetitions of a recording, for bootstrap intervals.
 struct Bootstrap {
-  Eigen::MatrixXd estimates;  ///< B x P, the problem's units; rows of those that could be solved.
+  Eigen::MatrixXd estimates;  ///< B x P, the problem's units; one row per solved replica.
   int failed = 0;
 
   /// The quantile of parameter k's estimates, by linear interpolation between order statistics.
   double Quantile(int k, double probability) const;
 };
 
-/// Refits of kBootstrapFits recordings: the fitted readings with new noise, rounded and cut as the sensor does.
-/// Independent Gaussian or quantized noise is drawn from its model; residuals that remember, and those of a robust
+/// Refits kBootstrapFits replicas: the fitted readings plus new noise, rounded and clipped like the sensor's.
+/// Independent Gaussian or quantized noise is drawn from its model. Autocorrelated residuals, and those of a robust
 /// family, are resampled in circular blocks (Politis & Romano 1992). quantile_residuals: N. Runs on options.threads
-/// threads; the same for a seed whatever their number. Once options.stop is requested the others count as failed.
+/// threads; the result depends only on the seed. After a stop request the remaining replicas count as failed.
 Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, const Solution& solution,
                        const Eigen::VectorXd& quantile_residuals, const Autocorrelation& correlation);
 

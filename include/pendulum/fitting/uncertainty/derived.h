@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// A quantity computed from the parameters, with its standard error by propagation.
+/// A quantity computed from the parameters, with its propagated standard error.
 struct DerivedQuantity {
   std::string name;
   std::string unit;
@@ -20,22 +20,25 @@ struct DerivedQuantity {
   std::optional<double> lower95 = std::nullopt, upper95 = std::nullopt;
 };
 
-/// Ends of a parameter's interval; one may be missing.
+/// Ends of a parameter's confidence interval; one may be missing.
 struct IntervalEnds {
   std::optional<double> lower, upper;
 };
 
-/// natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is 0), and gravity,
-/// viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)): none depends on the rig. infos: the model's parameters,
-/// inertia first. parameters: P, in units of G. covariance: P x P, in units of G, zero rows for what is held; nullptr:
-/// no standard errors. at_bound: indices of parameters at a bound; what depends on one, or on held parameters alone,
-/// has no standard error.
+/// Derived quantities: natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is
+/// 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)). None depends on the rig.
+///
+/// infos       The model's parameters, inertia first.
+/// parameters  P, in units of G.
+/// covariance  P x P, in units of G, zero rows for fixed parameters; nullptr: no standard errors.
+/// at_bound    Indices of parameters at a bound.
+/// A quantity that depends on a parameter at a bound, or only on fixed parameters, has no standard error.
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);
 
-/// Sets the intervals of derived quantities from those of the parameters they come from (P, in units of G; others as
-/// above). An end that no end of a parameter is carried to stays missing.
+/// Sets the intervals of derived quantities from those of their parameters (P, in units of G; other arguments as
+/// above). An end stays missing if no end of a parameter leads to it.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
 

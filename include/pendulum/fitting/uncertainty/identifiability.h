@@ -7,23 +7,23 @@
 
 namespace pendulum {
 
-/// What a recording can tell of a parameter.
+/// How well a recording determines a parameter.
 struct Identifiability {
   enum class Verdict {
     kIdentifiable,
-    kWeakly,           ///< Its interval reaches a bound, or it can be traded for others.
-    kNotIdentifiable,  ///< It leaves no trace, or only a combination with others does.
+    kWeakly,           ///< Its interval reaches a bound, or other parameters can compensate for it.
+    kNotIdentifiable,  ///< It has no effect, or only a combination with others has one.
   };
   std::string parameter;
   Verdict verdict = Verdict::kIdentifiable;
-  std::vector<std::string> direction;  ///< The parameters of the combination that the recording does not tell.
-  std::string advice;                  ///< What to measure to settle it; empty when identifiable.
+  std::vector<std::string> direction;  ///< The parameters of the combination that the recording does not determine.
+  std::string advice;                  ///< Which measurement would determine it; empty if identifiable.
 };
 
 /// "identifiable", "weakly identifiable", "not identifiable".
 std::string_view VerdictName(Identifiability::Verdict verdict);
 
-/// Which measurement would tell a parameter apart from those it can be traded for.
+/// The measurement that distinguishes a parameter from those that can compensate for it.
 std::string MeasurementFor(std::string_view parameter);
 
 }  // namespace pendulum

@@ -13,11 +13,11 @@
 
 namespace pendulum {
 
-/// The likelihood with one parameter held at a value (the problem's units) and the others at their best.
+/// The likelihood with one parameter held at a value (the problem's units) and the others at their optimum.
 struct ProfilePoint {
   double value = 0;
-  /// 2 (log L of the estimate - log L), at least 0, times the variance that the likelihood has at fixed σ over that of
-  /// ComputeErrors: for a parabola ((value - estimate) / standard error)².
+  /// 2 (log L of the estimate - log L), at least 0, times a variance ratio: that of the likelihood at fixed σ over that
+  /// of ComputeErrors. For a parabola it is ((value - estimate) / standard error)².
   double statistic = 0;
 };
 
@@ -26,21 +26,21 @@ struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
   OpenInterval open = OpenInterval::kClosed;
-  std::vector<ProfilePoint> points;  ///< Values increasing, the estimate among them; empty where there is no interval.
-  double threshold = 0;              ///< Of the statistic at the ends: Student's t².
+  std::vector<ProfilePoint> points;  ///< Increasing values, the estimate among them; empty without an interval.
+  double threshold = 0;              ///< Value of the statistic at the ends: Student's t².
 };
 
-/// The errors of a fit when the free parameters are those of that optimum.
+/// Computes the errors of a fit with the free parameters of the given optimum.
 using ErrorsOf = std::function<Errors(const Optimum&)>;
 
-/// The 95 % profile-likelihood interval of parameter k, free or at its bound (D. J. Venzon and S. H. Moolgavkar,
-/// Applied Statistics 37:87, 1988), with regard to residuals that remember (R. E. Chandler and S. Bate, Biometrika
-/// 94:167, 2007). An end beyond a bound is the bound. Its points are spread evenly over the interval, four or more on a
-/// side that has a length. samples: of all recordings. Cost: about ten solves.
+/// The 95 % profile-likelihood interval of parameter k, which is free or at its bound (D. J. Venzon and S. H.
+/// Moolgavkar, Applied Statistics 37:87, 1988). It accounts for autocorrelated residuals (R. E. Chandler and S. Bate,
+/// Biometrika 94:167, 2007). An end beyond a bound is set to the bound. The points are spread evenly over the interval,
+/// at least four on each side of nonzero length. samples: number in all recordings. Cost: about ten solves.
 ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
                                  const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k);
 
-/// Of one recording.
+/// The same for one recording.
 ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
                                  const Optimum& optimum, const Autocorrelation& correlation, int k);
 

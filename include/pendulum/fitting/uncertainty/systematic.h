@@ -13,20 +13,20 @@
 
 namespace pendulum {
 
-/// Something that is not known exactly, and how it pulls at the fit of one recording.
+/// A source of systematic error, and its effect on the fit of one recording.
 struct SystematicSource {
-  std::string identity;    ///< Recordings of the same identity share the source, and its error.
-  Eigen::VectorXd powers;  ///< P, of a common factor (C = 1): its power in each parameter; empty for another source.
-  Eigen::MatrixXd pull;    ///< P x C, by how much the scores of the problem's parameters follow its C numbers.
-  Eigen::MatrixXd covariance;  ///< C x C, of these numbers; of a factor relative.
+  std::string identity;        ///< Recordings with the same identity share the source and its error.
+  Eigen::VectorXd powers;      ///< P, for a common factor (C = 1): its power in each parameter; otherwise empty.
+  Eigen::MatrixXd pull;        ///< P x C, derivatives of the scores of the problem's parameters by its C numbers.
+  Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a factor, relative.
 };
 
-/// Rig, clock and calibration, those of them that have errors, at the solution (MODEL.md eq. (24) and (31)).
+/// The sources rig, clock and calibration that have errors, at the solution (MODEL.md eq. (24) and (31)).
 std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
                                                 const FitProblem& problem, const TrajectoryCost& cost,
                                                 const Solution& solution);
 
-/// The fit, of one recording or several, that sources act on. Over P parameters, in the problem's units.
+/// The fit of one or several recordings that the sources affect. P parameters, in the problem's units.
 struct SourceContext {
   const std::vector<double>& parameters;
   const std::vector<bool>& fixed;
@@ -34,11 +34,11 @@ struct SourceContext {
   const Optimum& optimum;
 };
 
-/// What a source's error leaves open in the estimates, P x P. of_all: it is that of every recording of the fit.
+/// Covariance of the estimates caused by a source's error, P x P. of_all: every recording of the fit has this source.
 Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, const SourceContext& context);
 
-/// What the errors of rig, clock and calibration leave open in the estimates: their covariance (MODEL.md eq. (24) and
-/// (31)), P x P in products of the problem's units; zero rows for what is fixed.
+/// Covariance of the estimates caused by the errors of rig, clock and calibration (MODEL.md eq. (24) and (31)). P x P
+/// in products of the problem's units; zero rows for fixed parameters.
 Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                      const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
 
