@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The protocol between the logger and its host, used by both: src/docs/hardware.md, "The protocol". Written in C++11 without
-// a standard library, because avr-g++ has none.
+// The protocol between the logger and its host, used by both: src/docs/hardware.md, "The protocol". Written in C++11
+// without a standard library, because avr-g++ has none.
 //
 // A frame is a payload of at most kMostPayload bytes and its CRC, encoded by COBS so that it contains no 0, and a final
 // 0. Numbers are little endian. The first byte of the payload identifies the message.

@@ -97,7 +97,7 @@ double Inflation(const NoiseModel& noise, Index samples, Index free, double lost
 
 namespace {
 
-/// The covariance of all free parameters, with the residuals' own variance and autocorrelation (MODEL.md eq. (29)).
+/// The covariance of all free parameters, with the residuals' own variance and autocorrelation (MODEL.md eq. (7.7)).
 MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearFit& linear, const NoiseModel& noise,
                       const ReadingTerms& terms, const std::stop_token& stop) {
   const VectorXd time = part.clock_scale * part.time;

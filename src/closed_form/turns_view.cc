@@ -60,7 +60,7 @@ void BridgePassages(const std::vector<Extremum>& bottoms, double least, Recordin
   }
 }
 
-/// MODEL.md eq. (74), with M interpolated linearly between the bottoms' readings.
+/// MODEL.md eq. (14.5), with M interpolated linearly between the bottoms' readings.
 Recording Unfolded(Recording recording) {
   recording.value *= RadialSide(recording);
   const double threshold = TurningThreshold(recording, SuccessiveDifferenceNoise(recording));

@@ -43,7 +43,7 @@ RigValue Propagate(double value, std::initializer_list<ErrorTerm> terms) {
 /// Values in the order of the keys of their description.
 using RigValues = std::span<const RigValue>;
 
-/// MODEL.md eqs. (2) and (3).
+/// MODEL.md eqs. (1.2) and (1.3).
 void SetFromRodAndBob(RigValues values, Rig& rig) {
   const RigValue bob = values[0], rod = values[1], length = values[2], gravity = values[3];
   const double reduced_mass = bob.value + rod.value / 2;
@@ -60,7 +60,7 @@ void SetFromRodAndBob(RigValues values, Rig& rig) {
 
 void SetFromTorque(RigValues values, Rig& rig) { rig.gravity_torque = values[0]; }
 
-/// MODEL.md eq. (2) in its first form, G = mass center_of_mass gravity.
+/// MODEL.md eq. (1.2) in its first form, G = mass center_of_mass gravity.
 void SetFromBody(RigValues values, Rig& rig) {
   const RigValue mass = values[0], distance = values[1], gravity = values[2];
   rig.gravity_torque =

@@ -12,12 +12,12 @@ namespace {
 using Response = SensorModel::Response;
 using State = std::array<double, SensorModel::kStates>;
 
-/// MODEL.md eq. (70): k ω + c.
+/// MODEL.md eq. (14.1): k ω + c.
 Response OfScaledRate(const State& state, const double* p) {
   return {p[1] * state[1] + p[0], {0, p[1], 0}, {1, state[1]}};
 }
 
-/// MODEL.md eq. (71): k (a_t cos ψ + a_r sin ψ) + c with a_t = r α + g sin θ and a_r = r ω² + g cos θ.
+/// MODEL.md eq. (14.2): k (a_t cos ψ + a_r sin ψ) + c with a_t = r α + g sin θ and a_r = r ω² + g cos θ.
 Response OfAcceleration(double gravity, const State& state, const double* p) {
   const auto [angle, rate, acceleration] = state;
   const double scale = p[1];
@@ -35,14 +35,14 @@ Response OfAcceleration(double gravity, const State& state, const double* p) {
       {1, seen, scale * (radial * across - tangential * along), scale * (acceleration * across + rate * rate * along)}};
 }
 
-/// MODEL.md eq. (72): x_P + r sin(θ + z).
+/// MODEL.md eq. (14.3): x_P + r sin(θ + z).
 Response OfCoordinate(const State& state, const double* p) {
   const double sine = std::sin(state[0] + p[0]);
   const double slope = p[2] * std::cos(state[0] + p[0]);
   return {p[1] + p[2] * sine, {slope, 0, 0}, {slope, 1, sine}};
 }
 
-/// MODEL.md eq. (73): the direction of a point at r (sin, cos)(θ + z) from the pivot, seen from the reference.
+/// MODEL.md eq. (14.4): the direction of a point at r (sin, cos)(θ + z) from the pivot, seen from the reference.
 Response OfArc(const SensorModel& sensor, const State& state, const double* p) {
   const double angle = state[0] + p[0];
   const double radius = p[3];

@@ -56,7 +56,7 @@ const AmplitudeDependence* DependenceOf(const Homogeneity& result, const std::st
 
 // ---- Amplitude dependence present ----------------------------------------------------------------------------------
 
-// The period of a sine torque is P(A) times that of small swings (MODEL.md eq. (20)). To get the period of G θ its
+// The period of a sine torque is P(A) times that of small swings (MODEL.md eq. (6.1)). To get the period of G θ its
 // inertia must be I / P(A)². P = 1 + A²/16 + ..., so the slope is -I/8; A⁴ changes it by less than 1 % below half a
 // radian.
 TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
@@ -76,7 +76,7 @@ TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
   }
 }
 
-// The span between recordings follows eq. (20) at the mean amplitudes of the motion. The estimates weight early swings
+// The span between recordings follows eq. (6.1) at the mean amplitudes of the motion. The estimates weight early swings
 // more than these means do, hence the tolerance of a tenth.
 TEST(AmplitudeDependence, SpansThePeriodsOfSmallestAndLargestSwings) {
   FittedAlone fits(LinearRuns(1), RigOptions());

@@ -59,7 +59,7 @@ TEST(HalfSwingMap, WithoutFrictionTakesHalfThePeriodOfTheEllipticIntegral) {
     const double expected = 2 / kFrequency * boost::math::ellint_1(std::sin(amplitude / 2));
     EXPECT_NEAR(end->amplitude / amplitude, 1, 1e-13) << amplitude;
     EXPECT_NEAR(end->duration / expected, 1, 1e-12) << amplitude;
-    EXPECT_NEAR(end->peak_rate / (2 * kFrequency * std::sin(amplitude / 2)), 1, 1e-13) << amplitude;  // eq. (21)
+    EXPECT_NEAR(end->peak_rate / (2 * kFrequency * std::sin(amplitude / 2)), 1, 1e-13) << amplitude;  // eq. (6.2)
     EXPECT_NEAR(end->peak_delay / (expected / 2), 1, 1e-12) << amplitude;
   }
 }

@@ -56,7 +56,7 @@ Recording AngleOf(const Eigen::MatrixX3d& motion) {
   return recording;
 }
 
-/// The readings of an accelerometer along an axis, with noise of the given standard deviation (MODEL.md eq. (71)).
+/// The readings of an accelerometer along an axis, with noise of the given standard deviation (MODEL.md eq. (14.2)).
 Recording Seen(const Eigen::MatrixX3d& motion, double axis, double noise, double gravity) {
   Recording recording = AngleOf(motion);
   recording.quantity = Quantity::kAcceleration;
@@ -105,7 +105,7 @@ TEST(IsRadial, IsNotMisledByOutliers) {
   EXPECT_FALSE(IsRadial(across));
 }
 
-/// Between passages through the bottom the view is proportional to sin(θ/2) with its sign (MODEL.md eq. (74)), except
+/// Between passages through the bottom the view is proportional to sin(θ/2) with its sign (MODEL.md eq. (14.5)), except
 /// for the loss by friction within a half swing.
 TEST(TurnsView, UnfoldsAnAccelerationAlongTheRod) {
   const Eigen::MatrixX3d motion = Motion();

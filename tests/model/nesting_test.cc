@@ -16,7 +16,7 @@ std::optional<Nesting> Between(std::string_view simpler, std::string_view richer
   return FindNesting(*FindMotionModel(simpler), *FindMotionModel(richer));
 }
 
-// Expected counts follow from the formulas of the laws (MODEL.md eq. (7) to (9), (47), (48)).
+// Expected counts follow from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)).
 TEST(FindNesting, CountsTermsAtTheirBound) {
   const auto one = Between("viscous", "coulomb");
   ASSERT_TRUE(one);

@@ -133,7 +133,7 @@ std::set<std::string> Names(const Json& list) {
   return names;
 }
 
-// Nesting follows from the formulas of the laws (MODEL.md eq. (7) to (9), (47), (48)); the small-angle model is nested
+// Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); the small-angle model is nested
 // in none.
 TEST_F(FittingServiceOtherTest, TellsWhichModelIsWithinWhich) {
   const std::map<std::string, std::set<std::string>> expected = {

@@ -25,7 +25,7 @@ struct DeviceClock {
 
 inline constexpr double kMostDeviation = 0.02;
 
-/// Compares the device's clock with the host's, MODEL.md eqs. (65) and (66). A frame is never early and usually a
+/// Compares the device's clock with the host's, MODEL.md eqs. (12.1) and (12.2). A frame is never early and usually a
 /// little late. Therefore only the earliest arrival in each part of the run (10 to 32 parts) counts, and a line is
 /// fitted through these. Parts in which every frame was late are left out. The clock counts as not measured if there
 /// are fewer than 150 arrivals or 10 s, or if the result is less certain than the rate of any resonator.

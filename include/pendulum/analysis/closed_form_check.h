@@ -27,7 +27,7 @@ struct ClosedFormRow {
   /// Difference over its standard deviation. Both estimates use the same readings, so that deviation is sqrt(se² -
   /// se_fit²) (J. A. Hausman, Econometrica 46:1251, 1978). If residuals are autocorrelated, or the difference of
   /// variances is small, it is computed from the response of both estimates to noise with that autocorrelation
-  /// (MODEL.md eq. (37)). Absent without a standard error.
+  /// (MODEL.md eq. (6.11)). Absent without a standard error.
   std::optional<double> z;
   std::optional<bool> agrees;  ///< |z| < kAgrees
   std::string why;             ///< The computed cause of a difference, or the reason for a missing z; empty if both
@@ -53,7 +53,7 @@ struct ClosedFormCheck {
 
 /// Compares a fit that is not kFailed with closed forms of its model, and with the inertia from the rig's geometry. The
 /// formula is applied to the fitted model's own trajectory to find the cause of a difference: with small angles, with
-/// its own angles, at the recording's time stamps and on the sensor's levels (MODEL.md eq. (38)). `used` holds the
+/// its own angles, at the recording's time stamps and on the sensor's levels (MODEL.md eq. (6.12)). `used` holds the
 /// fitted samples. After a stop request the function returns early and its rows are meaningless. Cost: a few
 /// milliseconds; tens of milliseconds if something differs; seconds with thousands of turning points.
 ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,

@@ -40,7 +40,7 @@ struct AmplitudeTrend {
 /// Whether the parameters of a fit stay constant during its recording.
 struct Constancy {
   std::vector<HalvesRow> halves;  ///< Inertia and friction, without fixed parameters.
-  double halves_statistic = 0;  ///< χ² of the joint difference of all rows, with their covariances (MODEL.md eq. (55)).
+  double halves_statistic = 0;    ///< χ² of the joint difference of all rows, with covariances (MODEL.md eq. (9.7)).
   int halves_dof = 0;
   std::optional<double> halves_p;  ///< Absent if there is no such test; `reason` gives the cause.
   std::vector<AmplitudeRow> windows;

@@ -18,7 +18,7 @@ namespace pendulum {
 using FormulaValues = std::function<std::optional<Eigen::VectorXd>(const Recording&, Gravity gravity)>;
 
 /// Results (K values each) of K formulas on a fitted motion; each stage adds one property of the recording (MODEL.md
-/// eq. (38)).
+/// eq. (6.12)).
 struct FormulaStages {
   Eigen::VectorXd small_angles;  ///< Linear gravity, no drift of the zero, 200 samples per period, no noise.
   Eigen::VectorXd drifting;      ///< Adds the fitted drift.

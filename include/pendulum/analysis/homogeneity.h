@@ -58,7 +58,7 @@ struct AmplitudeDependence {
 
 /// Whether K recordings come from one rig, judged by their separate fits.
 struct Homogeneity {
-  double statistic = 0;  ///< χ² of all shared parameters together (MODEL.md eq. (58)).
+  double statistic = 0;  ///< χ² of all shared parameters together (MODEL.md eq. (10.3)).
   int dof = 0;
   std::optional<double> p;                  ///< Absent if there is no test; `reason` gives the cause.
   std::vector<SharedParameter> parameters;  ///< Without fixed parameters.

@@ -27,8 +27,8 @@ struct ReadingTerms {
 /// Terms of N measured values and N modelled readings, rad or rad/s.
 ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings);
 
-/// The covariance of W'score for residuals with this noise and autocorrelation (MODEL.md eq. (29)). time N, weights N x
-/// K.
+/// The covariance of W'score for residuals with this noise and autocorrelation (MODEL.md eq. (7.7)). time N, weights N
+/// x K.
 Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
                                 const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 

@@ -15,7 +15,7 @@ namespace pendulum {
 enum class Likelihood {
   kIndependent,  ///< The likelihood of the fits: residuals without autocorrelation.
   kCorrelated,   ///< Gaussian with the autocorrelation of the best model's residuals, and q²/12 for rounding (eq.
-                 ///< (49)).
+                 ///< (9.1)).
   kNone,         ///< No criterion: noise below half a count or a robust loss, with autocorrelation; or no fit
                  ///< converged.
 };
@@ -62,7 +62,7 @@ struct CompareOptions {
 };
 
 /// Compares fits of several models to the same samples. Recommends the simplest model that converged and is within
-/// kWithinBic of the smallest BIC (MODEL.md eq. (50)). `options` are those of FitModels.
+/// kWithinBic of the smallest BIC (MODEL.md eq. (9.2)). `options` are those of FitModels.
 Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, const CompareOptions& how = {});
 
 inline constexpr double kWithinBic = 2;

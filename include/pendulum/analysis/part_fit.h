@@ -57,7 +57,7 @@ class Parts {
 
 inline constexpr std::size_t kFewestHalfSwings = 6;
 
-/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (54)). Inertia and friction then have about
+/// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (9.6)). Inertia and friction then have about
 /// equal errors in all parts, because their variances are proportional to 1 / (amplitude² duration³). Returns indices
 /// into `ends` [s, file's clock], which has at least parts · kFewestHalfSwings + 1 elements. Every part has at least
 /// kFewestHalfSwings half swings, three periods.

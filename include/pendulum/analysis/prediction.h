@@ -11,7 +11,7 @@ namespace pendulum {
 /// How well a model predicts readings that were not fitted. Readings at an end of the sensor's range are left out.
 struct Prediction {
   double rms = 0;            ///< rad or rad/s, of measured - predicted; 0 if a part could not be predicted.
-  double standardized = 0;   ///< rms of (measured - predicted) / predicted standard deviation, MODEL.md eq. (53).
+  double standardized = 0;   ///< rms of (measured - predicted) / predicted standard deviation, MODEL.md eq. (9.5).
   Eigen::Index samples = 0;  ///< Predicted samples; 0 if there is no prediction or no standard deviation.
   std::string reason;        ///< Why there are no samples; empty if there are some.
 };

@@ -53,7 +53,7 @@ struct GroupRepeatability {
   double P() const;  ///< Probability of such a chi2 or a larger one if the errors are right.
 };
 
-/// Groups of at least two runs with errors, without outliers, and all groups together (MODEL.md eq. (63)).
+/// Groups of at least two runs with errors, without outliers, and all groups together (MODEL.md eq. (11.2)).
 struct Repeatability {
   std::vector<GroupRepeatability> groups;
   std::size_t runs = 0, dof = 0;
@@ -69,7 +69,7 @@ struct Repeatability {
 std::optional<Repeatability> Repeat(const RunValues& values, const std::vector<Outlier>& outliers);
 
 /// One least-squares slope of the values over their order, common to all groups; each group has a separate mean. The
-/// error comes from the scatter about the line (MODEL.md eq. (64)).
+/// error comes from the scatter about the line (MODEL.md eq. (11.3)).
 struct Trend {
   std::size_t runs = 0;
   double slope = 0, std_error = 0;

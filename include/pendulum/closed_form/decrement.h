@@ -33,7 +33,7 @@ struct Decrement {
 
 /// Fits the turning points of a model, exact at any amplitude, to those of a recording. Weighted least squares of their
 /// times and values; the unknowns are the amplitude and the time of the first, the zero, the natural frequency and the
-/// friction law (MODEL.md eq. (32), (34)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W.
+/// friction law (MODEL.md eq. (6.5), (6.7)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W.
 /// Liang, J. Sound Vib. 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), but without their
 /// small-angle approximation. Without friction it is the period corrected by the elliptic integral. Errors follow from
 /// those of the turning points, times sqrt(chi_square / freedom) if that is above 1. Once the kinks are known, the

@@ -11,8 +11,8 @@
 namespace pendulum {
 
 /// The energy lost between turning points, as linear least squares for the friction parameters, at any amplitude
-/// (MODEL.md eq. (22)). The law must be linear in its parameters except a reference rate. After Feeny & Liang, J. Sound
-/// Vib. 195:149 (1996) and sequels.
+/// (MODEL.md eq. (6.3)). The law must be linear in its parameters except a reference rate. After Feeny & Liang, J.
+/// Sound Vib. 195:149 (1996) and sequels.
 struct EnergyBalance {
   Eigen::MatrixXd normal;     ///< K x K, normal equations of the accumulated losses for K friction parameters.
   Eigen::VectorXd right;      ///< K

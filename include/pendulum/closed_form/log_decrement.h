@@ -15,7 +15,7 @@
 namespace pendulum {
 
 /// The formulas of a linear pendulum with viscous friction, applied to two turning points n periods apart (MODEL.md
-/// eq. (35)). They assume small angles and friction b ω. Units of G.
+/// eq. (6.9)). They assume small angles and friction b ω. Units of G.
 struct LogDecrement {
   std::size_t first = 0;       ///< Index in the table of the turning point at which the n periods begin.
   int periods = 0;             ///< n >= 1
@@ -26,7 +26,7 @@ struct LogDecrement {
   Estimate inertia;            ///< s^2, 1 / ω_n²
   Estimate viscous;            ///< s, 2 ζ / ω_n
   /// s^2, the inertia after dividing the period of each half swing by the ratio of the elliptic integral (MODEL.md eq.
-  /// (20)).
+  /// (6.1)).
   Estimate corrected_inertia;
   Eigen::MatrixXd gradient;  ///< 4 x 2 M, of (ζ, I, b, corrected I), as for CovarianceOf.
 };

@@ -53,8 +53,8 @@ Eigen::MatrixXd InfluenceOf(const PeakTable& table, const Eigen::MatrixXd& gradi
 
 /// Locates the turning points that FindExtrema finds. Each is located with a polynomial fitted to the readings within a
 /// sixth of a period, or a quarter. The degree is 6, or 4 or 2 with few samples. Before the fit the higher terms of a
-/// cosine and the kink are subtracted (MODEL.md eq. (33)). Errors follow from the noise about all polynomials together.
-/// Turning points at an end of the recording or of the sensor's range, or within a gap, are left out.
+/// cosine and the kink are subtracted (MODEL.md eq. (6.6)). Errors follow from the noise about all polynomials
+/// together. Turning points at an end of the recording or of the sensor's range, or within a gap, are left out.
 /// kFailedPrecondition: as FindExtrema, or fewer than three can be located.
 Result<PeakTable> LocatePeaks(const Recording& recording, const Kink& kink = {});
 

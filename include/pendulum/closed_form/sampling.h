@@ -29,11 +29,11 @@ struct Sampling {
 };
 
 /// The frequency [Hz] that samples of an oscillation appear to have: |f - k rate| for the nearest k, at most rate / 2
-/// (MODEL.md eq. (44)). Shannon, Proc. IRE 37:10 (1949).
+/// (MODEL.md eq. (6.13)). Shannon, Proc. IRE 37:10 (1949).
 double ApparentFrequency(double frequency_hz, double rate_hz);
 
 /// Whether two frequencies in [low, high] Hz can give the same even samples. This is so if [2 low / rate, 2 high /
-/// rate] contains an integer: frequencies on both sides of it mirror each other (MODEL.md eq. (45)).
+/// rate] contains an integer: frequencies on both sides of it mirror each other (MODEL.md eq. (6.14)).
 bool HoldsMirror(double low_hz, double high_hz, double rate_hz);
 
 /// Describes the sampling of the samples used. half_period [s] comes from the turning points; for an aliased swing it

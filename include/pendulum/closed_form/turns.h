@@ -20,7 +20,7 @@ struct TurnTable {
 
   std::size_t half_swings() const { return turns.empty() ? 0 : turns.size() - 1; }
 
-  /// Duration of a half swing from this turning point, divided by that of a small swing (MODEL.md eq. (20)).
+  /// Duration of a half swing from this turning point, divided by that of a small swing (MODEL.md eq. (6.1)).
   double Stretch(std::size_t turn) const;
 
   /// How far a reading may differ from that of this turning point and still count as equal: 5 % of the amplitude plus

@@ -19,7 +19,7 @@ inline bool HasOtherView(const Recording& recording) {
 
 /// The recording in which turning points are searched. An angle or a rate stays as it is. A coordinate, or an
 /// acceleration across the rod, counts as an angle in an unknown unit. An acceleration along the rod becomes ±sqrt(M -
-/// a) with M the reading at the bottom. This is proportional to sin(θ/2) (MODEL.md eq. (74)) and changes its sign at
+/// a) with M the reading at the bottom. This is proportional to sin(θ/2) (MODEL.md eq. (14.5)) and changes its sign at
 /// each bottom.
 Recording TurnsView(const Recording& recording);
 

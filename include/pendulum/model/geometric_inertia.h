@@ -19,7 +19,7 @@ struct GeometricInertia {
 };
 
 /// The inertia of the rig, given or computed from its geometry. For a rod and bob also the inertia of the point mass
-/// (MODEL.md eq. (3), (36)). The standard errors come from varying each value of the rig file by its standard
+/// (MODEL.md eq. (1.3), (6.10)). The standard errors come from varying each value of the rig file by its standard
 /// deviation. Each variation also changes G and therefore the fitted inertia.
 std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted);
 

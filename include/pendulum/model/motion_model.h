@@ -11,7 +11,7 @@
 
 namespace pendulum {
 
-/// The law of gravity's torque in units of G: sin θ, or θ for the small-angle model.  MODEL.md eq. (5), (6).
+/// The law of gravity's torque in units of G: sin θ, or θ for the small-angle model.  MODEL.md eq. (2.2), (2.3).
 enum class Gravity { kSine, kLinear };
 
 /// A model as --model selects it: a friction law and a gravity law.

@@ -30,8 +30,8 @@ struct Rig {
 
 /// Reads a rig from JSON text: one of {"bob_mass", "rod_mass", "rod_length", "gravity"}, {"gravity_torque"} or {"mass",
 /// "center_of_mass", "gravity"}, each with optional "inertia". Values are in SI units, each a number or {"value",
-/// "std_dev"}. A rod and a bob give I_O = m l²/3 + M l² (MODEL.md eq. (3)) unless "inertia" is given, and
-/// G = (M + m/2) g l (MODEL.md eq. (2)). Variances are propagated to first order; the values count as independent.
+/// "std_dev"}. A rod and a bob give I_O = m l²/3 + M l² (MODEL.md eq. (1.3)) unless "inertia" is given, and
+/// G = (M + m/2) g l (MODEL.md eq. (1.2)). Variances are propagated to first order; the values count as independent.
 /// kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or repeated key, keys of different
 /// descriptions, or a value that is not positive (rod_mass may be 0). The message begins with `name` and names the key.
 Result<Rig> ParseRig(std::string_view text, const std::string& name);

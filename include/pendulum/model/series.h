@@ -23,7 +23,7 @@ inline constexpr std::array<double, kMaxOrder + 1> kInverse = [] {
   return inverse;
 }();
 
-/// Coefficient n of the product of two series.  MODEL.md eq. (13).
+/// Coefficient n of the product of two series.  MODEL.md eq. (4.2).
 template <typename T>
 T CauchyProduct(const Series<T>& x, const Series<T>& y, int n) {
   T sum = x[0] * y[n];
@@ -40,8 +40,8 @@ T SquareCoefficient(const Series<T>& x, int n) {
 }
 
 /// Coefficients of sin θ and cos θ along a trajectory, in order of n, by the coupled recurrence
-/// n sin_n = Σ ω_k cos_{n-1-k}, n cos_n = -Σ ω_k sin_{n-1-k} with ω = θ' (MODEL.md eq. (14)). For speed, one quad holds
-/// the sums for sine and cosine of two successive coefficients. The sums run from the middle outwards: the latest
+/// n sin_n = Σ ω_k cos_{n-1-k}, n cos_n = -Σ ω_k sin_{n-1-k} with ω = θ' (MODEL.md eq. (4.3)). For speed, one quad
+/// holds the sums for sine and cosine of two successive coefficients. The sums run from the middle outwards: the latest
 /// coefficients are added last, so only the last additions wait for them.
 class SineSeries {
  public:
@@ -68,7 +68,7 @@ class SineSeries {
   }
 
   /// Partial derivatives of coefficient n from those of coefficients 0..n of θ. Next<n> must have been called. Using
-  /// d sin θ = cos θ dθ (MODEL.md eq. (15)) costs one product of series per parameter; the recurrence in dual numbers
+  /// d sin θ = cos θ dθ (MODEL.md eq. (4.4)) costs one product of series per parameter; the recurrence in dual numbers
   /// costs four. For even n, `next` receives the part of coefficient n + 1 that can be computed already.
   template <int n, int P>
   [[gnu::always_inline]] Partials<P> PartialsOf(const Series<Partials<P>>& angle, Partials<P>& next) const {

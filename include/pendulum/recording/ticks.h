@@ -11,7 +11,7 @@ namespace pendulum {
 /// slow swing sampled at even times repeats its counts, and a fast one skips many.
 bool IsEventDriven(const Recording& recording);
 
-/// Converts events to edges (MODEL.md eq. (81)). A row at a change of the count becomes the edge of the new count on
+/// Converts events to edges (MODEL.md eq. (7.4)). A row at a change of the count becomes the edge of the new count on
 /// the side from which it was entered: y - q/2 upwards, y + q/2 downwards. Between two rows in opposite directions the
 /// angle turned within the count of the first; a row inserted in the middle represents that (a silence). Rows that
 /// repeat a count and the first row, whose edge is unknown, are silences too. A first row followed by a hold is left

@@ -16,7 +16,7 @@
 
 namespace pendulum {
 
-/// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (4)): inertia I/G [s^2], friction / G.
+/// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (2.1)): inertia I/G [s^2], friction / G.
 template <FrictionModel F, typename T>
 struct Pendulum {
   Gravity gravity = Gravity::kSine;
@@ -45,7 +45,7 @@ struct Segment {
 };
 
 /// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md
-/// eq. (17)). For many samples, fitting/sample_kernel.h applies the same correction at each sample.
+/// eq. (4.6)). For many samples, fitting/sample_kernel.h applies the same correction at each sample.
 template <DualNumber T>
 PartialsFor<T> PartialsAtFixedTime(const Segment<T>& segment, int n) {
   const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
@@ -127,7 +127,7 @@ Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
   return values;
 }
 
-/// Direction of the motion that follows a state: ±1, or 0 if static friction holds the pendulum (MODEL.md eq. (10)).
+/// Direction of the motion that follows a state: ±1, or 0 if static friction holds the pendulum (MODEL.md eq. (2.9)).
 template <FrictionModel F>
 double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, double rate) {
   if (rate != 0) return rate > 0 ? 1.0 : -1.0;
@@ -189,7 +189,7 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
 
 /// The state at a reversal, computed from the state at the same instant, whose rate is 0 except for rounding. The rate
 /// and its derivatives become 0, and the derivative of the instant is -ω_p / α (implicit function theorem, MODEL.md eq.
-/// (16)).
+/// (4.5)).
 template <typename T>
 State<T> StateAtReversal(const State<T>& state, double acceleration) {
   State<T> reversal{state.time, state.angle, T(0.0)};

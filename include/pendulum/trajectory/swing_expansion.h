@@ -23,7 +23,7 @@ class SwingExpansion {
   }
 
   /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate, for one direction of motion from a
-  /// state (MODEL.md eq. (12)). With a dual T also their partial derivatives.
+  /// state (MODEL.md eq. (4.1)). With a dual T also their partial derivatives.
   void Expand(double direction, const State<T>& from) {
     direction_ = direction;
     angle_.angle[0] = Value(from.angle);
@@ -57,7 +57,7 @@ class SwingExpansion {
     rate_.value[n + 1] = (gravity + friction) * per_torque_[n + 1];
   }
 
-  /// Linear equations for the derivatives along the swing: eq. (12) and (15), differentiated.
+  /// Linear equations for the derivatives along the swing: eq. (4.1) and (4.4), differentiated.
   template <Gravity kGravity, int n>
   void FindPartials() {
     angle_.partials[n + 1] = kInverse[n + 1] * rate_.dual[n].v;

@@ -117,7 +117,7 @@ Interval IntervalOf(const NoiseModel& noise, double y) {
 /// b · density, or 0 if b is infinite.
 double Times(double b, double density) { return std::isinf(b) ? 0 : b * density; }
 
-/// Log-probability of an interval and its derivatives (MODEL.md eq. (27)).
+/// Log-probability of an interval and its derivatives (MODEL.md eq. (7.2)).
 NoiseLikelihood OfInterval(const Interval& interval, double m, double sigma) {
   const double a = (interval.from - m) / sigma;
   const double b = (interval.to - m) / sigma;

@@ -61,7 +61,7 @@ using Vector [[gnu::vector_size(64)]] = double;
 #endif
 
 /// Fills a segment's rows at the times [s] of `count` samples: derivatives by the parameters of T, by the instant of
-/// release, then the angle (MODEL.md eq. (17)). Writes up to kParts - 1 entries beyond the last sample.
+/// release, then the angle (MODEL.md eq. (4.6)). Writes up to kParts - 1 entries beyond the last sample.
 template <bool kRelease, typename T>
 void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX

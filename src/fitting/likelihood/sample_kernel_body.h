@@ -15,7 +15,7 @@ inline void Store(const Vector& vector, double* to) { std::memcpy(to, &vector, s
 
 /// Evaluates G vectors of samples at τ after a segment's start, by independent Horner chains for each column and for
 /// the rate, the slope of the angle's polynomial. Finally converts the derivatives to those at a fixed time (MODEL.md
-/// eq. (17)).
+/// eq. (4.6)).
 template <int G, bool kRelease, int P, typename T>
 inline void EvaluateVectors(const Segment<T>& segment, const double* tau, double* rows) {
   std::array<Vector, G> at;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** How a swing looks when it is sampled less than twice a period. MODEL.md eq. (44). */
+/** How a swing looks when it is sampled less than twice a period. MODEL.md eq. (6.13). */
 
 import type { Turn } from './envelope';
 

@@ -24,7 +24,7 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit) {
   return Must(FitRecording(Must(SimulateRecording(options)), fit));
 }
 
-/// MODEL.md eq. (75): 2 g / ω0² - 0.3 m = 0.5915 m gives the same readings except for friction, which is small here.
+/// MODEL.md eq. (14.6): 2 g / ω0² - 0.3 m = 0.5915 m gives the same readings except for friction, which is small here.
 SyntheticOptions WithLittleFriction(std::uint64_t seed) {
   SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
   options.model = FindMotionModel("viscous").value();

@@ -198,7 +198,7 @@ Rig TextbookRig(double std_dev) {
   return rig;
 }
 
-/// MODEL.md eq. (24) with G = 1.803(18) N m and k = 1.02(2): 1 % in G, 2 / 1.02 % in k.
+/// MODEL.md eq. (5.3) with G = 1.803(18) N m and k = 1.02(2): 1 % in G, 2 / 1.02 % in k.
 TEST(SystematicCovariance, OfRigAndClockAddsTheSharesOfBoth) {
   Recording recording = Must(SimulateRecording(ShortSwing()));
   recording.clock_scale = 1.02;

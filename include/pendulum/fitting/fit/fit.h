@@ -10,7 +10,7 @@ namespace pendulum {
 
 /// Fits one model to the whole of a recording. Seconds are true ones (clock_scale), but release_time is on the file's
 /// own clock. zero_drift (bias_drift of a rate) is a parameter when the options name it, and 0 otherwise; else edge_lag
-/// is one of events, MODEL.md eq. (81). kInvalidArgument: no such model, a name in the options that it does not have
+/// is one of events, MODEL.md eq. (7.4). kInvalidArgument: no such model, a name in the options that it does not have
 /// with this start, a value outside its bounds, quantized noise without a resolution, edges of a recording that has
 /// none, either with a robust loss. kDataLoss: counts or volts without a calibration. kFailedPrecondition: no swing, or
 /// too little of one. kTryAgain: options.stop was requested. Cost: about a millisecond for 2000 samples, three with the

@@ -17,7 +17,7 @@ struct RivalSolution {
 };
 
 /// For an accelerometer across the rod, the mirrored solution: another radius, with the motion to the other side.
-/// Except for friction it gives the same readings (MODEL.md eq. (75)). Returns std::nullopt if there is none, or if
+/// Except for friction it gives the same readings (MODEL.md eq. (14.6)). Returns std::nullopt if there is none, or if
 /// fixed values or bounds exclude it.
 std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters);
 

@@ -43,7 +43,7 @@ double CountedSamples(const FitReport& fit);
 FitStatistics SumStatistics(std::span<const FitReport* const> fits, int parameters);
 
 /// Fits one model to K >= 2 recordings of one rig. Each recording has its own start, zero and σ. The named physical
-/// parameters that the model has are shared (MODEL.md eq. (56)).
+/// parameters that the model has are shared (MODEL.md eq. (10.1)).
 ///
 /// The fit starts from the combined results of the separate fits. Sensors, rates, resolutions and kinds of start may
 /// differ; the rig may not. Converged means that Judge accepts the fit and that every recording is explained as well as

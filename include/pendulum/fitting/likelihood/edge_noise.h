@@ -27,7 +27,7 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
 
 /// Ratio of the standard deviation of a time stamp to that of an edge [s/rad]. Both add to the variance of a residual:
 /// σ² (1 + (ratio · rate)²). The estimate maximizes the likelihood of the differences of successive residuals of
-/// edges, which a slow misfit does not affect (MODEL.md eq. (83)). 0 if the variance of the time stamps is below two
+/// edges, which a slow misfit does not affect (MODEL.md eq. (7.6)). 0 if the variance of the time stamps is below two
 /// of its standard errors.
 double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                            const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);

@@ -25,7 +25,7 @@ void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parame
 inline constexpr int kMostCompressed = 16;
 
 /// Replaces the N residuals by P + 1 equations with the same cost and gradient, P <= kMostCompressed. They are R, R^-T
-/// J'r and the rest of |r| (MODEL.md eq. (19)), computed from the sums and laid out as ceres::CostFunction::Evaluate
+/// J'r and the rest of |r| (MODEL.md eq. (5.2)), computed from the sums and laid out as ceres::CostFunction::Evaluate
 /// returns them. Allocates no memory.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians);
 

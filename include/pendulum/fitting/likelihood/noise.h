@@ -59,7 +59,7 @@ struct NoiseLikelihood {
   double mixed = 0;                               ///< -∂²l/∂m∂λ
 };
 
-/// The noise of the samples of one recording (MODEL.md eq. (26) to (28), (82)). A reading at an end of the sensor's
+/// The noise of the samples of one recording (MODEL.md eq. (7.1) to (7.3), (7.5)). A reading at an end of the sensor's
 /// range is censored: the true value is at that end or beyond it.
 struct NoiseModel {
   static constexpr double kHuberWidth = 1.345;  ///< In σ.

@@ -56,7 +56,7 @@ struct MotionStates {
 /// data.scale) that is ((value - model(p)) / σ)².
 ///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J
-/// (the observed information of the samples, MODEL.md eq. (19) and (28)), R^-T J' r, and the rest of |r|. Cost and
+/// (the observed information of the samples, MODEL.md eq. (5.2) and (7.3)), R^-T J' r, and the rest of |r|. Cost and
 /// gradient are exactly those of the N residuals. Without Jacobians it returns (0, ..., 0, |r|).
 ///
 /// Every function returns false for a trial that never moves, that cannot be computed, or that is released outside the

@@ -41,7 +41,7 @@ double Lag1Correlation(const Eigen::VectorXd& residual);
 bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
 
 /// Whether the errors of phase and amplitude per period [s] are autocorrelated: the residuals oscillate with the
-/// pendulum (MODEL.md eq. (25)). False alarm rate for independent residuals: 2e-4. N samples.
+/// pendulum (MODEL.md eq. (5.5)). False alarm rate for independent residuals: 2e-4. N samples.
 bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
                 double period);
 

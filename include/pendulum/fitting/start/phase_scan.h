@@ -18,7 +18,7 @@ struct FrequencyRange {
 /// motion from its first sample on; times may be uneven. Returns at most twelve starts, the best first, one for each
 /// local minimum over frequency; none after a stop request. At each frequency the readings are fitted by linear least
 /// squares with A(t) cos φ(t), A(t) sin φ(t) and 1. Here φ is the phase of a pendulum with amplitude A(t) (MODEL.md
-/// eq. (46)). Cost: some ms to a second, depending on range and duration.
+/// eq. (6.15)). Cost: some ms to a second, depending on range and duration.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop = {});
 

@@ -21,7 +21,7 @@ RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& 
 
 /// Finds lost counts of an event-driven encoder: at turning points, where the motion crosses an edge back and forth,
 /// and where rows are missing. Within a run of successive edges in one direction no count is lost, so each run has its
-/// own zero in addition to the parameters. The differences of these zeros are numbers of counts (MODEL.md eq. (68)).
+/// own zero in addition to the parameters. The differences of these zeros are numbers of counts (MODEL.md eq. (13.2)).
 /// Steps of zero counts are omitted; a step not within 0.35 of a whole number keeps its own size.
 ///
 /// residuals    of a fit to the edges, N

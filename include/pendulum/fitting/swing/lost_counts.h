@@ -26,7 +26,7 @@ struct ZeroJumps {
 /// errors of independent residuals, and by a good part of a resolution.
 bool MayJump(const FitReport& fit);
 
-/// Finds jumps of an angle's zero (MODEL.md eq. (67)) in the residuals of the richest law; smaller residuals give a
+/// Finds jumps of an angle's zero (MODEL.md eq. (13.1)) in the residuals of the richest law; smaller residuals give a
 /// more accurate result. Returns std::nullopt if there are no jumps, if the recording cannot be fitted, or after a stop
 /// request.
 std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options);

@@ -26,7 +26,7 @@ struct IntervalEnds {
 };
 
 /// Derived quantities: natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is
-/// 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (23)). None depends on the rig.
+/// 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (6.4)). None depends on the rig.
 ///
 /// infos       The model's parameters, inertia first.
 /// parameters  P, in units of G.

@@ -30,7 +30,7 @@ struct Posterior {
   double effective_draws = 0;  ///< Equivalent number of independent draws for the least certain mean, of δ or of σ.
 };
 
-/// Draws from the posterior of δ and σ given quantized readings (MODEL.md eq. (26)), for noise so small that the
+/// Draws from the posterior of δ and σ given quantized readings (MODEL.md eq. (7.1)), for noise so small that the
 /// posterior is not normal.
 ///
 /// Prior: flat in δ within the bounds, times the normal priors; flat in σ on (0, 2q]. Uses slice sampling (R. M. Neal,

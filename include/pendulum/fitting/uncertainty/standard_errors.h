@@ -38,8 +38,8 @@ struct Errors {
 };
 
 /// The covariance of the free parameters: the inverse of the observed information of parameters and log σ. For a robust
-/// family or autocorrelated residuals it is a sandwich of that inverse (MODEL.md eq. (18), (28) to (30)). For several
-/// recordings both matrices are summed (eq. (57)).
+/// family or autocorrelated residuals it is a sandwich of that inverse (MODEL.md eq. (5.1), (7.3), (7.7), (7.8)). For
+/// several recordings both matrices are summed (eq. (10.2)).
 Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum);
 
 /// The same for one recording.

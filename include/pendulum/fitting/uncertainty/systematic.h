@@ -21,7 +21,7 @@ struct SystematicSource {
   Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a factor, relative.
 };
 
-/// The sources rig, clock and calibration that have errors, at the solution (MODEL.md eq. (24) and (31)).
+/// The sources rig, clock and calibration that have errors, at the solution (MODEL.md eq. (5.3) and (5.4)).
 std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
                                                 const FitProblem& problem, const TrajectoryCost& cost,
                                                 const Solution& solution);
@@ -37,7 +37,7 @@ struct SourceContext {
 /// Covariance of the estimates caused by a source's error, P x P. of_all: every recording of the fit has this source.
 Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, const SourceContext& context);
 
-/// Covariance of the estimates caused by the errors of rig, clock and calibration (MODEL.md eq. (24) and (31)). P x P
+/// Covariance of the estimates caused by the errors of rig, clock and calibration (MODEL.md eq. (5.3) and (5.4)). P x P
 /// in products of the problem's units; zero rows for fixed parameters.
 Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                      const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);

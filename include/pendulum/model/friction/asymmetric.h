@@ -9,7 +9,7 @@ inline constexpr ParameterInfo kAsymmetry{
     "asymmetry", "α", "1", "1", -1.0, 1.0, "share by which dry friction is larger towards positive angles"};
 
 /// Viscous friction, and dry friction that depends on the direction, as cables and brushes cause:
-/// T(ω) = b ω + s τ_c (1 + s α).  MODEL.md eq. (48).
+/// T(ω) = b ω + s τ_c (1 + s α).  MODEL.md eq. (2.8).
 struct AsymmetricFriction {
   static constexpr std::string_view kName = "asymmetric";
   static constexpr std::string_view kTitle = "dry friction that depends on the direction";

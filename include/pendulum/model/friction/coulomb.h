@@ -7,7 +7,7 @@ namespace pendulum {
 
 inline constexpr ParameterInfo kCoulomb{"coulomb", "τ_c", "N m", "1", 0.0, kUnbounded, "Coulomb (dry) friction torque"};
 
-/// Viscous and dry friction:  T(ω) = b ω + s τ_c,  s = sign ω.  MODEL.md eq. (8).
+/// Viscous and dry friction:  T(ω) = b ω + s τ_c,  s = sign ω.  MODEL.md eq. (2.5).
 struct CoulombFriction {
   static constexpr std::string_view kName = "coulomb";
   static constexpr std::string_view kTitle = "viscous and dry friction";

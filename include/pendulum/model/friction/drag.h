@@ -8,7 +8,7 @@ namespace pendulum {
 inline constexpr ParameterInfo kDrag{
     "drag", "c", "N m s^2/rad^2", "s^2", 0.0, kUnbounded, "quadratic (air) drag coefficient"};
 
-/// Viscous friction, dry friction and air drag:  T(ω) = b ω + s (τ_c + c ω²),  s = sign ω.  MODEL.md eq. (9).
+/// Viscous friction, dry friction and air drag:  T(ω) = b ω + s (τ_c + c ω²),  s = sign ω.  MODEL.md eq. (2.6).
 struct DragFriction {
   static constexpr std::string_view kName = "drag";
   static constexpr std::string_view kTitle = "viscous and dry friction, and air drag";

@@ -15,7 +15,7 @@ inline constexpr ParameterInfo kStribeckRate{
     "stribeck_rate", "ω_s", "rad/s", "rad/s", 1e-6, kUnbounded, "rate at which stiction has given way to coulomb"};
 
 /// Viscous friction, and dry friction that increases towards rest:
-/// T(ω) = b ω + s (τ_c + (τ_s - τ_c) exp(-(ω/ω_s)²)), τ_s >= τ_c.  MODEL.md eq. (47).
+/// T(ω) = b ω + s (τ_c + (τ_s - τ_c) exp(-(ω/ω_s)²)), τ_s >= τ_c.  MODEL.md eq. (2.7).
 struct StribeckFriction {
   static constexpr std::string_view kName = "stribeck";
   static constexpr std::string_view kTitle = "friction with the Stribeck effect";

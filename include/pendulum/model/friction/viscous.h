@@ -12,7 +12,7 @@ namespace pendulum {
 inline constexpr ParameterInfo kViscous{
     "viscous", "b", "N m s/rad", "s", 0.0, kUnbounded, "viscous friction coefficient"};
 
-/// Viscous friction alone:  T(ω) = b ω.  MODEL.md eq. (7).
+/// Viscous friction alone:  T(ω) = b ω.  MODEL.md eq. (2.4).
 struct ViscousFriction {
   static constexpr std::string_view kName = "viscous";
   static constexpr std::string_view kTitle = "viscous friction";

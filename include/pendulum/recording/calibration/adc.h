@@ -11,7 +11,7 @@ namespace pendulum {
 /// Angles are in deg from the middle of the travel. The wiper's voltage rises linearly along the travel, from 0 to
 /// supply:
 ///   volts = divider supply (1/2 + angle / travel),   counts = ⌊volts 2ᵇⁱᵗˢ / reference⌋, from 0 to 2ᵇⁱᵗˢ - 1
-/// (MODEL.md eq. (43)). Sources: Microchip, ATmega328P data sheet (DS40002061), "ADC Conversion Result": ADC = V_IN
+/// (MODEL.md eq. (8.4)). Sources: Microchip, ATmega328P data sheet (DS40002061), "ADC Conversion Result": ADC = V_IN
 /// 1024 / V_REF; full scale represents V_REF minus one step. Divider and converter are assumed to draw no current from
 /// the wiper. Preconditions: 1 <= bits <= 32, voltages and travel positive, 0 < divider <= 1.
 struct AdcSensor {

@@ -14,7 +14,7 @@ namespace pendulum {
 
 inline constexpr int kHighestCalibrationOrder = 5;
 
-/// F test of the highest power of a curve: the curve against the one without it, MODEL.md eq. (42).
+/// F test of the highest power of a curve: the curve against the one without it, MODEL.md eq. (8.3).
 struct OrderTest {
   int order;    ///< Of the curve with the power.
   double f;     ///< F, with 1 and `freedom` degrees of freedom; infinite if the curve passes through every point.
@@ -22,7 +22,7 @@ struct OrderTest {
   double p;     ///< Probability of so large an F if the power were absent.
 };
 
-/// Tests whether rounding to whole counts alone explains the residuals, MODEL.md eq. (42).
+/// Tests whether rounding to whole counts alone explains the residuals, MODEL.md eq. (8.3).
 struct RoundingTest {
   double std_dev;  ///< Of the residuals caused by rounding alone, resolution / √12, angle_unit.
   double p;        ///< Probability of residuals at least as large by rounding alone, χ².
@@ -45,7 +45,7 @@ struct CalibrationFit {
   std::optional<double> LeaveOneOutRms() const;
 };
 
-/// Least squares of angle on reading, MODEL.md eqs. (40) and (41): a polynomial of the given order. The covariance of
+/// Least squares of angle on reading, MODEL.md eqs. (8.1) and (8.2): a polynomial of the given order. The covariance of
 /// its coefficients is σ̂² (XᵀX)⁻¹ with σ̂² = RSS / (N - order - 1). Residuals count as independent and equally large.
 /// Readings are centred and scaled, so no digits are lost at orders up to 5; the coefficients are those of powers of
 /// the reading. `input_range` is the range that the sensor can show. kInvalidArgument: an order not in 1 to
