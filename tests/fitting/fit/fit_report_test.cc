@@ -40,8 +40,16 @@ TEST(Termination, HasANameAndAnExitCode) {
 TEST(WithdrawErrors, LeavesEstimatesWithAReasonInPlaceOfErrors) {
   FitReport fit;
   fit.parameters.resize(2);
-  fit.parameters[0] = {.info = kInertia, .estimate = 0.04, .std_error = 0.001, .lower95 = 0.038, .upper95 = 0.042};
-  fit.parameters[1] = {.info = kZeroAngle, .estimate = 0.1, .fixed = true, .reason = "fixed"};
+  ParameterEstimate& inertia = fit.parameters[0];
+  inertia.info = kInertia;
+  inertia.estimate = 0.04;
+  inertia.std_error = 0.001;
+  inertia.lower95 = 0.038;
+  inertia.upper95 = 0.042;
+  ParameterEstimate& zero = fit.parameters[1];
+  zero.info = kZeroAngle;
+  zero.fixed = true;
+  zero.reason = "fixed";
   fit.covariance_names = {"inertia"};
   fit.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-6);
   WithdrawErrors("two minima", fit);
