@@ -70,7 +70,7 @@ inline FitReport ExampleFit() {
                0.125,
                {Autocorrelation::Kind::kAutoregressive, {0.5, 0.1}}};
   fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75, 0.04, 0.25, 1200.25};
-  fit.solver = {7, 15, "Convergence. (made up)"};
+  fit.solver = {7, 15, "Convergence. (made up)", {}};
   fit.trace_error = 2e-10;
   fit.warnings = {{"lack_of_fit", "the residuals are not white; friction may be of another kind"}};
   return fit;
